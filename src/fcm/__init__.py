@@ -1,0 +1,55 @@
+"""Friction contacts with variable normal load: closed-form hysteresis, tables, response curves.
+
+The names below are imported when first used, so that a command pays only for what it needs.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fcm.contact import (
+        fourier_coefficients,
+        fourier_gradients,
+        hysteresis_loop,
+        normal_coefficients,
+        normal_gradients,
+    )
+    from fcm.response import respond
+    from fcm.scene import load_scene
+    from fcm.table import open_table
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "fourier_coefficients": "fcm.contact",
+    "fourier_gradients": "fcm.contact",
+    "hysteresis_loop": "fcm.contact",
+    "load_scene": "fcm.scene",
+    "normal_coefficients": "fcm.contact",
+    "normal_gradients": "fcm.contact",
+    "open_table": "fcm.table",
+    "respond": "fcm.response",
+}
+
+__all__ = [
+    "fourier_coefficients",
+    "fourier_gradients",
+    "hysteresis_loop",
+    "load_scene",
+    "normal_coefficients",
+    "normal_gradients",
+    "open_table",
+    "respond",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(_HOME[name]), name)
+    raise AttributeError(f"module 'fcm' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__version__"])

@@ -1,0 +1,72 @@
+"""A checked scene: the modal structure, its contacts and forces, the range, the curves to trace."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Modal:
+    """Modes of the structure without its contacts: m_i (q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i) = Phi_i^T F."""
+
+    dofs: tuple[str, ...]
+    mass: FloatArray  # (mode,)
+    frequency: FloatArray  # (mode,) undamped, angular [rad/s]
+    damping: FloatArray  # (mode,) ratio [-]
+    shapes: FloatArray  # (mode, dof)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A contact; its relative displacements are ``u = tangential @ x`` and ``v = normal @ x``."""
+
+    name: str
+    tangential: FloatArray  # (dof,)
+    normal: FloatArray  # (dof,)
+    mu: float
+    k_u: float
+    k_v: float
+    n_0: float  # preload, negative for a gap
+
+
+@dataclass(frozen=True)
+class Force:
+    """External force amplitude * sin(omega t + phase) on ``direction @ x``."""
+
+    direction: FloatArray  # (dof,)
+    amplitude: float
+    phase: float  # [rad]
+
+
+@dataclass(frozen=True)
+class Phase:
+    """One phase of a time simulation."""
+
+    frequency: float  # [rad/s]
+    cycles: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
+
+    title: str
+    modal: Modal
+    contacts: tuple[Contact, ...]
+    forces: tuple[Force, ...]
+    frequency_range: tuple[float, float]  # [rad/s]
+    max_step: float  # longest step along a curve, relative to the curve's own extent
+    frequency_unit: str = "rad/s"  # the unit of the scene's file and of results: "rad/s" or "Hz"
+    schedule: tuple[Phase, ...] = ()
+    parameters: dict[str, float] = field(default_factory=dict)  # the swept values of this curve
+    curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
+    name: str = ""  # file or bundled name, for messages
+
+    def each_curve(self) -> tuple[Scene, ...]:
+        """The scenes to trace: those of the sweep, or this one alone."""
+        return self.curves or (self,)
