@@ -1,0 +1,88 @@
+"""Names written at the peaks of curves, where they touch neither each other nor a line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.text import Annotation
+    from matplotlib.transforms import Bbox
+
+FloatArray = npt.NDArray[np.float64]
+
+_OFFSETS = (  # [point] from the peak, with the alignment of the text, best first
+    (0, 3, "center", "bottom"),
+    (4, 2, "left", "bottom"),
+    (-4, 2, "right", "bottom"),
+    (6, 0, "left", "center"),
+    (-6, 0, "right", "center"),
+    (14, 3, "left", "center"),
+    (-14, 3, "right", "center"),
+    (14, 12, "left", "bottom"),
+    (-14, 12, "right", "bottom"),
+    (26, 4, "left", "center"),
+    (-26, 4, "right", "center"),
+)
+_LEADER_FROM = 10  # [point] a name this far from its peak has a thin line to it
+_LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 0.5}
+_MARGIN = 2  # [pixel] around a name, at 100 to the inch
+_FINE = 12  # points between two of a curve at which a touch is looked for
+
+
+def label_at_peaks(
+    figure: Figure, axes: Axes, lines: Sequence[tuple[FloatArray, FloatArray]], names: Sequence[str]
+) -> bool:
+    """Write each name at its line's highest point; nothing is written, and False, if one finds no room."""
+    figure.draw_without_rendering()
+    pixels = np.concatenate([axes.transData.transform(_dense(x, y)) for x, y in lines])
+    texts: list[Annotation] = []
+    taken: list[Bbox] = []
+    for (x, y), name in zip(lines, names, strict=True):
+        if not name:
+            continue
+        peak = (x[np.nanargmax(y)], np.nanmax(y))
+        text = _find_room(axes, name, peak, taken, pixels)
+        if text is None:
+            for earlier in texts:
+                earlier.remove()
+            return False
+        texts.append(text)
+    return True
+
+
+def _find_room(
+    axes: Axes, name: str, peak: tuple[float, float], taken: list[Bbox], pixels: FloatArray
+) -> Annotation | None:
+    """The name at the first offset where it is free; its box joins those taken."""
+    frame = axes.get_window_extent()
+    for dx, dy, ha, va in _OFFSETS:
+        text = axes.annotate(name, peak, (dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=8)
+        box = text.get_window_extent().padded(_MARGIN)
+        inside = frame.x0 < box.x0 and box.x1 < frame.x1 and frame.y0 < box.y0 and box.y1 < frame.y1
+        if inside and not any(box.overlaps(other) for other in taken) and not _touched(box, pixels):
+            taken.append(box)
+            if abs(dx) < _LEADER_FROM:
+                return text
+            text.remove()
+            return axes.annotate(
+                name, peak, (dx, dy), textcoords="offset points", ha=ha, va=va, fontsize=8, arrowprops=_LEADER
+            )
+        text.remove()
+    return None
+
+
+def _touched(box: Bbox, pixels: FloatArray) -> bool:
+    return bool(((pixels > (box.x0, box.y0)) & (pixels < (box.x1, box.y1))).all(axis=1).any())
+
+
+def _dense(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Points along the drawn line, close enough that none of its pieces jumps over a name."""
+    at = np.linspace(0, len(x) - 1, _FINE * (len(x) - 1) + 1)
+    nodes = np.arange(len(x))
+    return np.column_stack([np.interp(at, nodes, x), np.interp(at, nodes, y)])

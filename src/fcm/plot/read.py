@@ -1,0 +1,107 @@
+"""A response file, read for drawing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.plot.errors import PlotError
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+_NEEDED = ("frequency", "amplitude", "dof")
+
+
+@dataclass(frozen=True)
+class DrawnCurve:
+    """One curve without its padding; ``stable`` is None where the file does not know."""
+
+    parameters: dict[str, float]
+    frequency: FloatArray  # (point,) in the file's unit
+    amplitude: FloatArray  # (point, dof)
+    stable: BoolArray | None = None  # (point,)
+    regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
+
+
+@dataclass(frozen=True)
+class DrawnResponse:
+    dofs: tuple[str, ...]
+    frequency_unit: str
+    curves: tuple[DrawnCurve, ...]
+
+
+def read_response(path: Path) -> DrawnResponse:
+    """Read what ``fcm respond -o`` has written; PlotError if the file is something else."""
+    from netCDF4 import Dataset
+
+    try:
+        dataset = Dataset(str(path))
+    except OSError as error:
+        raise PlotError(f"{path}: not a netCDF file that can be read") from error
+    with dataset:
+        variables = dataset.variables
+        missing = [name for name in _NEEDED if name not in variables]
+        if missing:
+            raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
+        try:
+            return _response(variables)
+        except (IndexError, TypeError, ValueError) as error:
+            raise PlotError(f"{path}: not a response file: {error}") from error
+
+
+def _response(variables: Any) -> DrawnResponse:
+    dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
+    frequency, amplitude = _floats(variables["frequency"]), _floats(variables["amplitude"])
+    if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
+        raise ValueError(f"frequency has shape {frequency.shape}, amplitude {amplitude.shape}")
+    stable = _floats(variables["stable"]) if "stable" in variables else None
+    regime = variables["regime"][:] if "regime" in variables else None
+    swept = _swept(variables)
+    curves = tuple(
+        _curve(
+            {name: float(values[i]) for name, values in swept.items()},
+            frequency[i],
+            amplitude[i],
+            None if stable is None else stable[i],
+            None if regime is None else regime[i],
+        )
+        for i in range(len(frequency))
+    )
+    return DrawnResponse(dofs, getattr(variables["frequency"], "units", "rad/s"), curves)
+
+
+def _curve(
+    parameters: dict[str, float],
+    frequency: FloatArray,
+    amplitude: FloatArray,
+    stable: FloatArray | None,
+    regime: Any,
+) -> DrawnCurve:
+    """Take the padding away."""
+    there = np.isfinite(frequency)
+    known = stable is not None and bool(np.isfinite(stable[there]).any())
+    return DrawnCurve(
+        parameters,
+        frequency[there],
+        amplitude[there],
+        stable[there] != 0 if stable is not None and known else None,  # unknown points count as stable
+        frozenset() if regime is None else frozenset(map(str, np.unique(regime[there]))),
+    )
+
+
+def _swept(variables: Any) -> dict[str, FloatArray]:
+    """The coordinates of ``curve``: by their full names, ``contact.shroud.n_0``."""
+    return {
+        str(getattr(variable, "parameter", name)): _floats(variable)
+        for name, variable in variables.items()
+        if variable.dimensions == ("curve",) and hasattr(variable, "parameter")
+    }
+
+
+def _floats(variable: Any) -> FloatArray:
+    return np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)

@@ -1,0 +1,97 @@
+"""Amplitude against frequency: one line a curve, labelled with what was swept."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import curve_label, frequency_label
+from fcm.plot.place import label_at_peaks
+from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray
+from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
+_MOST_NAMES = 20  # of more curves than this, only the first and the last are named
+
+
+def draw_response(response: DrawnResponse, dof: str | None = None, log: bool | None = None) -> Figure:
+    """The figure of one degree of freedom (the first by default); unstable parts are dashed."""
+    column = _column(response, dof)
+    curves = [curve for curve in response.curves if len(curve.frequency)]
+    if not curves:
+        raise PlotError("the file holds no point of any curve")
+    with house_style():
+        figure = new_figure()
+        axes = figure.add_subplot()
+        for curve, colour in zip(curves, sequence_colours(len(curves)), strict=True):
+            _draw_curve(axes, curve, column, colour)
+        _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
+        _name_curves(figure, axes, curves, column)
+    return figure
+
+
+def _column(response: DrawnResponse, dof: str | None) -> int:
+    if dof is None:
+        return 0
+    if dof not in response.dofs:
+        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(response.dofs)}")
+    return response.dofs.index(dof)
+
+
+def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
+    peaks = [np.nanmax(curve.amplitude[:, column]) for curve in curves]
+    return bool(max(peaks) > _DECADE * min(peaks) > 0)
+
+
+def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, colour: str) -> None:
+    """A solid line where the curve is stable or its stability unknown, a dashed one elsewhere."""
+    amplitude = curve.amplitude[:, column]
+    unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
+    solid, dashed = _split(amplitude, unstable)
+    alone = "." if len(amplitude) == 1 else ""
+    axes.plot(curve.frequency, solid, color=colour, marker=alone, label=_named(curve))
+    if unstable.any():
+        axes.plot(curve.frequency, dashed, color=colour, linestyle=(0, (3, 1.6)), label="_unstable")
+
+
+def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """The stable and the unstable parts, NaN elsewhere; the unstable reach to their stable neighbours."""
+    beside = unstable.copy()
+    beside[1:] |= unstable[:-1]
+    beside[:-1] |= unstable[1:]
+    return np.where(unstable, np.nan, amplitude), np.where(beside, amplitude, np.nan)
+
+
+def _named(curve: DrawnCurve, symbols: bool = True) -> str:
+    state = {frozenset({"E"}): " (stuck)", frozenset({"S"}): " (open)"}.get(curve.regimes, "")
+    return (curve_label(curve.parameters, symbols) + state).strip()
+
+
+def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
+    axes.set_xlabel(frequency_label(response.frequency_unit))
+    axes.set_ylabel(f"Amplitude of {response.dofs[column]}")
+    axes.margins(x=0.0, y=0.07)
+    axes.minorticks_on()
+    if log:
+        logarithmic_axis(axes)
+    else:
+        axes.set_ylim(bottom=0.0)
+
+
+def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int) -> None:
+    """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
+    names = [_named(curve, symbols=i == 0) for i, curve in enumerate(curves)]
+    lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
+    if len(curves) <= _MOST_NAMES and label_at_peaks(figure, axes, lines, names):
+        return
+    handles = [line for line in axes.get_lines() if not str(line.get_label()).startswith("_")]
+    if len(handles) > _MOST_NAMES:
+        handles = [handles[0], handles[-1]]
+    if any(names):
+        figure.legend(handles=handles, loc="outside right upper")

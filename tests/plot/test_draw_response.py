@@ -1,0 +1,145 @@
+"""What is drawn: the lines, their labels, the axes; no pixels."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.text import Annotation
+
+from fcm.plot import DrawnCurve, DrawnResponse, PlotError, draw_response, save
+
+FREQUENCY = np.linspace(0.7, 1.7, 201)
+
+
+def resonance(peak, at, n_0, **more):
+    amplitude = peak / np.hypot(1.0, (FREQUENCY - at) * peak / 2)
+    columns = np.column_stack([amplitude, amplitude / 4])
+    return DrawnCurve({"contact.shroud.n_0": n_0}, FREQUENCY, columns, **more)
+
+
+def response(*curves, unit="rad/s"):
+    return DrawnResponse(("u", "v"), unit, curves)
+
+
+def three():
+    return response(
+        resonance(35.0, 1.5, 100.0, regimes=frozenset({"E"})),
+        resonance(6.2, 1.345, 10.0, regimes=frozenset({"E", "EPEN", "SEP"})),
+        resonance(50.0, 1.0, -60.0, regimes=frozenset({"S"})),
+    )
+
+
+def names(axes):
+    return [text.get_text() for text in axes.texts if isinstance(text, Annotation)]
+
+
+def test_one_line_a_curve_holds_its_data():
+    curves = three()
+    (axes,) = draw_response(curves).axes
+    assert len(axes.lines) == 3
+    for line, curve in zip(axes.lines, curves.curves, strict=True):
+        np.testing.assert_array_equal(line.get_xdata(), curve.frequency)
+        np.testing.assert_array_equal(line.get_ydata(), curve.amplitude[:, 0])
+        assert line.get_linestyle() == "-"
+
+
+@pytest.mark.parametrize(
+    ("unit", "label"), [("rad/s", "Frequency $\\omega$ (rad/s)"), ("Hz", "Frequency $f$ (Hz)")]
+)
+def test_axes_say_what_and_in_which_unit(unit, label):
+    (axes,) = draw_response(response(resonance(9.0, 1.2, 5.0), unit=unit), dof="v").axes
+    assert axes.get_xlabel() == label
+    assert axes.get_ylabel() == "Amplitude of v"
+    np.testing.assert_array_equal(axes.lines[0].get_ydata().max(), 9.0 / 4)
+
+
+def test_curves_carry_what_was_swept_at_their_peaks():
+    (axes,) = draw_response(three()).axes
+    assert names(axes) == ["$n_{0}$ = 100 (stuck)", "10", "−60 (open)"]
+    for text, curve in zip(axes.texts, three().curves, strict=True):
+        peak = curve.amplitude[:, 0].argmax()
+        assert text.xy == (curve.frequency[peak], curve.amplitude[peak, 0])
+
+
+def test_names_touch_neither_each_other_nor_a_line():
+    figure = draw_response(three())
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    for line in axes.lines:
+        path = line.get_path().transformed(axes.transData)
+        assert not any(path.intersects_bbox(box, filled=False) for box in boxes)
+
+
+def test_curves_that_leave_no_room_for_names_have_a_legend():
+    same = [resonance(9.0, 1.2, float(n)) for n in range(8)]
+    figure = draw_response(response(*same))
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [f"$n_{{0}}$ = {n}" for n in range(8)]
+    assert names(figure.axes[0]) == []
+
+
+def test_of_very_many_curves_the_first_and_the_last_are_named():
+    many = [resonance(5.0 + n / 10, 0.9 + n / 200, float(n)) for n in range(100)]
+    figure = draw_response(response(*many))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["$n_{0}$ = 0", "$n_{0}$ = 99"]
+    assert len(figure.axes[0].lines) == 100
+
+
+def test_a_scene_without_a_sweep_has_one_unnamed_black_line():
+    figure = draw_response(response(DrawnCurve({}, FREQUENCY, np.ones((201, 2)))))
+    (axes,) = figure.axes
+    assert to_rgb(axes.lines[0].get_color()) == (0, 0, 0)
+    assert not figure.legends and not axes.texts
+
+
+def test_unstable_parts_are_dashed_and_join_the_stable_ones():
+    stable = np.ones(201, bool)
+    stable[80:90] = False
+    (axes,) = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable))).axes
+    solid, dashed = axes.lines
+    assert solid.get_linestyle() == "-" and dashed.get_linestyle() == "--"
+    assert solid.get_color() == dashed.get_color()
+    assert np.flatnonzero(np.isnan(solid.get_ydata())).tolist() == list(range(80, 90))
+    assert np.flatnonzero(np.isfinite(dashed.get_ydata())).tolist() == list(range(79, 91))
+
+
+@pytest.mark.parametrize(
+    ("least", "log", "scale"),
+    [(6.0, None, "linear"), (4.0, None, "log"), (4.0, False, "linear"), (6.0, True, "log")],
+)
+def test_axis_is_logarithmic_when_peaks_span_a_decade_or_on_request(least, log, scale):
+    curves = response(resonance(50.0, 1.0, 0.0), resonance(least, 1.3, 1.0))
+    assert draw_response(curves, log=log).axes[0].get_yscale() == scale
+
+
+def test_logarithmic_ticks_are_plain_numbers():
+    figure = draw_response(three(), log=True)
+    figure.draw_without_rendering()
+    assert {"1", "2", "5", "10"} <= {tick.get_text() for tick in figure.axes[0].get_yticklabels()}
+
+
+def test_colours_go_from_dark_to_light():
+    colours = [to_rgb(line.get_color()) for line in draw_response(three()).axes[0].lines]
+    light = [np.dot((0.2126, 0.7152, 0.0722), colour) for colour in colours]
+    assert light == sorted(light) and light[-1] < 0.75
+
+
+def test_what_cannot_be_drawn_is_said():
+    with pytest.raises(PlotError, match="no degree of freedom 'w'; the file has u, v"):
+        draw_response(three(), dof="w")
+    with pytest.raises(PlotError, match="no point"):
+        draw_response(response(DrawnCurve({}, np.empty(0), np.empty((0, 2)))))
+
+
+def test_a_curve_of_one_point_is_drawn():
+    draw_response(response(DrawnCurve({"contact.a.n_0": 1.0}, FREQUENCY[:1], np.ones((1, 2)))))
+
+
+@pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
+def test_the_same_figure_gives_the_same_bytes(tmp_path, ending):
+    for name in "ab":
+        save(draw_response(three()), tmp_path / (name + ending))
+    first, second = ((tmp_path / (name + ending)).read_bytes() for name in "ab")
+    assert first == second
+    assert first.startswith({".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}[ending])
