@@ -12,7 +12,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Modal:
-    """Modes of the structure without its contacts: m_i (q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i) = Phi_i^T F."""
+    """Modes of the structure without contacts: m_i (q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i) = Phi_i^T F."""
 
     dofs: tuple[str, ...]
     mass: FloatArray  # (mode,)

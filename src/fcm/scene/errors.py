@@ -1,0 +1,123 @@
+"""Every mistake of a scene, collected and reported at once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+MOST_SHOWN = 30  # mistakes listed one by one; the rest are counted
+LONGEST_SHOWN = 60  # characters of a value shown in a message
+MOST_COMPARED = 2000  # names that a misspelt one is compared with
+
+
+class SceneError(ValueError):
+    """What is wrong with a scene: its file or name, then one line for each mistake.
+
+    >>> print(SceneError("fan.toml", ["modal.mass[0]: must be greater than 0, is -1"]))
+    fan.toml: modal.mass[0]: must be greater than 0, is -1
+    """
+
+    def __init__(self, source: str, mistakes: Iterable[str], count: int | None = None) -> None:
+        self.source = source
+        self.mistakes = tuple(mistakes)
+        self.count = len(self.mistakes) if count is None else count
+        super().__init__(self._message())
+
+    def _message(self) -> str:
+        if self.count == 1:
+            return f"{self.source}: {self.mistakes[0]}"
+        more = self.count - len(self.mistakes)
+        lines = [f"{self.source}: {self.count} mistakes", *self.mistakes]
+        return "\n  ".join([*lines, f"... and {more} more"] if more else lines)
+
+
+class Mistakes:
+    """Collects mistakes while a scene is read.
+
+    >>> mistakes = Mistakes("fan.toml")
+    >>> mistakes.add("contact[0].ku", "unknown key", "ku", ["mu", "k_u", "k_v"])
+    >>> mistakes.raise_if_any()
+    Traceback (most recent call last):
+    fcm.scene.errors.SceneError: fan.toml: contact[0].ku: unknown key; did you mean "k_u"?
+    """
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.count = 0
+        self._lines: list[str] = []
+
+    def add(self, where: str, what: str, word: str = "", among: Iterable[str] = ()) -> None:
+        """Note that `what` is wrong at the key path `where`; `word` may be a misspelling of one `among`."""
+        self.count += 1
+        if len(self._lines) < MOST_SHOWN:
+            text = what + suggestion(word, among)
+            self._lines.append(f"{where}: {text}" if where else text)
+
+    def raise_if_any(self) -> None:
+        """Raise a SceneError with every mistake so far."""
+        if self.count:
+            raise SceneError(self.source, self._lines, self.count)
+
+
+def suggestion(word: str, among: Iterable[str]) -> str:
+    """``; did you mean "..."?`` with the closest name, or nothing when none is close.
+
+    >>> suggestion("frequncy", ["frequency", "damping"])
+    '; did you mean "frequency"?'
+    """
+    if not word or len(word) > LONGEST_SHOWN:
+        return ""
+    names = {name.casefold(): name for name, _ in zip(among, range(MOST_COMPARED), strict=False)}
+    close = get_close_matches(word.casefold(), names, n=1)
+    return f"; did you mean {quoted(names[close[0]])}?" if close else ""
+
+
+def choices(names: Iterable[str], most: int = 12) -> str:
+    """The names in quotes, separated by commas; the rest are counted.
+
+    >>> choices(["u", "v", "w"], most=2)
+    '"u", "v", ... (3 in all)'
+    """
+    listed = list(names)
+    rest = f", ... ({len(listed)} in all)" if len(listed) > most else ""
+    return ", ".join(quoted(name) for name in listed[:most]) + rest
+
+
+def quoted(text: object) -> str:
+    """Text in double quotes, on one line, without control characters and not too long."""
+    line = text if isinstance(text, str) else shown(text)
+    if len(line) > LONGEST_SHOWN:
+        line = line[:LONGEST_SHOWN] + "..."
+    return json.dumps(line, ensure_ascii=not line.isprintable())
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: short, and on one line.
+
+    >>> shown(True), shown(-1.0), shown("x"), shown(1 << 5000)
+    ('true', '-1', '"x"', 'an integer of 5001 bits')
+    """
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return quoted(value)
+    if isinstance(value, int):
+        return str(value) if value.bit_length() < 200 else f"an integer of {value.bit_length()} bits"
+    if isinstance(value, float):
+        return f"{value:.12g}"
+    return kind(value)
+
+
+def kind(value: object) -> str:
+    """What a value is, in the words of the file: a table, a list, a string, ...
+
+    >>> kind({}), kind([1, 2]), kind(None)
+    ('a table', 'a list of 2', 'a NoneType')
+    """
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}" if value else "an empty list"
+    names = {bool: "true or false", str: "a string", int: "an integer", float: "a number"}
+    return names.get(type(value), f"a {type(value).__name__}")

@@ -1,0 +1,177 @@
+"""From a TOML file, a bundled name or a dict to a checked scene."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from fcm.scene.address import replaced
+from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
+from fcm.scene.modal import UNITS, modal_of, read_modal
+from fcm.scene.model import FloatArray, Scene
+from fcm.scene.parts import contact_of, force_of, read_contacts, read_forces, read_response, read_schedule
+from fcm.scene.section import Section
+from fcm.scene.sweep import Swept, combinations, read_sweep
+
+KEYS = ("title", "frequency_unit", "modal", "contact", "force", "response", "sweep", "schedule")
+LARGEST_FILE = 100_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
+
+
+def bundled_scenes() -> tuple[str, ...]:
+    """Names of the scenes that come with fcm.
+
+    >>> "yang1998" in bundled_scenes()
+    True
+    """
+    names = (Path(entry.name) for entry in (files("fcm") / "scenes").iterdir())
+    return tuple(sorted(name.stem for name in names if name.suffix == ".toml"))
+
+
+def load_scene(path_or_name: str | Path) -> Scene:
+    """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
+
+    >>> scene = load_scene("yang1998")
+    >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
+    (('u', 'v'), 0.4, 10)
+    >>> scene.curves[0].parameters
+    {'contact.shroud.n_0': 100.0}
+    """
+    if str(path_or_name) in bundled_scenes():
+        path = Path(str(files("fcm") / "scenes" / f"{path_or_name}.toml"))
+        return scene_from_dict(_parsed(path, str(path_or_name)), str(path_or_name), path.parent)
+    path = Path(path_or_name)
+    return scene_from_dict(_parsed(path, str(path)), str(path), path.parent)
+
+
+def scene_from_dict(data: Mapping[str, Any], name: str = "scene", folder: str | Path = ".") -> Scene:
+    """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
+
+    >>> modal = {"dofs": ["u"], "frequency": [1.0], "damping": 0.01, "shapes": [[1.0]]}
+    >>> force = [{"dof": "u", "amplitude": 1.0}]
+    >>> data = {"modal": modal, "force": force, "response": {"frequency": [0.5, 1.5]}}
+    >>> scene_from_dict(data).frequency_range
+    (0.5, 1.5)
+    """
+    mistakes = Mistakes(name)
+    top = Section(data, "", mistakes)
+    if not data:
+        mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
+        mistakes.raise_if_any()
+    top.only(*KEYS)
+    unit = _unit(top)
+    parts: dict[str, Any] = {"modal": read_modal(top, Path(folder), unit)}
+    parts["contact"] = read_contacts(top, parts["modal"]["dofs"])
+    parts["force"] = read_forces(top, parts["modal"]["dofs"])
+    ends, step = read_response(top, unit)
+    schedule = read_schedule(top, unit)
+    swept = read_sweep(top, parts)
+    title = top.text("title", "")
+    mistakes.raise_if_any()
+    scene = Scene(
+        title=title,
+        modal=modal_of(parts["modal"], unit),
+        contacts=tuple(map(contact_of, parts["contact"])),
+        forces=tuple(map(force_of, parts["force"])),
+        frequency_range=ends,
+        max_step=step,
+        frequency_unit=unit,
+        schedule=schedule,
+        name=name,
+    )
+    scene = replace(scene, curves=_curves(scene, parts, swept))
+    _check_curves(scene, mistakes)
+    return scene
+
+
+def _curves(scene: Scene, parts: dict[str, Any], swept: list[Swept]) -> tuple[Scene, ...]:
+    """The scene with each combination of swept values; what does not change is shared."""
+    return tuple(_curve(scene, parts, swept, values) for values in combinations(swept))
+
+
+def _curve(scene: Scene, parts: dict[str, Any], swept: list[Swept], values: dict[str, float]) -> Scene:
+    draft = parts
+    for one in swept:
+        draft = replaced(draft, one.address, values[one.key])
+    modal, contacts, forces = scene.modal, scene.contacts, scene.forces
+    if draft["modal"] is not parts["modal"]:
+        modal = modal_of(draft["modal"], scene.frequency_unit)
+    if draft["contact"] is not parts["contact"]:
+        contacts = tuple(map(contact_of, draft["contact"]))
+    if draft["force"] is not parts["force"]:
+        forces = tuple(map(force_of, draft["force"]))
+    return replace(scene, modal=modal, contacts=contacts, forces=forces, parameters=values)
+
+
+def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
+    """What can only be seen of a whole curve: that its forces and contacts move something."""
+    for curve in scene.each_curve():
+        where = ", ".join(f"{key} = {value:g}" for key, value in curve.parameters.items())
+        where = f"sweep with {where}" if where else ""
+        if not _moved(curve):
+            mistakes.add(where, "the forces move no mode, so the response is zero")
+        for contact in curve.contacts:
+            if not contact.tangential.any():
+                mistakes.add(where, f"contact {quoted(contact.name)} has only zero tangential weights")
+    mistakes.raise_if_any()
+
+
+def _moved(curve: Scene) -> bool:
+    """Whether any force has a component on any mode."""
+    pushes: list[FloatArray] = [force.direction for force in curve.forces if force.amplitude]
+    return any((curve.modal.shapes @ push).any() for push in pushes)
+
+
+def _unit(top: Section) -> str:
+    unit = top.data.get("frequency_unit", "rad/s")
+    if isinstance(unit, str) and unit in UNITS:
+        return unit
+    what = quoted(unit) if isinstance(unit, str) else kind(unit)
+    word = unit if isinstance(unit, str) else ""
+    top.wrong("frequency_unit", f"must be {choices(UNITS)}, is {what}", word, UNITS)
+    return "rad/s"
+
+
+def _parsed(path: Path, source: str) -> dict[str, Any]:
+    """The tables of a TOML file."""
+    try:
+        return tomllib.loads(_text(path, source))
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(source, [f"is not valid TOML: {error}"]) from None
+    except RecursionError:
+        raise SceneError(source, ["is nested too deeply"]) from None
+    except SceneError:
+        raise
+    except ValueError:  # Python's limit on the digits of an integer, or of a date
+        raise SceneError(source, ["has a number or a date that cannot be read"]) from None
+
+
+def _text(path: Path, source: str) -> str:
+    """The text of a file, whatever is wrong with it said plainly."""
+    try:
+        if path.is_dir():
+            raise SceneError(source, ["is a folder; name the TOML file in it"])
+        if not path.exists():
+            raise SceneError(source, [_not_there(str(path))])
+        if not (path.is_file() or path.is_fifo()):
+            raise SceneError(source, ["is a device, not a file"])
+        if path.stat().st_size > LARGEST_FILE:
+            raise SceneError(source, ["is too large; keep its modes in a file of their own"])
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(source, ["is not UTF-8 text, so it is not a TOML file"]) from None
+    except OSError as error:
+        raise SceneError(source, [f"cannot be read: {error.strerror or error}"]) from None
+    except SceneError:
+        raise
+    except ValueError as error:  # a path with a null character
+        raise SceneError(quoted(source), [f"cannot be read: {error}"]) from None
+
+
+def _not_there(path: str) -> str:
+    names = bundled_scenes()
+    hint = suggestion(path.removesuffix(".toml"), names)
+    return f"no such file, and not a bundled scene; those are {choices(names)}{hint}"

@@ -1,0 +1,141 @@
+"""The modal structure of a scene: inline, or from a file beside the scene, and their lengths compared."""
+
+from __future__ import annotations
+
+from collections import Counter
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.modal_file import ModalFileError, read_modal_file
+from fcm.scene.model import FloatArray, Modal
+from fcm.scene.rules import RULES, as_float
+from fcm.scene.section import Section
+
+KEYS = ("dofs", "mass", "frequency", "damping", "shapes")
+UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
+
+
+def read_modal(top: Section, folder: Path, unit: str) -> dict[str, Any]:
+    """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
+    section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
+    section = _with_file(section, folder, unit) if section else None
+    if section is None:
+        return dict.fromkeys(KEYS)
+    section.only(*KEYS, "file")
+    frequency = section.vector("frequency", RULES["frequency"])
+    dofs = _dofs(section)
+    shapes = _shapes(section, dofs)
+    modes = len(frequency) if frequency is not None else None
+    if frequency is not None and not modes:
+        section.wrong("frequency", "is empty; there must be at least one mode")
+    if shapes is not None and modes is not None:
+        _same_count(section, "shapes", shapes, modes, _transposed(shapes, dofs, modes))
+    return {
+        "dofs": dofs,
+        "mass": _per_mode(section, "mass", modes, default=1.0),
+        "frequency": frequency,
+        "damping": _per_mode(section, "damping", modes),
+        "shapes": shapes,
+    }
+
+
+def modal_of(draft: dict[str, Any], unit: str) -> Modal:
+    """The modal structure, in rad/s, of what was read; its arrays cannot be changed."""
+    arrays = {key: draft[key] for key in ("mass", "damping", "shapes")}
+    arrays["frequency"] = draft["frequency"] * UNITS[unit]
+    for array in arrays.values():
+        array.flags.writeable = False
+    return Modal(dofs=draft["dofs"], **arrays)
+
+
+def _with_file(section: Section, folder: Path, unit: str) -> Section | None:
+    """The section with what its file holds; a key given inline takes precedence."""
+    if "file" not in section.data:
+        return section
+    name = section.text("file")
+    if not name:
+        return None
+    try:
+        found = read_modal_file(folder / name)
+    except ModalFileError as error:
+        section.wrong("file", str(error))
+        return None
+    if "angular_frequency" in found:
+        found["frequency"] = found.pop("angular_frequency") / UNITS[unit]
+    return Section({**found, **section.data}, section.path, section.mistakes)
+
+
+def _dofs(section: Section) -> tuple[str, ...] | None:
+    """The names of the degrees of freedom: strings, printable, each once."""
+    if section.missing("dofs", "a list of the names of the degrees of freedom"):
+        return None
+    names = section.data["dofs"]
+    if not isinstance(names, list | tuple) or not names:
+        section.wrong("dofs", f"must be a list of at least one name, is {kind(names)}")
+        return None
+    for index, name in enumerate(names):
+        if not isinstance(name, str):
+            section.wrong(f"dofs[{index}]", f"must be a string, is {kind(name)}")
+        elif not name.strip() or not name.isprintable():
+            section.wrong(f"dofs[{index}]", f"{quoted(name)} is not a name that can be printed")
+    words = [name for name in names if isinstance(name, str)]
+    for name, count in Counter(words).items():
+        if count > 1:
+            section.wrong("dofs", f"{quoted(name)} is there {count} times; each must be there once")
+    return tuple(words) if len(words) == len(names) else None
+
+
+def _per_mode(
+    section: Section, key: str, modes: int | None, default: float | None = None
+) -> FloatArray | None:
+    """One number for each mode; a single number stands for all."""
+    if as_float(section.data.get(key, default)) is not None:
+        return np.full(modes or 1, section.number(key, RULES[key], default))
+    vector = section.vector(key, RULES[key])
+    if vector is not None and modes is not None:
+        _same_count(section, key, vector, modes)
+    return vector
+
+
+def _shapes(section: Section, dofs: tuple[str, ...] | None) -> FloatArray | None:
+    """The mode shapes, (mode, dof)."""
+    if section.missing("shapes", "one list for each mode, one number in it for each of the dofs"):
+        return None
+    value = section.data["shapes"]
+    if not isinstance(value, list | tuple | np.ndarray) or not np.ndim(_first(value)):
+        section.wrong("shapes", f"must be a list of lists, one for each mode, is {kind(value)}")
+        return None
+    path, rule = section.at("shapes"), RULES["shapes"]
+    rows = [section.numbers(row, f"{path}[{index}]", rule) for index, row in enumerate(value)]
+    good = [row for row in rows if row is not None]
+    width = len(dofs) if dofs is not None else len(good[0]) if good else 0
+    for index, row in enumerate(rows):
+        if row is not None and len(row) != width:
+            section.wrong(f"shapes[{index}]", f"has {_numbers(len(row))}, but there are {width} dofs")
+    same = len(good) == len(rows) and all(len(row) == width for row in good)
+    return np.array(good) if same else None
+
+
+def _first(value: Any) -> Any:
+    """The first row of the shapes, or a number when there is none."""
+    return value[0] if len(value) and isinstance(value[0], list | tuple | np.ndarray) else 0.0
+
+
+def _same_count(section: Section, key: str, values: FloatArray, modes: int, hint: str = "") -> None:
+    """Note a length that is not the number of modes."""
+    if len(values) != modes:
+        has = _numbers(len(values)) if values.ndim == 1 else f"{len(values)} shapes"
+        section.wrong(key, f"has {has}, but modal.frequency has {modes}{hint}")
+
+
+def _transposed(shapes: FloatArray, dofs: tuple[str, ...] | None, modes: int) -> str:
+    swapped = dofs is not None and shapes.shape == (len(dofs), modes)
+    return "; shapes[i][j] is mode i at dofs[j]: transpose it" if swapped else ""
+
+
+def _numbers(count: int) -> str:
+    return "1 number" if count == 1 else f"{count} numbers"

@@ -1,0 +1,117 @@
+"""Contacts, forces, range and schedule of a scene."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from math import nan
+from typing import Any
+
+from fcm.scene.errors import quoted
+from fcm.scene.modal import UNITS
+from fcm.scene.model import Contact, Force, Phase
+from fcm.scene.rules import FRACTION, POSITIVE, RULES
+from fcm.scene.section import Section
+
+Dofs = Sequence[str] | None
+MAX_STEP = 0.05  # longest step along a curve when the scene names none
+
+
+def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
+    """The contacts as read, in the words of the file."""
+    sections = top.tables("contact")
+    drafts = [_contact(section, dofs) for section in sections]
+    for name, count in Counter(draft["name"] for draft in drafts if draft["name"]).items():
+        if count > 1:
+            top.wrong("contact", f"{count} contacts are named {quoted(name)}; a name must be there once")
+    return drafts
+
+
+def _contact(section: Section, dofs: Dofs) -> dict[str, Any]:
+    name = section.text("name")
+    if name:
+        section.path += f" {quoted(name)}"
+    if isinstance(section.data.get("name"), str) and not (name.strip() and name.isprintable()):
+        section.wrong("name", f"{quoted(name)} is not a name that can be printed")
+    section.only("name", "tangential", "normal", "mu", "k_u", "k_v", "n_0", "gap")
+    draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
+    load = _load(section)
+    return draft | {
+        "name": name,
+        "tangential": section.weights("tangential", dofs),
+        "normal": section.weights("normal", dofs),
+        load: section.number(load, RULES[load]) if load in section.data else nan,
+    }
+
+
+def _load(section: Section) -> str:
+    """Which of preload and gap the contact is given by."""
+    given = [key for key in ("n_0", "gap") if key in section.data]
+    if len(given) == 2:
+        section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
+    elif not given:
+        section.wrong("", "has neither n_0 nor gap; give one: gap means n_0 = -k_v * gap")
+    return given[0] if given else "n_0"
+
+
+def contact_of(draft: dict[str, Any]) -> Contact:
+    """The contact of what was read: a gap becomes the preload -k_v * gap."""
+    n_0 = draft["n_0"] if "n_0" in draft else -draft["k_v"] * draft["gap"]
+    for key in ("tangential", "normal"):
+        draft[key].flags.writeable = False
+    numbers = {key: draft[key] for key in ("name", "tangential", "normal", "mu", "k_u", "k_v")}
+    return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
+
+
+def read_forces(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
+    """The forces as read, in the words of the file; `name` is the dof of a force on one."""
+    if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
+        top.wrong("force", "missing; without a [[force]] the response is zero")
+    return [_force(section, dofs) for section in top.tables("force")]
+
+
+def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
+    section.only("dof", "amplitude", "phase")
+    dof = section.data.get("dof")
+    return {
+        "name": dof if isinstance(dof, str) else "",
+        "dof": section.weights("dof", dofs),
+        "amplitude": section.number("amplitude", RULES["amplitude"]),
+        "phase": section.number("phase", RULES["phase"], default=0.0),
+    }
+
+
+def force_of(draft: dict[str, Any]) -> Force:
+    """The force of what was read."""
+    draft["dof"].flags.writeable = False
+    return Force(direction=draft["dof"], amplitude=draft["amplitude"], phase=draft["phase"])
+
+
+def read_response(top: Section, unit: str) -> tuple[tuple[float, float], float]:
+    """The range of frequencies [rad/s], and the longest step."""
+    section = top.table("response", "a [response] table with frequency = [from, to]")
+    if section is None:
+        return (nan, nan), MAX_STEP
+    section.only("frequency", "max_step")
+    ends = section.vector("frequency", POSITIVE)
+    step = section.number("max_step", FRACTION, default=MAX_STEP)
+    if ends is None:
+        return (nan, nan), step
+    if len(ends) != 2:
+        section.wrong("frequency", f"must be two numbers, [from, to], is a list of {len(ends)}")
+        return (nan, nan), step
+    low, high = (float(end) * UNITS[unit] for end in ends)
+    if low >= high:
+        order = "goes down" if low > high else "is empty"
+        section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; give the lower one first")
+    return (low, high), step
+
+
+def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
+    """The phases of a time simulation."""
+    phases = []
+    for section in top.tables("schedule"):
+        section.only("frequency", "cycles")
+        frequency = section.number("frequency", POSITIVE) * UNITS[unit]
+        phases.append(Phase(frequency, section.number("cycles", POSITIVE)))
+    return tuple(phases)

@@ -1,0 +1,92 @@
+"""What each number of a scene may be: the same for the file and for a sweep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite
+from numbers import Real
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.errors import shown
+from fcm.scene.model import FloatArray
+
+IndexArray = npt.NDArray[np.intp]
+
+LARGEST = 1e100  # magnitudes beyond this overflow when three of them are multiplied
+SMALLEST = 1e-100  # of those that are divided by
+
+
+@dataclass(frozen=True)
+class Rule:
+    """The interval that a number must lie in, and how a message says so.
+
+    >>> POSITIVE.fault(0.0)
+    'must be greater than 0, is 0'
+    >>> POSITIVE.fault(2.0)
+    ''
+    """
+
+    text: str
+    low: float = -inf
+    high: float = inf
+    zero: bool = True  # whether zero itself is allowed
+
+    def fault(self, value: float) -> str:
+        """What is wrong with the value; empty when nothing is."""
+        if not isfinite(value):
+            return f"must be finite, is {shown(value)}"
+        if not (self.low <= value <= self.high and (value or self.zero)):
+            return f"must be {self.text}, is {shown(value)}"
+        if abs(value) > LARGEST:
+            return f"{shown(value)} is too large to calculate with (more than {LARGEST:g})"
+        if self.low == 0 and 0 < value < SMALLEST:
+            return f"{shown(value)} is too small to calculate with (less than {SMALLEST:g})"
+        return ""
+
+    def faulty(self, values: FloatArray) -> IndexArray:
+        """Indices of the values that this rule does not allow, (fault, axis)."""
+        right = np.isfinite(values) & (values >= self.low) & (values <= self.high) & (abs(values) <= LARGEST)
+        if not self.zero:
+            right &= values != 0
+        if self.low == 0:
+            right &= (values == 0) | (values >= SMALLEST)
+        return np.argwhere(~right)
+
+
+ANY = Rule("a number")
+POSITIVE = Rule("greater than 0", low=0.0, zero=False)
+NOT_NEGATIVE = Rule("at least 0", low=0.0)
+FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
+
+RULES = {
+    "mass": POSITIVE,
+    "frequency": NOT_NEGATIVE,
+    "damping": NOT_NEGATIVE,
+    "shapes": ANY,
+    "tangential": ANY,
+    "normal": ANY,
+    "mu": NOT_NEGATIVE,
+    "k_u": NOT_NEGATIVE,
+    "k_v": NOT_NEGATIVE,
+    "n_0": ANY,
+    "gap": ANY,
+    "dof": ANY,
+    "amplitude": ANY,
+    "phase": ANY,
+}
+
+
+def as_float(value: object) -> float | None:
+    """The number as a float; None when it is not a number (true and false are not).
+
+    >>> as_float(3), as_float(True), as_float("3"), as_float(10**400)
+    (3.0, None, None, inf)
+    """
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return inf

@@ -1,0 +1,172 @@
+"""Reading one table of a scene: its keys, their types, and the path of each mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import nan
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.errors import Mistakes, choices, kind, quoted, shown
+from fcm.scene.model import FloatArray
+from fcm.scene.rules import ANY, Rule, as_float
+
+
+class Section:
+    """A table with its path. Readers note a mistake and return a stand-in, so that reading goes on."""
+
+    def __init__(self, data: Mapping[str, Any], path: str, mistakes: Mistakes) -> None:
+        self.data = data
+        self.path = path
+        self.mistakes = mistakes
+
+    def at(self, key: str) -> str:
+        """The path of a key of this table."""
+        return f"{self.path}.{key}" if self.path else key
+
+    def wrong(self, key: str, what: str, word: str = "", among: Iterable[str] = ()) -> None:
+        """Note a mistake at a key."""
+        self.mistakes.add(self.at(key) if key else self.path, what, word, among)
+
+    def only(self, *known: str) -> None:
+        """Note every key that is not known."""
+        for key in self.data:
+            if key not in known:
+                bare = str(key) if str(key).isidentifier() else quoted(key)
+                free = [name for name in known if name not in self.data]
+                self.wrong(bare, "unknown key", str(key), free or known)
+
+    def missing(self, key: str, right: str) -> bool:
+        """Whether the key is missing, which is a mistake."""
+        if key in self.data:
+            return False
+        self.wrong(key, f"missing; give {right}")
+        return True
+
+    def number(self, key: str, rule: Rule, default: float | None = None) -> float:
+        """A number within the rule; the default when there is none; nan after a mistake."""
+        if key not in self.data and default is not None:
+            return default
+        if self.missing(key, "a number"):
+            return nan
+        return self.checked(self.data[key], self.at(key), rule)
+
+    def checked(self, value: object, path: str, rule: Rule) -> float:
+        """The value as a number within the rule; nan after a mistake."""
+        number = as_float(value)
+        if number is None:
+            self.mistakes.add(path, f"must be a number, is {_described(value)}")
+            return nan
+        fault = rule.fault(number)
+        if fault:
+            self.mistakes.add(path, fault)
+        return nan if fault else number
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """A string; empty after a mistake."""
+        if key not in self.data and default is not None:
+            return default
+        if self.missing(key, "a string"):
+            return ""
+        value = self.data[key]
+        if isinstance(value, str):
+            return value
+        self.wrong(key, f"must be a string, is {_described(value)}")
+        return ""
+
+    def vector(self, key: str, rule: Rule) -> FloatArray | None:
+        """A list of numbers; None after a mistake."""
+        if self.missing(key, "a list of numbers"):
+            return None
+        return self.numbers(self.data[key], self.at(key), rule)
+
+    def numbers(self, value: object, path: str, rule: Rule) -> FloatArray | None:
+        """The value as an array of numbers within the rule; None after a mistake."""
+        if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
+            value = value.tolist()
+        if not isinstance(value, list | tuple | np.ndarray):
+            self.mistakes.add(path, f"must be a list of numbers, is {_described(value)}")
+            return None
+        array = np.array(value if isinstance(value, np.ndarray) else _floats(value), dtype=np.float64)
+        faulty = rule.faulty(array)[:, 0].tolist()
+        for index in faulty:
+            self.checked(value[index], f"{path}[{index}]", rule)
+        return None if faulty else array
+
+    def table(self, key: str, right: str) -> Section | None:
+        """A table within this one; None when it is missing or not a table."""
+        if key not in self.data:
+            self.wrong(key, f"missing; give {right}")
+            return None
+        value = self.data[key]
+        if isinstance(value, Mapping):
+            return Section(value, self.at(key), self.mistakes)
+        many = isinstance(value, list) and value and isinstance(value[0], dict)
+        hint = f"; there is one of it: write [{key}]" if many else ""
+        self.wrong(key, f"must be a table, is {_described(value)}{hint}")
+        return None
+
+    def tables(self, key: str) -> list[Section]:
+        """A list of tables, empty when the key is missing; those that are not tables are left out."""
+        value = self.data.get(key, [])
+        if not isinstance(value, list | tuple):
+            self.wrong(key, f"must be a list of tables, is {_described(value)}; write [[{key}]]")
+            return []
+        sections = []
+        for index, item in enumerate(value):
+            path = f"{self.at(key)}[{index}]"
+            if isinstance(item, Mapping):
+                sections.append(Section(item, path, self.mistakes))
+            else:
+                self.mistakes.add(path, f"must be a table, is {_described(item)}; write [[{key}]]")
+        return sections
+
+    def weights(self, key: str, dofs: Sequence[str] | None) -> FloatArray | None:
+        """A degree of freedom, or a table of weights, as an array over the dofs; None after a mistake."""
+        if self.missing(key, "a degree of freedom, or a combination such as { tip = 1.0, neighbour = -1.0 }"):
+            return None
+        value = self.data[key]
+        if not isinstance(value, str | Mapping):
+            self.wrong(key, f"must be a degree of freedom or a table of weights, is {_described(value)}")
+            return None
+        terms = {value: 1.0} if isinstance(value, str) else self._terms(key, value)
+        if terms is None or dofs is None or not self._known(key, terms, dofs):
+            return None
+        return np.array([terms.get(dof, 0.0) for dof in dofs])
+
+    def _terms(self, key: str, value: Mapping[str, Any]) -> dict[str, float] | None:
+        before = self.mistakes.count
+        terms = {str(dof): self._weight(key, dof, item) for dof, item in value.items()}
+        if not terms:
+            self.wrong(key, "is an empty combination; name at least one degree of freedom")
+        elif not any(terms.values()):
+            self.wrong(key, "has only zero weights, so it moves nothing")
+        return terms if self.mistakes.count == before else None
+
+    def _weight(self, key: str, dof: object, item: object) -> float:
+        path = f"{self.at(key)}.{dof if str(dof).isidentifier() else quoted(dof)}"
+        if isinstance(item, Mapping):
+            self.mistakes.add(path, "must be a number, is a table; put a name with a dot in quotes")
+            return nan
+        return self.checked(item, path, ANY)
+
+    def _known(self, key: str, terms: Iterable[str], dofs: Sequence[str]) -> bool:
+        unknown = [dof for dof in terms if dof not in dofs]
+        for dof in unknown:
+            what = f"unknown degree of freedom {quoted(dof)}; modal.dofs are {choices(dofs)}"
+            self.wrong(key, what, dof, dofs)
+        return not unknown
+
+
+def _floats(values: Sequence[object]) -> list[float]:
+    """The values as numbers, nan for what is not one."""
+    numbers = (as_float(value) for value in values)
+    return [nan if number is None else number for number in numbers]
+
+
+def _described(value: object) -> str:
+    """The kind of a value, and the value when it is short."""
+    if isinstance(value, bool | int | float):
+        return shown(value)
+    return f"the string {shown(value)}" if isinstance(value, str) else kind(value)
