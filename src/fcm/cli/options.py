@@ -1,0 +1,31 @@
+"""The options that every command has: ``-v`` and ``-q``, before or after the command's name."""
+
+from __future__ import annotations
+
+import click
+
+from fcm.cli.messages import Messages
+
+
+def _louder(ctx: click.Context, _param: click.Parameter, count: int) -> None:
+    ctx.ensure_object(Messages).verbosity += count
+
+
+def _quieter(ctx: click.Context, _param: click.Parameter, quiet: bool) -> None:
+    if quiet:
+        ctx.ensure_object(Messages).verbosity = -1
+
+
+def add_verbosity(command: click.Command) -> None:
+    """Give a command the options, unless it has options of those names already."""
+    taken = {name for param in command.params for name in param.opts}
+    options = (
+        click.Option(
+            ["-v", "--verbose"], count=True, expose_value=False, callback=_louder,
+            help="Details, and the traceback of a defect.",
+        ),
+        click.Option(
+            ["-q", "--quiet"], is_flag=True, expose_value=False, callback=_quieter, help="Only errors.",
+        ),
+    )  # fmt: skip
+    command.params += [option for option in options if not taken & set(option.opts)]

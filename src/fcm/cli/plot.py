@@ -1,0 +1,48 @@
+"""``fcm plot WHAT``: pictures of what the other commands have written; nothing is computed here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from fcm.cli.files import check_output, output_option, replacing
+from fcm.cli.lazy import LazyGroup
+from fcm.cli.messages import Messages, pass_messages
+
+ENDINGS = (".png", ".svg", ".pdf")
+PICTURES = {
+    "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
+}
+
+
+@click.group(cls=LazyGroup, lazy=PICTURES)
+def plot() -> None:
+    """Draw a result."""
+
+
+@click.command()
+@click.argument("file", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path))
+@output_option(
+    "-o", "--output", endings=ENDINGS,
+    help="The picture to write: .png, .svg or .pdf.  [default: FILE with the ending .png]",
+)  # fmt: skip
+@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option(
+    "--log/--linear", default=None,
+    help="Amplitude axis.  [default: logarithmic if the peaks span more than a decade]",
+)  # fmt: skip
+@pass_messages
+def response(messages: Messages, file: Path, output: Path | None, dof: str | None, log: bool | None) -> None:
+    """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
+
+    Unstable parts are dashed where the file knows them.
+    """
+    from fcm.plot import draw_response, read_response, save
+
+    output = output or file.with_suffix(".png")
+    check_output(output, ENDINGS)
+    figure = draw_response(read_response(file), dof=dof, log=log)
+    with replacing(output) as partial:
+        save(figure, partial)
+    messages.info(f"wrote {output}")
