@@ -44,7 +44,7 @@ class Addresses:
         if key.startswith(("response.", "schedule.")):
             mistakes.add(path, "the range, the step and the schedule cannot be swept")
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
-            mistakes.add(path, f"the contact is given by its other form: sweep {quoted(other)}")
+            mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
         else:
             return key.startswith("modal.") and self.parts["modal"]["frequency"] is None
         return True

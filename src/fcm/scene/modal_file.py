@@ -1,4 +1,4 @@
-"""Modes from a file: NumPy's .npz, MATLAB's .mat."""
+"""Modes from a file: NumPy's .npz, MATLAB's .mat, universal files."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.errors import kind, quoted
+from fcm.scene.uff import read_uff
 
 ARRAYS = ("mass", "frequency", "damping", "shapes")
 
@@ -18,10 +19,13 @@ class ModalFileError(ValueError):
 
 
 def read_modal_file(path: Path) -> dict[str, Any]:
-    """What a file of modes holds of dofs, mass, frequency, damping and shapes."""
+    """What a file of modes holds of dofs, mass, frequency, damping and shapes.
+
+    A universal file is always in Hz: it has angular_frequency [rad/s] in place of frequency.
+    """
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        known = " or ".join(_READERS)
+        known = ", ".join(_READERS)
         raise ModalFileError(f"{quoted(path.name)} cannot be read: a file of modes is {known}")
     try:
         if not path.is_file():
@@ -75,4 +79,4 @@ def _plain(key: str, value: Any) -> Any:
     return float(array) if array.ndim == 0 else array.astype(np.float64)
 
 
-_READERS = {".npz": _read_npz, ".mat": _read_mat}
+_READERS = {".npz": _read_npz, ".mat": _read_mat, ".uff": read_uff, ".unv": read_uff}
