@@ -35,7 +35,7 @@ def normal_coefficients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]
     ([0.0, 0.31831, 3.0], [0.0, 0.5, 1.0])
     """
     n0_star = np.asarray(n0_star, dtype=np.float64)
-    theta_1, sin_1, inside = _contact_angle(n0_star)
+    theta_1, sin_1, inside = contact_angle(n0_star)
     N_s = (inside * sin_1 + theta_1) / np.pi
     N_b = np.where(np.abs(n0_star) <= 1.0, (sin_1 + inside * theta_1) / np.pi, np.maximum(n0_star, 0.0))
     return N_b[()], np.where(np.isnan(n0_star), np.nan, N_s)[()]
@@ -47,11 +47,11 @@ def normal_gradients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     >>> normal_gradients(0.0)[0].item()
     0.5
     """
-    theta_1, sin_1, _ = _contact_angle(np.asarray(n0_star, dtype=np.float64))
+    theta_1, sin_1, _ = contact_angle(np.asarray(n0_star, dtype=np.float64))
     return theta_1 / np.pi, 2.0 * sin_1 / np.pi
 
 
-def _contact_angle(n0_star: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def contact_angle(n0_star: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """theta_1 of (30), its sine, and n0_star clipped to [-1, 1]; accurate at both ends."""
     inside = np.clip(n0_star, -1.0, 1.0)
     closed, open_ = np.sqrt(1.0 + inside), np.sqrt(1.0 - inside)

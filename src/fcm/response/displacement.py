@@ -1,0 +1,56 @@
+"""Displacements of every degree of freedom from the unknowns at the contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.balance import Balance
+from fcm.response.law import FORCES, UNKNOWNS
+from fcm.response.structure import AnyArray, ComplexArray, modal_compliance
+
+
+def displacements(balance: Balance, x: FloatArray, omega: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Amplitude of the fundamental, x(t) = Im(X exp(i omega t)), and mean; both (point, dof)."""
+    force, _ = balance.law.forces(x.reshape(x.shape[0], -1, UNKNOWNS))
+    compliance, _ = modal_compliance(balance.group, omega)
+    fundamental, mean = _modal_contact_force(balance, force)
+    group = balance.group
+    amplitude = compliance * (group.force - fundamental)
+    static = -mean / (group.mass * group.frequency**2)
+    return _to_dofs(balance, amplitude), _to_dofs(balance, static)
+
+
+def amplitude_growth(balance: Balance, z: FloatArray, direction: FloatArray) -> FloatArray:
+    """Rate of log amplitude of each degree of freedom along a curve, (point, dof).
+
+    z and direction (point, unknown + 1) are points and tangents in the unknowns' own units.
+    """
+    x, omega = z[:, :-1], z[:, -1]
+    force, tangent = balance.law.forces(x.reshape(x.shape[0], -1, UNKNOWNS))
+    dx = direction[:, :-1].reshape(x.shape[0], -1, UNKNOWNS, 1)
+    compliance, slope = modal_compliance(balance.group, omega)
+    fundamental, _ = _modal_contact_force(balance, force)
+    d_fundamental, _ = _modal_contact_force(balance, (tangent @ dx)[..., 0])
+    load = balance.group.force - fundamental
+    X = _to_dofs(balance, compliance * load)
+    dX = _to_dofs(balance, slope * direction[:, -1:] * load - compliance * d_fundamental)
+    size = np.abs(X)
+    safe = np.where(size > 0.0, size, 1.0)
+    return np.where(size > 0.0, (np.conj(X / safe) * dX).real / safe, 0.0)
+
+
+def _modal_contact_force(balance: Balance, force: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Contact forces (point, contact, 6) on the modes: fundamental and mean, (point, mode)."""
+    points = force.shape[0]
+    pairs = (force[..., 0:4:2] + 1j * force[..., 1:4:2]).reshape(points, -1)
+    assert force.shape[-1] == FORCES
+    ports = balance.group.ports
+    fundamental: AnyArray = (ports @ pairs[..., None])[..., 0]
+    mean = (ports @ force[..., 4:6].reshape(points, -1, 1))[..., 0]
+    return fundamental, mean
+
+
+def _to_dofs(balance: Balance, modal: AnyArray) -> AnyArray:
+    dofs: AnyArray = (modal[:, None, :] @ balance.group.shapes)[:, 0, :]
+    return dofs

@@ -1,0 +1,92 @@
+"""Folds and peaks located along traced curves: where a rate along the arc changes its sign.
+
+At a smooth extreme the rate passes through zero; at a corner it jumps. A bracketing search serves both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.balance import Balance
+from fcm.response.displacement import amplitude_growth
+from fcm.response.path import amplitudes, correct, scales
+from fcm.response.structure import IntArray
+
+WIDTH = 1e-10  # arc within which an extreme is known, relative to the curve's own size
+MAX_HALVINGS = 60
+Rate = Callable[[Balance, FloatArray, FloatArray, IntArray], FloatArray]
+
+
+@dataclass
+class Segments:
+    """Pieces of curves between neighbouring points, at whose ends a rate has opposite signs."""
+
+    curve: IntArray
+    start: FloatArray  # (segment, unknown + 1)
+    end: FloatArray
+    rate_start: FloatArray
+    rate_end: FloatArray
+    which: IntArray  # passed to the rate: the degree of freedom whose peak is sought
+
+
+def fold_rate(balance: Balance, z: FloatArray, direction: FloatArray, which: IntArray) -> FloatArray:
+    """d omega / ds, which vanishes at a fold."""
+    return direction[:, -1]
+
+
+def peak_rate(balance: Balance, z: FloatArray, direction: FloatArray, which: IntArray) -> FloatArray:
+    """Growth of one degree of freedom's amplitude, which vanishes at its peak."""
+    return amplitude_growth(balance, z, direction)[np.arange(z.shape[0]), which]
+
+
+def locate(balance: Balance, segments: Segments, rate: Rate, extent: FloatArray) -> FloatArray:
+    """The point of each segment where the rate changes its sign, (segment, unknown + 1)."""
+    z = segments.start.copy()
+    if z.shape[0] == 0:
+        return z
+    equations = balance.take(segments.curve)
+    chord = segments.end - segments.start
+    scale = scales(segments.start[:, :-1], amplitudes(segments.end[:, :-1]), extent[segments.curve])
+    row = chord / scale
+    length = np.sqrt((row * row).sum(axis=1, keepdims=True))
+    row /= np.where(length > 0.0, length, 1.0)
+    low, high = np.zeros(z.shape[0]), np.ones(z.shape[0])
+    f_low, f_high = segments.rate_start.copy(), segments.rate_end.copy()
+    open_ = np.ones(z.shape[0], dtype=bool)
+    for count in range(MAX_HALVINGS):
+        share = _next_share(low, high, f_low, f_high, count)
+        new = correct(
+            equations, segments.start + share[:, None] * chord, scale, row, close=1e-8, iterations=12
+        )
+        f = rate(equations, new.z, scale * new.tangent, segments.which)
+        use = open_ & new.converged
+        z[use] = new.z[use]
+        above = np.sign(f) == np.sign(segments.rate_start)
+        low, f_low = np.where(use & above, share, low), np.where(use & above, f, f_low)
+        high, f_high = np.where(use & ~above, share, high), np.where(use & ~above, f, f_high)
+        open_ = use & ((high - low) * length[:, 0] > WIDTH) & (f != 0.0)
+        if not open_.any():
+            break
+    return z
+
+
+def _next_share(
+    low: FloatArray, high: FloatArray, f_low: FloatArray, f_high: FloatArray, count: int
+) -> FloatArray:
+    """Secant through the ends, kept off them so that both close in; every third step halves."""
+    middle = 0.5 * (low + high)
+    if count % 3 == 2:
+        return middle
+    difference = f_low - f_high
+    safe = np.where(difference != 0.0, difference, 1.0)
+    secant = low + (high - low) * f_low / safe
+    # overshoot the root slightly on alternate steps, so that the bracket shrinks from both sides
+    nudge = 1e-3 * (high - low) * (1.0 if count % 3 == 0 else -1.0)
+    inside = low + (high - low) * np.clip(
+        (secant + nudge - low) / np.where(high > low, high - low, 1.0), 0.001, 0.999
+    )
+    return np.where(difference != 0.0, inside, middle)

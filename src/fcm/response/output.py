@@ -1,0 +1,201 @@
+"""A response as netCDF, CSV, JSON summary and xarray dataset, all from one description."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+import fcm
+from fcm.response.result import UNIT, Curve, Response
+
+if TYPE_CHECKING:
+    import xarray
+
+LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
+
+
+class Field(NamedTuple):
+    """One variable of the file."""
+
+    dims: tuple[str, ...]
+    values: npt.NDArray[Any]
+    attrs: dict[str, str]
+
+
+def summary(response: Response) -> dict[str, Any]:
+    """What ``fcm respond --json`` prints; a number that does not exist is None."""
+    data = {
+        "curves": [curve.summary(response.frequency_unit) for curve in response.curves],
+        "method": response.method,
+        "frequency_unit": response.frequency_unit,
+        "left_out": response.left_out,
+        "seconds": response.seconds,
+    }
+    return _without_nan(data)  # type: ignore[no-any-return]
+
+
+def _without_nan(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(item) for item in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def fields_of(response: Response) -> dict[str, Field]:
+    """Every variable of the file, coordinates first."""
+    curves, unit = response.curves, response.frequency_unit
+    scale = UNIT[unit]
+    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
+    out = {
+        "dof": Field(("dof",), np.array(response.dofs), {"long_name": "degree of freedom"}),
+        "contact": Field(("contact",), np.array(response.contacts, dtype=str), {"long_name": "contact"}),
+    }
+    for key in curves[0].parameters if curves else ():
+        values = np.array([curve.parameters[key] for curve in curves])
+        out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"})
+
+    def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
+        out[name] = Field(("curve", "point", *dims), _padded([pick(c) for c in curves]), attrs)
+
+    points("frequency", lambda c: c.frequency / scale, (), long_name="excitation frequency", units=cf_unit)
+    points("amplitude", lambda c: c.amplitude, ("dof",), long_name="amplitude of the fundamental")
+    phase = "phase of the fundamental, as amplitude * sin(omega t + phase)"
+    points("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
+    points("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
+    states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
+    points("regime", lambda c: c.regime, ("contact",), long_name=states)
+    shift = (
+        "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
+    )
+    points("table_error", lambda c: c.table_error, (), long_name=shift, units="1")
+    out |= _curve_fields(response, scale, cf_unit)
+    return out
+
+
+def _curve_fields(response: Response, scale: float, cf_unit: str) -> dict[str, Field]:
+    """One value or row for each curve: peaks, folds, whether it is complete."""
+    curves = response.curves
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 2)
+    folds = _padded([np.array(c.folds) / scale for c in curves])
+    complete = np.array([c.complete for c in curves], dtype=np.int8)
+    by_dof, by_fold = ("curve", "dof"), ("curve", "fold")
+    return {
+        "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
+        "peak_frequency": Field(
+            by_dof,
+            peaks[..., 1] / scale,
+            {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
+        ),
+        "fold_frequency": Field(
+            by_fold,
+            folds,
+            {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
+        ),
+        "complete": Field(
+            ("curve",),
+            complete,
+            {"long_name": "1 where the curve reached the end of its range", "units": "1"},
+        ),
+    }
+
+
+def _padded(parts: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """Arrays of different length stacked; padded with NaN, or '' for text."""
+    longest = max((part.shape[0] for part in parts), default=0)
+    text = bool(parts) and parts[0].dtype.kind == "U"
+    tail = parts[0].shape[1:] if parts else ()
+    out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype="<U6" if text else np.float64)
+    for row, part in zip(out, parts, strict=True):
+        row[: part.shape[0]] = part
+    return out
+
+
+def attributes(response: Response) -> dict[str, str]:
+    """Global attributes of the file."""
+    return {
+        "title": response.title,
+        "layout": LAYOUT,
+        "source": f"fcm {fcm.__version__}, single-harmonic balance, method {response.method}",
+        "frequency_unit": response.frequency_unit,
+        "summary": json.dumps(summary(response), allow_nan=False),
+    }
+
+
+def to_dataset(response: Response) -> xarray.Dataset:
+    """The response as an xarray dataset."""
+    import xarray
+
+    fields = fields_of(response)
+    coordinates = {"dof", "contact", *(response.curves[0].parameters if response.curves else ())}
+    variables = {name: (f.dims, f.values, f.attrs) for name, f in fields.items()}
+    coords = {name: variables.pop(name) for name in list(variables) if name in coordinates}
+    return xarray.Dataset(variables, coords, attributes(response))
+
+
+def write_netcdf(response: Response, path: str | Path) -> None:
+    """Write the response as netCDF-4; the file appears only when it is complete."""
+    import netCDF4
+
+    fields = fields_of(response)
+    swept = [name for name in fields if fields[name].dims == ("curve",) and name != "complete"]
+    with Replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+        file.setncatts(attributes(response))
+        for name, field in fields.items():
+            for dim, size in zip(field.dims, field.values.shape, strict=True):
+                if dim not in file.dimensions:
+                    file.createDimension(dim, size)
+            text = field.values.dtype.kind == "U"
+            kind: Any = str if text else field.values.dtype
+            options: dict[str, Any] = (
+                {} if text or field.values.dtype.kind == "i" else {"fill_value": np.nan, "zlib": True}
+            )
+            variable = file.createVariable(name, kind, field.dims, **options)
+            variable[...] = field.values.astype(object) if text else field.values
+            variable.setncatts(field.attrs)
+            if swept and field.dims[0] == "curve" and name not in swept:
+                variable.coordinates = " ".join(swept)
+
+
+def write_csv(response: Response, path: str | Path) -> None:
+    """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
+    scale = UNIT[response.frequency_unit]
+    keys = list(response.curves[0].parameters) if response.curves else []
+    columns = [f"{kind} {dof}" for dof in response.dofs for kind in ("amplitude", "phase", "mean")]
+    regimes = [f"regime {name}" for name in response.contacts]
+    with Replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["curve", *keys, f"frequency [{response.frequency_unit}]", *columns, *regimes, "table_error"]
+        )
+        for number, c in enumerate(response.curves):
+            values = np.stack((c.amplitude, c.phase, c.mean), axis=2).reshape(c.points, -1)
+            for k in range(c.points):
+                writer.writerow(
+                    [number, *c.parameters.values(), repr(float(c.frequency[k] / scale))]
+                    + [repr(float(value)) for value in values[k]]
+                    + [*c.regime[k].tolist(), repr(float(c.table_error[k]))]
+                )
+
+
+class Replacing:
+    """A temporary name beside path that takes its place on success and vanishes on failure."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path)
+        self.temporary = self.path.with_name(f".{self.path.name}.partial")
+
+    def __enter__(self) -> Path:
+        return self.temporary
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        if kind is None:
+            self.temporary.replace(self.path)
+        else:
+            self.temporary.unlink(missing_ok=True)

@@ -1,0 +1,77 @@
+"""What a calculation yields: curves of points with their regimes and errors, peaks and folds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+
+UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
+
+
+@dataclass
+class Curve:
+    """One response curve; frequencies in rad/s."""
+
+    parameters: dict[str, float]
+    frequency: FloatArray  # (point,) [rad/s]
+    amplitude: FloatArray  # (point, dof)
+    phase: FloatArray  # (point, dof) [rad], of amplitude * sin(omega t + phase)
+    mean: FloatArray  # (point, dof)
+    regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
+    table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
+    complete: bool
+    reason: str  # why it is not complete, else ''
+    peaks: dict[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
+    folds: list[float]  # frequencies [rad/s] in the order along the curve
+    seconds: float
+    truncation_error: FloatArray | None = None  # (point,)
+    stable: npt.NDArray[np.bool_] | None = None  # (point,)
+
+    @property
+    def points(self) -> int:
+        """Number of points."""
+        return int(self.frequency.size)
+
+    def worst(self, errors: FloatArray | None) -> float | None:
+        """Largest error of the curve that is known."""
+        known = np.empty(0) if errors is None else errors[np.isfinite(errors)]
+        return float(known.max()) if known.size else None
+
+    def summary(self, unit: str = "rad/s") -> dict[str, Any]:
+        """The curve as `fcm respond --json` prints it, frequencies in unit."""
+        scale = UNIT[unit]
+        return {
+            "parameters": self.parameters,
+            "points": self.points,
+            "complete": self.complete,
+            **({} if self.complete else {"reason": self.reason}),
+            "peak": {d: {"amplitude": a, "frequency": w / scale} for d, (a, w) in self.peaks.items()},
+            "folds": [w / scale for w in self.folds],
+            "table_error": self.worst(self.table_error),
+            "truncation_error": self.worst(self.truncation_error),
+            "seconds": self.seconds,
+        }
+
+
+@dataclass
+class Response:
+    """All curves of a scene."""
+
+    title: str
+    dofs: tuple[str, ...]
+    contacts: tuple[str, ...]
+    curves: list[Curve]
+    method: str
+    frequency_unit: str
+    seconds: float = 0.0
+    left_out: list[str] = field(default_factory=list)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every curve reached the end of its range."""
+        return all(curve.complete for curve in self.curves)

@@ -1,0 +1,80 @@
+"""A point of each curve at the low end of its range, from which it is traced."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.balance import Balance, Evaluation
+from fcm.response.path import COMPLETE, BoolArray, amplitudes, correct, follow, scales
+from fcm.response.structure import IntArray
+
+TRIES = 25  # Newton steps from a linear response
+WEAK = 1e-3  # fraction of the load at which a contact is nearly linear
+LOAD_STEP = 0.1
+
+
+@dataclass
+class _UnderLoad:
+    """The balanced equations at a fixed frequency, with the load factor as the parameter of the path."""
+
+    balance: Balance
+    omega: FloatArray
+
+    def evaluate(self, x: FloatArray, load: FloatArray) -> Evaluation:
+        at = self.balance.evaluate(x, self.omega, load)
+        return Evaluation(at.residual, at.jacobian, self.balance.by_load(self.omega))
+
+    def take(self, index: IntArray) -> _UnderLoad:
+        return _UnderLoad(self.balance.take(index), self.omega[index])
+
+
+def starting_points(balance: Balance, omega: FloatArray) -> tuple[FloatArray, BoolArray]:
+    """Unknowns of each curve at omega (curve,), and whether a solution was found.
+
+    Newton's method from the response with the contacts stuck or open; where that fails, the load is raised
+    from a small fraction along its own path, as an experiment would.
+    """
+    preloaded = np.broadcast_to(balance.group.n_0 > 0.0, (omega.size, balance.group.contacts))
+    x = np.zeros((omega.size, 5 * balance.group.contacts))
+    found = np.zeros(omega.size, dtype=bool)
+    for stuck in (preloaded, np.ones_like(preloaded), np.zeros_like(preloaded)):
+        left = np.flatnonzero(~found)
+        if left.size:
+            some = balance.take(left)
+            guess = some.linear(omega[left], stuck[left].astype(np.float64))
+            x[left], found[left] = _at_level(some, guess, omega[left])
+    left = np.flatnonzero(~found)
+    if left.size:
+        x[left], found[left] = _raise_load(balance.take(left), omega[left], preloaded[left])
+    return x, found
+
+
+def _at_level(
+    equations: Balance | _UnderLoad, x: FloatArray, level: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """Newton's method with the parameter held."""
+    z = np.column_stack((x, level))
+    row = np.zeros_like(z)
+    row[:, -1] = 1.0
+    scale = scales(x, amplitudes(x), np.ones(level.size))
+    end = correct(equations, z, scale, row, iterations=TRIES)
+    return end.z[:, :-1], end.converged
+
+
+def _raise_load(balance: Balance, omega: FloatArray, preloaded: BoolArray) -> tuple[FloatArray, BoolArray]:
+    equations = _UnderLoad(balance, omega)
+    weak = np.full(omega.size, WEAK)
+    x = WEAK * balance.linear(omega, preloaded.astype(np.float64))
+    x, started = _at_level(equations, x, weak)
+    some = np.flatnonzero(started)
+    found = np.zeros(omega.size, dtype=bool)
+    if some.size:
+        z = np.column_stack((x[some], weak[some]))
+        trace = follow(equations.take(some), z, weak[some], np.ones(some.size), LOAD_STEP)
+        last = np.searchsorted(trace.curve, np.arange(some.size), side="right") - 1
+        x[some] = trace.z[last, :-1]
+        found[some] = trace.status == COMPLETE
+    return x, found

@@ -1,0 +1,110 @@
+"""The linear structure seen from its contacts: receptances of many curves at once, modes summed out.
+
+Every array has a leading axis of curves, of length 1 where all curves share the value; a curve is any
+scene, so that a sweep may change any number. Real pairs, not complex numbers, carry the amplitudes:
+x(t) = Im(X exp(i omega t)), so that sin(omega t) is 1 and cos(omega t) is i.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Scene
+
+AnyArray = npt.NDArray[Any]  # real or complex
+ComplexArray = npt.NDArray[np.complex128]
+IntArray = npt.NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Group:
+    """Curves of one layout (modes, degrees of freedom, contacts) as arrays; see `group_of`."""
+
+    mass: FloatArray  # (curve, mode)
+    frequency: FloatArray  # (curve, mode)
+    damping: FloatArray  # (curve, mode)
+    shapes: FloatArray  # (curve, mode, dof)
+    ports: FloatArray  # (curve, mode, 2 contacts): modes on u_1, v_1, u_2, v_2, ...
+    force: ComplexArray  # (curve, mode)
+    mu: FloatArray  # (curve, contact)
+    k_u: FloatArray
+    k_v: FloatArray
+    n_0: FloatArray
+    low: FloatArray  # (curve,) the frequency range
+    high: FloatArray
+
+    def take(self, index: IntArray) -> Group:
+        """The curves of an index, in its order; shared arrays stay shared."""
+        parts = (getattr(self, f.name) for f in fields(self))
+        return Group(*(part if part.shape[0] == 1 else part[index] for part in parts))
+
+    @property
+    def contacts(self) -> int:
+        return int(self.mu.shape[1])
+
+
+def group_of(scenes: Sequence[Scene]) -> Group:
+    """Stack scenes that have the same modes, degrees of freedom and contacts by name."""
+    return Group(
+        mass=_stack([s.modal.mass for s in scenes]),
+        frequency=_stack([s.modal.frequency for s in scenes]),
+        damping=_stack([s.modal.damping for s in scenes]),
+        shapes=_stack([s.modal.shapes for s in scenes]),
+        ports=_stack([_ports(s) for s in scenes]),
+        force=_stack([_modal_force(s) for s in scenes]),
+        mu=_stack([np.array([c.mu for c in s.contacts]) for s in scenes]),
+        k_u=_stack([np.array([c.k_u for c in s.contacts]) for s in scenes]),
+        k_v=_stack([np.array([c.k_v for c in s.contacts]) for s in scenes]),
+        n_0=_stack([np.array([c.n_0 for c in s.contacts]) for s in scenes]),
+        low=_stack([np.array(s.frequency_range[0]) for s in scenes]),
+        high=_stack([np.array(s.frequency_range[1]) for s in scenes]),
+    )
+
+
+def _stack(parts: list[AnyArray]) -> AnyArray:
+    """One array for each curve, or a single one where they are all equal."""
+    first = parts[0]
+    if all(part is first or np.array_equal(part, first) for part in parts):
+        return first[None]
+    return np.stack(parts)
+
+
+def _ports(scene: Scene) -> FloatArray:
+    directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    stacked = np.array(directions, dtype=np.float64).reshape(len(directions), len(scene.modal.dofs))
+    return scene.modal.shapes @ stacked.T
+
+
+def _modal_force(scene: Scene) -> ComplexArray:
+    total = np.zeros(len(scene.modal.dofs), dtype=np.complex128)
+    for force in scene.forces:
+        total += force.direction * force.amplitude * np.exp(1j * force.phase)
+    return scene.modal.shapes @ total
+
+
+def modal_compliance(group: Group, omega: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    """1 / (m (w_i^2 - omega^2 + 2 i zeta w_i omega)) of each mode, and its derivative by omega."""
+    w = omega[:, None]
+    natural = group.frequency
+    # the difference of squares as a product: exact next to an undamped resonance
+    stiffness = (natural - w) * (natural + w) + 2j * (group.damping * natural * w)
+    compliance: AnyArray = 1.0 / (group.mass * stiffness)
+    slope: AnyArray = compliance * (2.0 * w - 2j * (group.damping * natural)) / stiffness
+    return compliance, slope
+
+
+def receptance(group: Group, weights: AnyArray) -> AnyArray:
+    """Sum of the modes' weights over the contact ports, (curve, port, port)."""
+    total: AnyArray = (group.ports.swapaxes(1, 2) * weights[:, None, :]) @ group.ports
+    return total
+
+
+def to_ports(group: Group, modal: AnyArray) -> AnyArray:
+    """Modal coordinates (curve, mode) to displacements of the ports (curve, port)."""
+    ports: AnyArray = (modal[:, None, :] @ group.ports)[:, 0, :]
+    return ports
