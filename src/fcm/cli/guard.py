@@ -22,7 +22,7 @@ _EXIT_CODES = (
     ("fcm.scene", "SceneError", WRONG_INPUT),
     ("fcm.table", "TableError", WRONG_INPUT),
     ("fcm.plot", "PlotError", WRONG_INPUT),
-    ("fcm.response", "ResponseError", NOT_COMPLETED),
+    ("fcm.response", "ResponseError", WRONG_INPUT),
 )
 
 

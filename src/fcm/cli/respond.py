@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import output_option, replacing
+from fcm.cli.files import output_option
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.report import as_json, as_table, cost_and_error, incomplete
+from fcm.cli.report import as_table, cost_and_error, incomplete
 
 if TYPE_CHECKING:
     from fcm.response import Response
@@ -61,13 +62,14 @@ def respond(
     """
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
+    from fcm.response.output import summary
+
     response = _traced(messages, scene, method, table, max_step)
     _write(messages, response, output, csv)
-    _print(messages, response, to_json)
-    stopped = incomplete(response)
-    if stopped:
-        messages.error(f"error: {stopped}; what was traced is reported and written")
-        click.get_current_context().exit(NOT_COMPLETED)
+    result = summary(response)
+    unit = response.frequency_unit
+    click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_table(result, unit))
+    _close(messages, result)
 
 
 def _traced(
@@ -75,15 +77,21 @@ def _traced(
 ) -> Response:
     from fcm.response import trace
     from fcm.scene import load_scene
-    from fcm.table import open_table
 
     loaded = load_scene(scene)
     if max_step is not None:
         loaded = _with_step(loaded, max_step)
-    opened = None if table is None else open_table(table)
-    response = trace(loaded, method=method, table=opened, progress=messages.progress)
+    response = trace(loaded, method=method, table=_opened(table), progress=messages.progress)
     messages.clear()
     return response
+
+
+def _opened(table: str | None) -> Any:
+    if table is None:
+        return None
+    from fcm.table import open_table
+
+    return open_table(table)
 
 
 def _with_step(scene: Scene, max_step: float) -> Scene:
@@ -96,16 +104,15 @@ def _write(messages: Messages, response: Response, output: Path | None, csv: Pat
 
     for path, write in ((output, write_netcdf), (csv, write_csv)):
         if path is not None:
-            with replacing(path) as partial:
-                write(response, partial)
+            write(response, path)
             messages.info(f"wrote {path}")
 
 
-def _print(messages: Messages, response: Response, to_json: bool) -> None:
-    from fcm.response.output import summary
-
-    result = summary(response)
-    click.echo(as_json(result) if to_json else as_table(result, response.frequency_unit))
-    for name in response.left_out:
-        messages.info(f"left out: {name}")
+def _close(messages: Messages, result: dict[str, Any]) -> None:
+    """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
+    for text in result["left_out"]:
+        messages.info(f"left out: {text}")
     messages.info(cost_and_error(result))
+    if stopped := incomplete(result):
+        messages.error(f"error: {stopped}; what was traced is reported and written")
+        click.get_current_context().exit(NOT_COMPLETED)

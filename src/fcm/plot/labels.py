@@ -1,37 +1,47 @@
-"""Names of quantities as a reader knows them: ``contact.shroud.n_0`` is n with the subscript 0."""
+"""Names of quantities as a reader knows them: of ``contact.shroud.n_0`` the symbol n with the subscript 0."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
-_GREEK = {"mu", "omega", "zeta", "phi", "theta"}
+_SYMBOLS = {"n_0": "$n_{0}$", "k_u": "$k_{u}$", "k_v": "$k_{v}$", "mu": "$\\mu$"}
+_WORDS = {*_SYMBOLS, "gap", "amplitude", "phase", "mass", "frequency", "damping"}
 
 
-def symbol(name: str) -> str:
-    """The mathematical symbol of a parameter of the scene, without the dollar signs.
+def short_names(keys: Iterable[str]) -> dict[str, str]:
+    """Of each key its last part, if that says enough; where two would be the same, the whole key.
 
-    >>> symbol("contact.shroud.n_0"), symbol("contact.tip.mu"), symbol("force.0.amplitude")
-    ('n_{0}', '\\\\mu', '\\\\mathrm{amplitude}')
+    >>> short_names(["contact.shroud.n_0", "modal.shapes.0.u"])
+    {'contact.shroud.n_0': 'n_0', 'modal.shapes.0.u': 'modal.shapes.0.u'}
+    >>> list(short_names(["contact.a.mu", "contact.b.mu"]).values())
+    ['contact.a.mu', 'contact.b.mu']
     """
-    head, _, index = name.rpartition(".")[2].partition("_")
-    if head in _GREEK:
-        head = f"\\{head}"
-    elif len(head) > 1:
-        return f"\\mathrm{{{' '.join(filter(None, (head, index)))}}}".replace("_", "\\_").replace(" ", "\\ ")
-    return f"{head}_{{{index}}}" if index else head
+    last = {key: key.rpartition(".")[2] for key in keys}
+    several = list(last.values())
+    return {key: name if name in _WORDS and several.count(name) == 1 else key for key, name in last.items()}
 
 
-def number(value: float) -> str:
+def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:
+    """What was swept, in matplotlib's mathematical text; without names only the values.
+
+    >>> curve_label({"contact.shroud.n_0": -5.0, "contact.shroud.mu": 0.4})
+    '$n_{0}$ = −5, $\\\\mu$ = 0.4'
+    """
+    values = {short: _number(parameters[key]) for key, short in short_names(parameters).items()}
+    if not named:
+        return ", ".join(values.values())
+    return ", ".join(f"{_SYMBOLS.get(name, _plain(name))} = {value}" for name, value in values.items())
+
+
+def frequency_label(unit: str) -> str:
+    return "Frequency $f$ (Hz)" if unit == "Hz" else f"Frequency $\\omega$ ({unit})"
+
+
+def _number(value: float) -> str:
     """A short number with a true minus sign."""
     return f"{value:.4g}".replace("-", "−")
 
 
-def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:
-    """``n_0 = 5, mu = 0.4`` in mathematical type; without names only the values."""
-    if not named:
-        return ", ".join(number(value) for value in parameters.values())
-    return ", ".join(f"${symbol(name)}$ = {number(value)}" for name, value in parameters.items())
-
-
-def frequency_label(unit: str) -> str:
-    return "Frequency $f$ (Hz)" if unit.lower() == "hz" else f"Frequency $\\omega$ ({unit})"
+def _plain(text: str) -> str:
+    """Text in which matplotlib is to find no mathematics."""
+    return text.replace("$", r"\$")

@@ -14,6 +14,7 @@ from fcm.plot.errors import PlotError
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+_SWEPT = "swept value"  # how the description of a swept value begins
 _NEEDED = ("frequency", "amplitude", "dof")
 
 
@@ -41,20 +42,20 @@ def read_response(path: Path) -> DrawnResponse:
 
     try:
         dataset = Dataset(str(path))
-    except OSError as error:
+    except (OSError, ValueError) as error:
         raise PlotError(f"{path}: not a netCDF file that can be read") from error
     with dataset:
-        variables = dataset.variables
-        missing = [name for name in _NEEDED if name not in variables]
+        missing = [name for name in _NEEDED if name not in dataset.variables]
         if missing:
             raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
         try:
-            return _response(variables)
-        except (IndexError, TypeError, ValueError) as error:
+            return _response(dataset)
+        except (IndexError, RuntimeError, TypeError, ValueError) as error:
             raise PlotError(f"{path}: not a response file: {error}") from error
 
 
-def _response(variables: Any) -> DrawnResponse:
+def _response(dataset: Any) -> DrawnResponse:
+    variables = dataset.variables
     dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
     frequency, amplitude = _floats(variables["frequency"]), _floats(variables["amplitude"])
     if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
@@ -72,7 +73,7 @@ def _response(variables: Any) -> DrawnResponse:
         )
         for i in range(len(frequency))
     )
-    return DrawnResponse(dofs, getattr(variables["frequency"], "units", "rad/s"), curves)
+    return DrawnResponse(dofs, str(getattr(dataset, "frequency_unit", "rad/s")), curves)
 
 
 def _curve(
@@ -95,11 +96,11 @@ def _curve(
 
 
 def _swept(variables: Any) -> dict[str, FloatArray]:
-    """The coordinates of ``curve``: by their full names, ``contact.shroud.n_0``."""
+    """The swept values, by their full names: ``contact.shroud.n_0``."""
     return {
-        str(getattr(variable, "parameter", name)): _floats(variable)
+        name: _floats(variable)
         for name, variable in variables.items()
-        if variable.dimensions == ("curve",) and hasattr(variable, "parameter")
+        if variable.dimensions == ("curve",) and str(getattr(variable, "long_name", "")).startswith(_SWEPT)
     }
 
 

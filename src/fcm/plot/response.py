@@ -75,7 +75,7 @@ def _named(curve: DrawnCurve, symbols: bool = True) -> str:
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
     axes.set_xlabel(frequency_label(response.frequency_unit))
-    axes.set_ylabel(f"Amplitude of {response.dofs[column]}")
+    axes.set_ylabel(f"Amplitude of {response.dofs[column]}", parse_math=False)
     axes.margins(x=0.0, y=0.07)
     axes.minorticks_on()
     if log:

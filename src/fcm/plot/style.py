@@ -17,6 +17,8 @@ WIDTH = 5.5  # [inch] 140 mm, one and a half columns
 HEIGHT = 3.7  # [inch]
 
 STYLE: dict[Any, Any] = {
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
     "axes.linewidth": 0.6,
     "axes.prop_cycle": "cycler('color', ['#0072b2'])",
     "axes.unicode_minus": True,
