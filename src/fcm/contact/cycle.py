@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.contact.limits import FloatArray, SlipLimits, angle_from, slip_limits
+from fcm.contact.limits import BoolArray, FloatArray, SlipLimits, angle_from, slip_limits
 
 STUCK, SLIPPING, OPEN = 0, 1, 2  # what a contact does over a cycle, see `behaviour`
 
@@ -37,14 +37,14 @@ class Span(NamedTuple):
     end: Direction
     slope: FloatArray  # d w / d theta at the end of the slip, times side
     curvature: FloatArray  # -d2 w / d theta2 there, times side
-    turns: FloatArray  # True where the slip ends because its own limit turns there
+    turns: BoolArray  # True where the slip ends because its own limit turns there
 
 
 class Cycle(NamedTuple):
     """The cycle from its start: the end of separation or, where there is none, the end of negative slip."""
 
     limits: SlipLimits
-    opens: FloatArray  # True where the contact separates
+    opens: BoolArray  # True where the contact separates
     theta_1: FloatArray  # half the contact duration [rad], pi where the contact never opens
     closing_rate: FloatArray  # b sin(theta_1), d n / d theta when the contact closes
     start: Direction
@@ -119,7 +119,9 @@ def cycle(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray, limits: SlipLi
     to_N = np.where(opens, angle_from(*start, limits.sin_N, limits.cos_N), length)
 
     # The marks in the order in which they come; one that the contact does not reach is replaced by the last.
-    has_P, has_N = to_P < length, to_N < length
+    # A contact that never opens always comes by theta_P, if only at the very end.
+    to_P = np.where(opens, to_P, np.minimum(to_P, length))
+    has_P, has_N = (to_P < length) | ~opens, to_N < length
     P_first = has_P & (~has_N | (to_P <= to_N))
     N_first = has_N & ~P_first
     P_second, N_second = has_P & N_first, has_N & P_first
@@ -142,9 +144,10 @@ def cycle(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray, limits: SlipLi
         span = _span(w, mark, span_length, slips_at_once, b_bar, is_P, is_N)
         spans.append(span)
         w = span.w_end
-        slips_at_once = np.where(span.turns, 0.0, span.side)  # a slip that did not end here goes on
+        # A slip that did not end here goes on; but one by a limit that recedes, a rounding error made up.
+        slips_at_once = np.where(span.turns | (span.slope < 0.0), 0.0, span.side)
     safe_rate = np.where(closing_rate > 0.0, closing_rate, 1.0)
-    pull = np.where(opens, np.clip(start.cos / safe_rate, -1.0, 1.0), -1.0)
+    pull = np.where(opens, np.clip(start.cos, -safe_rate, safe_rate) / safe_rate, -1.0)
     return Cycle(limits, opens, theta_1, closing_rate, start, pull, (spans[0], spans[1], spans[2]))
 
 
@@ -153,7 +156,7 @@ def _ends(
     b_bar: FloatArray,
     limits: SlipLimits,
     mark_N: _Mark,
-    opens: FloatArray,
+    opens: BoolArray,
     closing_rate: FloatArray,
 ) -> tuple[Direction, _Mark]:
     """Start and last mark: (A3) and (A2) where the contact opens, twice theta_N where it does not."""
@@ -184,7 +187,7 @@ def _ends(
     return start, last
 
 
-def _choose(is_P: FloatArray, P: _Mark, is_N: FloatArray, N: _Mark, last: _Mark) -> _Mark:
+def _choose(is_P: BoolArray, P: _Mark, is_N: BoolArray, N: _Mark, last: _Mark) -> _Mark:
     def pick(p: FloatArray, n: FloatArray, o: FloatArray) -> FloatArray:
         return np.where(is_P, p, np.where(is_N, n, o))
 
@@ -206,8 +209,8 @@ def _span(
     length: FloatArray,
     slips_at_once: FloatArray,
     b_bar: FloatArray,
-    is_P: FloatArray,
-    is_N: FloatArray,
+    is_P: BoolArray,
+    is_N: BoolArray,
 ) -> Span:
     w_end = np.maximum(mark.lower, np.minimum(w, mark.upper))
     side = np.sign(w_end - w)

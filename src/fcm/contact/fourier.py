@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.cycle import OPEN, SLIPPING, STUCK, Cycle, Direction, Span, behaviour, cycle, stuck_force
-from fcm.contact.limits import FloatArray, SlipLimits, slip_limits
+from fcm.contact.limits import FloatArray, SlipLimits, slip_limits, within_range
 
 BLOCK = 8192  # points at a time, so that the intermediate arrays stay in the processor's cache
 
@@ -112,23 +112,21 @@ def _block(
 ) -> tuple[FloatArray, FloatArray]:
     F = np.full((3, n0_bar.size), np.nan)
     dF = np.full((3, 3, n0_bar.size if gradients else 0), np.nan)
-    finite = np.isfinite(b_bar) & np.isfinite(phi)
-    known = finite & ~np.isnan(n0_bar)
-    safe_b, safe_phi = np.where(finite, b_bar, 0.0), np.where(finite, phi, 0.0)
-    limits = slip_limits(safe_b, safe_phi)
-    bounded = np.clip(n0_bar, -1e308, 1e308)  # an infinite preload or gap is stuck or open like any other
-    code = np.where(known, behaviour(np.where(known, bounded, 0.0), safe_b, limits), -1)
+    known = np.isfinite(b_bar) & np.isfinite(phi) & ~np.isnan(n0_bar)
+    n0_bar, b_bar = within_range(np.where(known, n0_bar, 0.0), np.where(known, b_bar, 0.0))
+    limits = slip_limits(b_bar, np.where(known, phi, 0.0))
+    code = np.where(known, behaviour(n0_bar, b_bar, limits), -1)
     opened = code == OPEN
     F[:, opened] = 0.0
     stuck = np.flatnonzero(code == STUCK)
     some = SlipLimits(*(x[stuck] for x in limits))
-    F[0, stuck], F[1, stuck], F[2, stuck] = stuck_force(bounded[stuck], b_bar[stuck], some), 1.0, 0.0
+    F[0, stuck], F[1, stuck], F[2, stuck] = stuck_force(n0_bar[stuck], b_bar[stuck], some), 1.0, 0.0
     slipping = np.flatnonzero(code == SLIPPING)
     path = cycle(n0_bar[slipping], b_bar[slipping], phi[slipping], SlipLimits(*(x[slipping] for x in limits)))
     F[:, slipping] = _coefficients(path)
     if gradients:
         dF[:, :, opened] = 0.0
-        dF[:, :, stuck] = _stuck_gradients(bounded[stuck], b_bar[stuck], some)
+        dF[:, :, stuck] = _stuck_gradients(n0_bar[stuck], b_bar[stuck], some)
         dF[:, :, slipping] = _gradients(path, b_bar[slipping])
     return F, dF
 

@@ -17,6 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+LARGEST = 1e300
 
 
 class SlipLimits(NamedTuple):
@@ -63,6 +66,16 @@ def slip_limits(b_bar: FloatArray, phi: FloatArray) -> SlipLimits:
         sin_N=np.where(ell_2 > 0.0, -plus / safe_2, -1.0),
         cos_N=-side / safe_2,
     )
+
+
+def within_range(n0_bar: FloatArray, b_bar: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Preload and load variation, neither so large that a sum of a few of them overflows.
+
+    Above LARGEST only the ratio n0_bar / b_bar matters: the spacing of float64 is far more than 1 there.
+    A larger preload or gap, infinite included, is stuck or open like any other.
+    """
+    shrink = np.where(b_bar > LARGEST, 2.0**-32, 1.0)
+    return np.clip(n0_bar * shrink, -1e4 * LARGEST, 1e4 * LARGEST), b_bar * shrink
 
 
 def angle_from(sin_0: FloatArray, cos_0: FloatArray, sin_1: FloatArray, cos_1: FloatArray) -> FloatArray:
