@@ -1,0 +1,115 @@
+"""The error of a table: its difference from the closed form, by regime, over the whole domain and its corners."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact import fourier_coefficients
+from fcm.table import atlas
+from fcm.table.atlas import FloatArray
+
+REGIMES = ("open", "separation", "slip", "stick")
+NAMES = ("F_b", "F_s", "F_c")
+POINTS = 1_000_000
+SEED = 1998
+CHUNK = 50_000
+
+Progress = Callable[[int, int], None]
+
+
+class Interpolant(Protocol):
+    """What can be measured: a `Table`, or anything that is called like one."""
+
+    def __call__(
+        self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
+    ) -> tuple[FloatArray, FloatArray, FloatArray]: ...
+
+
+def sample(count: int, seed: int = SEED) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points n0_bar, b_bar, phi over all regimes, a part of them crowded into every corner.
+
+    b is uniform in b/(1+b), uniform in log from 1e-6 to 1e6, or within 1e-6 to 1 of b = 1; phi is uniform in
+    (-pi, pi) or within 1e-6 to 1 of a multiple of pi; n0 lies between -b and b (uniform in the contact angle),
+    between b and the slip limit, or within 1e-9 to 1 of one of the three boundaries, or beyond them.
+    """
+    random = np.random.default_rng(seed)
+    b = _variation(count, random)
+    phi = random.uniform(-np.pi, np.pi, count)
+    near = random.integers(-1, 2, count) * np.pi + _small(count, -6, random)
+    phi = np.where(random.random(count) < 0.25, near, phi)
+    width = atlas.geometry(b, atlas.Phase.of(atlas.fold(phi)[0])).width
+    inner = -b * np.cos(np.pi * random.random(count))
+    slip = b + width * random.random(count)
+    boundary = np.choose(random.integers(0, 3, count), (-b, b, b + width))
+    scale = np.where(random.random(count) < 0.5, np.maximum(width, 1e-9), 1.0)
+    close = boundary + _small(count, -9, random) * scale
+    kind = random.integers(0, 4, count)
+    return np.choose(kind, (inner, slip, close, inner)), b, phi
+
+
+def _small(count: int, decades: int, random: np.random.Generator) -> FloatArray:
+    """Of either sign, from 10^decades to 1, uniform in log."""
+    size: FloatArray = 10.0 ** random.uniform(decades, 0.0, count)
+    return size * random.choice((-1.0, 1.0), count)
+
+
+def _variation(count: int, random: np.random.Generator) -> FloatArray:
+    share = random.random(count)
+    linear = share / (1.0 - share)
+    logarithmic = 10.0 ** random.uniform(-6.0, 6.0, count)
+    near_one = np.abs(1.0 + _small(count, -6, random))
+    return np.choose(random.integers(0, 3, count), (linear, logarithmic, near_one))
+
+
+def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArray[np.int64]:
+    """Index into REGIMES."""
+    width = atlas.geometry(b_bar, atlas.Phase.of(atlas.fold(phi)[0])).width
+    code = np.where(n0_bar < b_bar, 1, np.where(n0_bar - b_bar < width, 2, 3))
+    return np.where(n0_bar <= -b_bar, 0, code)
+
+
+def measure(
+    table: Interpolant, points: int = POINTS, seed: int = SEED, progress: Progress | None = None
+) -> dict[str, Any]:
+    """Error of a table at `sample(points, seed)`.
+
+    Returns
+    -------
+    dict
+        ``points``, ``seed``; ``max``, ``p999``, ``rms`` over all; and ``regimes``: for each of REGIMES
+        the number of points, and for each of F_b, F_s, F_c ``max``, ``p999`` (99.9 %), ``rms`` and ``worst``,
+        the point [n0_bar, b_bar, phi] of the greatest error. Errors are absolute [-].
+    """
+    n0, b, phi = sample(points, seed)
+    error = np.empty((3, points))
+    for first in range(0, points, CHUNK):
+        part = slice(first, first + CHUNK)
+        exact = np.stack(fourier_coefficients(n0[part], b[part], phi[part]))
+        error[:, part] = np.abs(np.stack(table(n0[part], b[part], phi[part])) - exact)
+        if progress is not None:
+            progress(min(first + CHUNK, points), points)
+    code = regime(n0, b, phi)
+    result: dict[str, Any] = {"points": points, "seed": seed, **_summary(error.reshape(-1)), "regimes": {}}
+    for index, name in enumerate(REGIMES):
+        chosen = np.flatnonzero(code == index)
+        if chosen.size == 0:
+            continue
+        parts: dict[str, Any] = {"points": int(chosen.size)}
+        for row, coefficient in enumerate(NAMES):
+            worst = chosen[np.argmax(error[row, chosen])]
+            point = [float(n0[worst]), float(b[worst]), float(phi[worst])]
+            parts[coefficient] = {**_summary(error[row, chosen]), "worst": point}
+        result["regimes"][name] = parts
+    return result
+
+
+def _summary(error: FloatArray) -> dict[str, float]:
+    return {
+        "max": float(np.max(error)),
+        "p999": float(np.quantile(error, 0.999)),
+        "rms": float(np.sqrt(np.mean(error * error))),
+    }
