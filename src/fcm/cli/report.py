@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.plot.labels import short_names
-
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
     """One line a curve: what was swept, the peaks, the folds, the points, whether it is whole, its time."""
+    from fcm.plot.labels import short_names
+
     curves = summary["curves"]
     if not curves:
         return "no curve"

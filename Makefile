@@ -1,0 +1,46 @@
+# Everything runs in the virtual environment .venv, made when it is first needed.
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+DEMO   := build/demo
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo picture test check tables clean
+
+help:  ## this list
+	@sed -n 's/^\([a-z]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
+
+demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and their picture, in build/demo
+	@mkdir -p $(DEMO)
+	$(BIN)/fcm respond yang1998 -o $(DEMO)/yang1998.nc
+	$(BIN)/fcm plot response $(DEMO)/yang1998.nc -o $(DEMO)/figure13.png
+
+picture: demo  ## the same, and its picture as the one of README.md
+	cp $(DEMO)/figure13.png .github/figure13.png
+
+test: check  ## format, lint, types, then all tests
+	$(BIN)/python -m pytest -n 2
+
+check: $(VENV)/installed-dev  ## format, lint and types only
+	$(BIN)/ruff format --check src tests
+	$(BIN)/ruff check src tests
+	$(BIN)/mypy
+
+tables: $(VENV)/installed  ## build the shipped tables again
+	$(BIN)/fcm tabulate -o tables/default.nc
+	$(BIN)/fcm tabulate --fast -o tables/fast.nc
+
+clean:  ## remove what was made, but for the environment
+	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/installed: pyproject.toml
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/installed-dev: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@

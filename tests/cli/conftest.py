@@ -1,0 +1,55 @@
+"""The program called as from a shell, and a scene small enough to be traced in every test."""
+
+from typing import NamedTuple
+
+import pytest
+
+from fcm.cli import main
+
+SCENE = """
+title = "one curve"
+[modal]
+dofs      = ["u", "v"]
+frequency = [1.0, 10.0]
+damping   = [0.05, 0.05]
+shapes    = [[0.707, 0.707], [1.0, -0.5]]
+[[contact]]
+name       = "shroud"
+tangential = "u"
+normal     = "v"
+mu  = 0.4
+k_u = 1.0
+k_v = 1.0
+n_0 = 5.0
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.8, 1.6]
+"""
+
+
+class Run(NamedTuple):
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def fcm(capsys, tmp_path, monkeypatch):
+    """``fcm("respond", ...)`` in a folder of its own: exit code, standard output, standard error."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*args):
+        with pytest.raises(SystemExit) as end:
+            main([str(arg) for arg in args], prog_name="fcm")
+        return Run(end.value.code or 0, *capsys.readouterr())
+
+    return run
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE)
+    return path

@@ -1,0 +1,91 @@
+"""``fcm plot response``: from a response file to a picture, or to one message."""
+
+import netCDF4
+import pytest
+
+from fcm.plot import draw_response, read_response
+
+
+@pytest.fixture
+def result(fcm, scene, tmp_path):
+    path = tmp_path / "result.nc"
+    assert fcm("respond", scene, "-o", path).code == 0
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "begin"), [("a.png", b"\x89PNG"), ("a.svg", b"<?xml"), ("a.pdf", b"%PDF"), ("A.PNG", b"\x89PNG")]
+)
+def test_the_ending_is_the_format(fcm, result, tmp_path, name, begin):
+    done = fcm("plot", "response", result, "-o", name)
+    assert (done.code, done.out, done.err) == (0, "", f"wrote {name}\n")
+    assert (tmp_path / name).read_bytes().startswith(begin)
+
+
+def test_without_a_name_the_picture_is_beside_the_file(fcm, result, tmp_path):
+    assert fcm("plot", "response", result).code == 0
+    assert (tmp_path / "result.png").exists()
+
+
+def test_options_reach_the_picture(fcm, result, monkeypatch):
+    seen = {}
+    monkeypatch.setattr("fcm.plot.draw_response", lambda *a, **k: seen.update(k) or draw_response(*a, **k))
+    assert fcm("plot", "response", result, "--dof", "v", "--log").code == 0
+    assert seen == {"dof": "v", "log": True}
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["-o", "a.jpg"], ".png or .svg or .pdf"),
+        (["-o", "a"], ".png or .svg or .pdf"),
+        (["-o", "no/a.png"], "there is no folder"),
+        (["--dof", "w"], "no degree of freedom 'w'; the file has u, v"),
+    ],
+)
+def test_wrong_options_write_nothing(fcm, result, tmp_path, args, said):
+    done = fcm("plot", "response", result, *args)
+    assert done.code == 2 and said in done.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["result.nc", "scene.toml"]
+
+
+@pytest.mark.parametrize("content", [b"", b"text", b"\x89HDF\r\n\x1a\n" + bytes(100), b"CDF\x01" + bytes(20)])
+def test_a_file_that_is_not_netcdf(fcm, tmp_path, content):
+    (tmp_path / "a.nc").write_bytes(content)
+    done = fcm("plot", "response", "a.nc")
+    assert done.code == 2 and len(done.err.splitlines()) == 1
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_a_netcdf_file_that_is_no_response(fcm, tmp_path):
+    netCDF4.Dataset(tmp_path / "a.nc", "w").close()
+    done = fcm("plot", "response", "a.nc")
+    assert done.code == 2
+    assert done.err == "fcm: error: a.nc: not a response file: it has no variable frequency, amplitude, dof\n"
+
+
+def test_a_response_of_the_wrong_shape(fcm, tmp_path):
+    with netCDF4.Dataset(tmp_path / "a.nc", "w") as data:
+        data.createDimension("x", 3)
+        for name in ("frequency", "amplitude", "dof"):
+            data.createVariable(name, "f8", ("x",))[:] = 1.0
+    done = fcm("plot", "response", "a.nc")
+    assert done.code == 2 and "frequency has shape (3,)" in done.err
+
+
+def test_a_file_that_is_not_there(fcm):
+    done = fcm("plot", "response", "nothing.nc")
+    assert done.code == 2 and "nothing.nc" in done.err
+
+
+def test_reading_gives_what_was_written(fcm, tmp_path):
+    assert fcm("respond", "yang1998", "-o", "a.nc").code == 0
+    response = read_response(tmp_path / "a.nc")
+    assert response.dofs == ("u", "v") and response.frequency_unit == "rad/s"
+    swept = [curve.parameters for curve in response.curves]
+    assert swept == [{"contact.shroud.n_0": n} for n in (100, 50, 20, 10, 5, 2, 0, -5, -20, -60)]
+    first, *_, last = response.curves
+    assert first.regimes == {"E"} and last.regimes == {"S"}
+    assert first.amplitude.shape == (len(first.frequency), 2) and first.frequency[0] == pytest.approx(0.7)
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        assert max(len(curve.frequency) for curve in response.curves) == data.dimensions["point"].size

@@ -1,0 +1,147 @@
+"""The program around its commands: help, what it imports, how it ends."""
+
+import json
+import subprocess
+import sys
+import time
+import warnings
+
+import click
+import pytest
+
+from fcm.cli import COMMANDS
+from fcm.cli.guard import guarded
+from fcm.cli.messages import Messages
+
+HEAVY = {"numpy", "scipy", "xarray", "netCDF4", "matplotlib", "pandas"}
+
+
+def imported_by(*args):
+    """The packages that a run of the program has imported when it ends."""
+    code = (
+        "import sys, json\n"
+        "from fcm.cli import main\n"
+        "try: main(sys.argv[1:], prog_name='fcm')\n"
+        "except SystemExit: pass\n"
+        "print(json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"
+    )
+    done = subprocess.run([sys.executable, "-c", code, *args], capture_output=True, text=True, check=True)
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+@pytest.mark.parametrize("args", [["--help"], ["--version"], ["plot", "--help"], ["respond", "--help"]])
+def test_help_imports_no_numerics(args):
+    assert not imported_by(*args) & HEAVY
+
+
+def test_drawing_and_xarray_are_not_imported_by_respond(scene):
+    assert not imported_by("respond", str(scene), "-o", str(scene.with_suffix(".nc"))) & {
+        "matplotlib",
+        "pandas",
+        "xarray",
+    }
+
+
+def test_help_is_quick():
+    def seconds():
+        begin = time.perf_counter()
+        subprocess.run([sys.executable, "-m", "fcm.cli", "--help"], capture_output=True, check=True)
+        return time.perf_counter() - begin
+
+    assert min(seconds() for _ in range(3)) < 0.5  # a busy machine; alone it needs 0.05
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_exists_and_has_help(fcm, name):
+    done = fcm(name, "--help")
+    assert done.code == 0 and f"Usage: fcm {name}" in done.out
+    assert "--quiet" in done.out and "--verbose" in done.out
+
+
+def test_help_lists_the_commands(fcm):
+    done = fcm("--help")
+    assert done.code == 0 and all(line in done.out for line in ("tabulate", "respond", "plot"))
+
+
+def test_version(fcm):
+    assert fcm("-V").out == fcm("--version").out == "fcm 0.1.0\n"
+
+
+@pytest.mark.parametrize(
+    "args", [["nonsense"], ["respond"], ["respond", "a", "b"], ["respond", "a", "--no"], ["plot", "nothing"]]
+)
+def test_a_wrong_command_line_is_wrong_input(fcm, args):
+    done = fcm(*args)
+    assert done.code == 2 and "Error:" in done.err and done.out == ""
+
+
+def end_of(error, messages=None):
+    """The exit code and what is said when a command raises the error."""
+
+    def run(ctx):
+        raise error
+
+    with (
+        click.Context(click.Command("x"), obj=messages or Messages()) as ctx,
+        pytest.raises(click.exceptions.Exit) as end,
+    ):
+        guarded(run, ctx)
+    return end.value.exit_code
+
+
+def test_a_defect_is_one_line(capsys, monkeypatch):
+    monkeypatch.delenv("FCM_DEBUG", raising=False)
+    assert end_of(ZeroDivisionError("of zero")) == 1
+    assert capsys.readouterr().err == "fcm: defect: ZeroDivisionError: of zero (-v shows where)\n"
+
+
+def test_a_defect_shows_its_place_on_request(capsys, monkeypatch):
+    monkeypatch.delenv("FCM_DEBUG", raising=False)
+    assert end_of(ZeroDivisionError("of zero"), Messages(verbosity=1)) == 1
+    assert "Traceback" in capsys.readouterr().err
+    monkeypatch.setenv("FCM_DEBUG", "1")
+    assert end_of(ZeroDivisionError("of zero")) == 1
+    assert "Traceback" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (KeyboardInterrupt(), "interrupted"),
+        (click.Abort(), "interrupted"),
+        (MemoryError(), "not enough memory"),
+        (OSError(28, "No space left on device", "a.nc"), "a.nc: No space left on device"),
+    ],
+)
+def test_what_could_not_be_completed(capsys, error, said):
+    assert end_of(error) == 3
+    captured = capsys.readouterr().err
+    assert said in captured and "Traceback" not in captured
+
+
+def test_a_warning_is_one_line_on_standard_error(capsys):
+    def run(ctx):
+        warnings.simplefilter("always")
+        warnings.warn("mind the gap", stacklevel=1)
+
+    with click.Context(click.Command("x"), obj=Messages()) as ctx:
+        guarded(run, ctx)
+    assert capsys.readouterr().err == "fcm: warning: mind the gap\n"
+
+
+def test_a_reader_that_leaves_is_no_error():
+    done = subprocess.run(
+        ["bash", "-c", f"{sys.executable} -m fcm.cli respond yang1998-n5 | true; echo ${{PIPESTATUS[0]}}"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == "0\n"
+    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+
+
+def test_a_full_disk_under_standard_output_is_not_completed():
+    command = f"{sys.executable} -m fcm.cli respond yang1998-n5 > /dev/full; echo $?"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
+    assert done.stdout == "3\n"
+    assert "Traceback" not in done.stderr and "Exception" not in done.stderr

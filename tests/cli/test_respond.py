@@ -1,0 +1,182 @@
+"""``fcm respond``: what it prints and writes, and what it refuses."""
+
+import csv
+import dataclasses
+import json
+import subprocess
+import sys
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm import response
+
+
+def files(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def refuse(*_args, **_more):
+    raise AssertionError("nothing is to be computed")
+
+
+def test_the_table_has_a_line_for_each_curve(fcm):
+    done = fcm("respond", "yang1998")
+    header, *lines = done.out.splitlines()
+    assert done.code == 0
+    assert header.split()[:3] == ["n_0", "peak", "u"] and "at rad/s" in header and "folds" in header
+    rows = {line.split()[0]: line.split() for line in lines}
+    assert list(rows) == ["100", "50", "20", "10", "5", "2", "0", "-5", "-20", "-60"]
+    assert float(rows["10"][1]) == pytest.approx(6.236, abs=2e-3)  # the paper's optimum
+    assert [float(fold) for fold in rows["5"][-2:]] == pytest.approx([1.2388, 1.1875], abs=2e-4)
+    assert rows["10"][-1] == "none"
+
+
+def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):
+    cost, error = fcm("respond", scene).err.splitlines()[-2:]
+    assert cost.startswith("1 curve, ") and " points in " in cost and cost.endswith(" s")
+    assert error.startswith("largest relative error: ") and "by the table" in error
+
+
+def test_json_is_all_of_standard_output(fcm, scene):
+    done = fcm("respond", scene, "--json")
+    result = json.loads(done.out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
+    (curve,) = result["curves"]
+    assert curve["complete"] and curve["points"] > 10
+    assert set(curve["peak"]) == {"u", "v"} and curve["peak"]["u"]["amplitude"] > 0
+    assert {"left_out", "seconds"} <= set(result)
+
+
+def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
+    changed(monkeypatch, peaks={"u": (np.nan, np.nan), "v": (np.nan, np.nan)})
+    done = fcm("respond", scene, "--json")
+    assert json.loads(done.out)["curves"][0]["peak"]["u"] == {"amplitude": None, "frequency": None}
+    assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]
+
+
+def test_files_hold_the_points_that_were_reported(fcm, scene, tmp_path):
+    done = fcm("respond", scene, "-o", "a.nc", "--csv", "a.csv", "--json")
+    points = json.loads(done.out)["curves"][0]["points"]
+    assert files(tmp_path) == ["a.csv", "a.nc", "scene.toml"]
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        assert data["amplitude"].shape == (1, points, 2)
+    with (tmp_path / "a.csv").open(newline="") as file:
+        assert len(list(csv.DictReader(file))) == points
+    assert "wrote a.nc" in done.err and "wrote a.csv" in done.err
+
+
+def test_without_output_options_nothing_is_written(fcm, scene, tmp_path):
+    assert fcm("respond", scene).code == 0
+    assert files(tmp_path) == ["scene.toml"]
+
+
+def test_quiet_leaves_standard_error_empty(fcm, scene):
+    for args in (["-q", "respond", scene], ["respond", scene, "-q"]):
+        done = fcm(*args)
+        assert done.code == 0 and done.err == "" and "peak u" in done.out
+
+
+def test_the_closed_form_and_the_table_agree(fcm, scene):
+    peaks = [
+        json.loads(fcm("respond", scene, "--json", "--method", method).out)["curves"][0]["peak"]["u"]
+        for method in ("table", "closed-form")
+    ]
+    assert peaks[0]["amplitude"] == pytest.approx(peaks[1]["amplitude"], rel=1e-6)
+
+
+def test_a_shorter_step_gives_more_points(fcm, scene):
+    coarse, fine = (
+        json.loads(fcm("respond", scene, "--json", "--max-step", step).out)["curves"][0]["points"]
+        for step in ("0.05", "0.01")
+    )
+    assert fine > 2 * coarse
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["-o", "folder"], "it is a folder"),
+        (["-o", "a.txt"], "the name has to end in .nc"),
+        (["--csv", "a.nc"], "the name has to end in .csv"),
+        (["-o", "no/where/a.nc"], "there is no folder 'no/where'"),
+        (["--max-step", "0"], "must be greater than 0"),
+        (["--max-step", "nan"], "must be finite"),
+        (["--max-step", "2"], "must be greater than 0 and at most 1"),
+        (["--max-step", "x"], "not a valid float"),
+        (["--method", "magic"], "table"),
+        (["--method", "closed-form", "--table", "t.nc"], "--table is of no use"),
+    ],
+)
+def test_wrong_options_are_refused_before_anything_is_computed(fcm, scene, tmp_path, monkeypatch, args, said):
+    (tmp_path / "folder").mkdir()
+    monkeypatch.setattr("fcm.response.trace", refuse)
+    done = fcm("respond", scene, *args)
+    assert done.code == 2 and done.out == "" and said in done.err
+    assert files(tmp_path) == ["folder", "scene.toml"]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "modal"),
+        ("[modal", "scene.toml"),
+        ("\x00\xff", "scene.toml"),
+        ("[[contact]]\nmu = 'much'", "mu"),
+    ],
+)
+def test_a_wrong_scene_is_refused_and_nothing_written(fcm, scene, tmp_path, text, said):
+    scene.write_bytes(text.encode("latin-1"))
+    done = fcm("respond", scene, "-o", "a.nc", "--json")
+    assert done.code == 2 and done.out == "" and said in done.err and "Traceback" not in done.err
+    assert files(tmp_path) == ["scene.toml"]
+
+
+@pytest.mark.parametrize("name", ["no-such-scene", "no/such/scene.toml", ".", "", "a\nb"])
+def test_a_scene_that_is_not_there_is_wrong_input(fcm, name):
+    done = fcm("respond", name)
+    assert done.code == 2 and "Traceback" not in done.err and "defect" not in done.err
+
+
+@pytest.mark.parametrize("content", [None, b"", b"not a table", b"\x89HDF\r\n\x1a\n" + bytes(100)])
+def test_a_wrong_table_is_refused(fcm, scene, tmp_path, content):
+    if content is not None:
+        (tmp_path / "t.nc").write_bytes(content)
+    done = fcm("respond", scene, "--table", "t.nc")
+    assert done.code == 2 and "t.nc" in done.err and "Traceback" not in done.err
+
+
+def changed(monkeypatch, **changes):
+    """Let every curve come out of the solver with these attributes."""
+    real = response.trace
+
+    def trace(*args, **more):
+        result = real(*args, **more)
+        curves = [dataclasses.replace(curve, **changes) for curve in result.curves]
+        return dataclasses.replace(result, curves=curves)
+
+    monkeypatch.setattr(response, "trace", trace)
+
+
+def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path, monkeypatch):
+    changed(monkeypatch, complete=False, reason="stopped at 1.2 rad/s: the step became too short")
+    done = fcm("respond", scene, "-o", "a.nc")
+    assert done.code == 3
+    assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
+    assert "1 of 1 curves not complete" in done.err
+    assert files(tmp_path) == ["a.nc", "scene.toml"]
+
+
+def test_an_interrupted_run_says_so_and_leaves_nothing(scene, tmp_path):
+    code = (
+        "import os, signal, fcm.response\n"
+        "fcm.response.trace = lambda *a, **k: os.kill(os.getpid(), signal.SIGINT) or signal.pause()\n"
+        "from fcm.cli import main\n"
+        "main(['respond', 'scene.toml', '-o', 'a.nc'], prog_name='fcm')"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode == 3
+    assert done.stderr == "fcm: interrupted: the calculation was not completed\n"
+    assert files(tmp_path) == ["scene.toml"]
