@@ -46,7 +46,7 @@ class Addresses:
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
         else:
-            return key.startswith("modal.") and self.parts["modal"]["frequency"] is None
+            return key.startswith("modal.") and any(part is None for part in self.parts["modal"].values())
         return True
 
 

@@ -19,7 +19,7 @@ class SceneError(ValueError):
     """
 
     def __init__(self, source: str, mistakes: Iterable[str], count: int | None = None) -> None:
-        self.source = source
+        self.source = source if source.isprintable() else quoted(source)
         self.mistakes = tuple(mistakes)
         self.count = len(self.mistakes) if count is None else count
         super().__init__(self._message())
@@ -84,12 +84,18 @@ def choices(names: Iterable[str], most: int = 12) -> str:
     return ", ".join(quoted(name) for name in listed[:most]) + rest
 
 
-def quoted(text: object) -> str:
+def quoted(text: object, longest: int = LONGEST_SHOWN) -> str:
     """Text in double quotes, on one line, without control characters and not too long."""
     line = text if isinstance(text, str) else shown(text)
-    if len(line) > LONGEST_SHOWN:
-        line = line[:LONGEST_SHOWN] + "..."
+    if len(line) > longest:
+        line = line[:longest] + "..."
     return json.dumps(line, ensure_ascii=not line.isprintable())
+
+
+def bare(key: object) -> str:
+    """A key as a path shows it: in quotes when it is not a plain word."""
+    word = str(key)
+    return word if word.isidentifier() and len(word) <= LONGEST_SHOWN else quoted(word)
 
 
 def shown(value: object) -> str:

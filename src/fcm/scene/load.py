@@ -168,7 +168,7 @@ def _text(path: Path, source: str) -> str:
     except SceneError:
         raise
     except ValueError as error:  # a path with a null character
-        raise SceneError(quoted(source), [f"cannot be read: {error}"]) from None
+        raise SceneError(source, [f"cannot be read: {error}"]) from None
 
 
 def _not_there(path: str) -> str:

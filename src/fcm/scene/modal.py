@@ -28,18 +28,15 @@ def read_modal(top: Section, folder: Path, unit: str) -> dict[str, Any]:
     section.only(*KEYS, "file")
     frequency = section.vector("frequency", RULES["frequency"])
     dofs = _dofs(section)
-    shapes = _shapes(section, dofs)
     modes = len(frequency) if frequency is not None else None
     if frequency is not None and not modes:
         section.wrong("frequency", "is empty; there must be at least one mode")
-    if shapes is not None and modes is not None:
-        _same_count(section, "shapes", shapes, modes, _transposed(shapes, dofs, modes))
     return {
         "dofs": dofs,
         "mass": _per_mode(section, "mass", modes, default=1.0),
         "frequency": frequency,
         "damping": _per_mode(section, "damping", modes),
-        "shapes": shapes,
+        "shapes": _shapes(section, dofs, modes),
     }
 
 
@@ -101,41 +98,58 @@ def _per_mode(
     return vector
 
 
-def _shapes(section: Section, dofs: tuple[str, ...] | None) -> FloatArray | None:
+def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None) -> FloatArray | None:
     """The mode shapes, (mode, dof)."""
     if section.missing("shapes", "one list for each mode, one number in it for each of the dofs"):
         return None
     value = section.data["shapes"]
-    if not isinstance(value, list | tuple | np.ndarray) or not np.ndim(_first(value)):
+    if not _is_rows(value):
         section.wrong("shapes", f"must be a list of lists, one for each mode, is {kind(value)}")
         return None
     path, rule = section.at("shapes"), RULES["shapes"]
     rows = [section.numbers(row, f"{path}[{index}]", rule) for index, row in enumerate(value)]
     good = [row for row in rows if row is not None]
-    width = len(dofs) if dofs is not None else len(good[0]) if good else 0
+    if len(good) < len(rows):
+        return None
+    return np.array(good) if _right_size(section, good, dofs, modes) else None
+
+
+def _is_rows(value: Any) -> bool:
+    """Whether the shapes are rows at all: a list whose first item is a list."""
+    lists = (list, tuple, np.ndarray)
+    some = isinstance(value, lists) and getattr(value, "shape", None) != () and len(value) > 0
+    return some and isinstance(value[0], lists)
+
+
+def _right_size(
+    section: Section, rows: list[FloatArray], dofs: tuple[str, ...] | None, modes: int | None
+) -> bool:
+    """Whether there is a row for each mode, with a number for each dof."""
+    before = section.mistakes.count
+    width = len(rows[0]) if dofs is None else len(dofs)
+    if len(rows) == width != modes and all(len(row) == modes for row in rows):
+        what = (
+            f"has {len(rows)} rows of {_numbers(len(rows[0]))}, but there are {modes} modes and {width} dofs"
+        )
+        section.wrong("shapes", f"{what}: transpose it; shapes[i][j] is mode i at dofs[j]")
+        return False
     for index, row in enumerate(rows):
-        if row is not None and len(row) != width:
+        if len(row) != width:
             section.wrong(f"shapes[{index}]", f"has {_numbers(len(row))}, but there are {width} dofs")
-    same = len(good) == len(rows) and all(len(row) == width for row in good)
-    return np.array(good) if same else None
+    if modes is not None and len(rows) != modes:
+        section.wrong("shapes", f"has {_rows(len(rows))}, but modal.frequency has {modes}")
+    return section.mistakes.count == before
 
 
-def _first(value: Any) -> Any:
-    """The first row of the shapes, or a number when there is none."""
-    return value[0] if len(value) and isinstance(value[0], list | tuple | np.ndarray) else 0.0
-
-
-def _same_count(section: Section, key: str, values: FloatArray, modes: int, hint: str = "") -> None:
+def _same_count(section: Section, key: str, values: FloatArray, modes: int) -> None:
     """Note a length that is not the number of modes."""
     if len(values) != modes:
-        has = _numbers(len(values)) if values.ndim == 1 else f"{len(values)} shapes"
-        section.wrong(key, f"has {has}, but modal.frequency has {modes}{hint}")
-
-
-def _transposed(shapes: FloatArray, dofs: tuple[str, ...] | None, modes: int) -> str:
-    swapped = dofs is not None and shapes.shape == (len(dofs), modes)
-    return "; shapes[i][j] is mode i at dofs[j]: transpose it" if swapped else ""
+        section.wrong(key, f"has {_numbers(len(values))}, but modal.frequency has {modes}")
 
 
 def _numbers(count: int) -> str:
     return "1 number" if count == 1 else f"{count} numbers"
+
+
+def _rows(count: int) -> str:
+    return "1 row" if count == 1 else f"{count} rows"

@@ -11,6 +11,7 @@ import numpy as np
 from fcm.scene.errors import kind, quoted
 from fcm.scene.uff import read_uff
 
+LONGEST_PATH = 400  # characters of a path shown in a message
 ARRAYS = ("mass", "frequency", "damping", "shapes")
 
 
@@ -29,7 +30,9 @@ def read_modal_file(path: Path) -> dict[str, Any]:
         raise ModalFileError(f"{quoted(path.name)} cannot be read: a file of modes is {known}")
     try:
         if not path.is_file():
-            raise ModalFileError(f"{quoted(str(path))} is {'a folder' if path.is_dir() else 'not there'}")
+            raise ModalFileError(
+                f"{quoted(str(path), LONGEST_PATH)} is {'a folder' if path.is_dir() else 'not there'}"
+            )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found = reader(path)
@@ -37,12 +40,12 @@ def read_modal_file(path: Path) -> dict[str, Any]:
         raise
     except Exception as error:  # whatever a damaged file does to its reader, the file is at fault
         reason = str(error).partition("\n")[0] or type(error).__name__
-        raise ModalFileError(f"{quoted(str(path))} cannot be read: {reason[:200]}") from None
+        raise ModalFileError(f"{quoted(str(path), LONGEST_PATH)} cannot be read: {reason[:200]}") from None
     return {key: _plain(key, value) for key, value in found.items()}
 
 
 def _read_npz(path: Path) -> dict[str, Any]:
-    with np.load(path, allow_pickle=False) as archive:
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
         if not hasattr(archive, "files"):
             raise ModalFileError(f"{quoted(path.name)} holds a single array; write it with numpy.savez")
         return {key: archive[key] for key in ("dofs", *ARRAYS) if key in archive.files}

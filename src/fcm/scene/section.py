@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import Mistakes, choices, kind, quoted, shown
+from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import ANY, Rule, as_float
 
@@ -33,9 +33,7 @@ class Section:
         """Note every key that is not known."""
         for key in self.data:
             if key not in known:
-                bare = str(key) if str(key).isidentifier() else quoted(key)
-                free = [name for name in known if name not in self.data]
-                self.wrong(bare, "unknown key", str(key), free or known)
+                self.wrong(bare(key), "unknown key", str(key), known)
 
     def missing(self, key: str, right: str) -> bool:
         """Whether the key is missing, which is a mistake."""
@@ -145,7 +143,7 @@ class Section:
         return terms if self.mistakes.count == before else None
 
     def _weight(self, key: str, dof: object, item: object) -> float:
-        path = f"{self.at(key)}.{dof if str(dof).isidentifier() else quoted(dof)}"
+        path = f"{self.at(key)}.{bare(dof)}"
         if isinstance(item, Mapping):
             self.mistakes.add(path, "must be a number, is a table; put a name with a dot in quotes")
             return nan
