@@ -1,13 +1,14 @@
 """Swept keys of a scene: their values, where in the scene they go, and the curves they make.
 
-A key is the path of a number in the scene: "contact.shroud.n_0" (or "contact.0.n_0"), "force.u.amplitude" (or
-"force.0.amplitude"), "modal.damping" (every mode) or "modal.damping.0", "modal.shapes.0.u", and the weights of
-combinations, "contact.shroud.normal.v". Its values are a list; a range { from, to, count }, evenly spaced or with
-log = true; or draws { normal = [mean, deviation], count, seed } or { uniform = [low, high], count, seed }.
+A key is the path of a number in the scene: "contact.shroud.n_0" (or "contact.0.n_0"), "force.u.amplitude"
+(or "force.0.amplitude"), "modal.damping" (every mode) or "modal.damping.0", "modal.shapes.0.u", and the
+weights of combinations, "contact.shroud.normal.v". Its values are a list; a range { from, to, count },
+evenly spaced or with log = true; or draws { normal = [mean, deviation], count, seed } or { uniform = [low,
+high], count, seed }.
 
-Curves are the product of the keys, the last one fastest, except that keys drawn with the same count are drawn
-together: 1000 draws of two keys are 1000 curves. Draws depend on the seed (0 when not given) and on the key, so
-two keys with one seed are independent, and adding a key changes no other key's draws.
+Curves are the product of the keys, the last one fastest, except that keys drawn with the same count are
+drawn together: 1000 draws of two keys are 1000 curves. Draws depend on the seed (0 when not given) and on
+the key, so two keys with one seed are independent, and adding a key changes no other key's draws.
 """
 
 from __future__ import annotations
