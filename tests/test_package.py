@@ -1,0 +1,48 @@
+"""The wheel holds what the program needs beside its code."""
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    """The names in a wheel built from a copy, as a clean clone would give it."""
+    folder = tmp_path_factory.mktemp("package")
+    unwanted = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    for name in ("src", "tables"):
+        shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=unwanted)
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, folder)
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
+    done = subprocess.run(
+        [*pip, "--no-build-isolation", "--wheel-dir", "made", "."],
+        cwd=folder,
+        env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    (made,) = (folder / "made").iterdir()
+    with zipfile.ZipFile(made) as archive:
+        return {info.filename: info.file_size for info in archive.infolist()}
+
+
+def test_the_tables_and_scenes_are_in_it(wheel):
+    data = [path for folder in ("tables", "src/fcm/scenes") for path in (ROOT / folder).iterdir()]
+    assert len(data) >= 3
+    for path in data:
+        assert wheel[f"fcm/{path.parent.name}/{path.name}"] == path.stat().st_size
+
+
+def test_every_module_is_in_it(wheel):
+    modules = {str(path.relative_to(ROOT / "src")) for path in (ROOT / "src/fcm").rglob("*.py")}
+    assert modules <= set(wheel) and "fcm/py.typed" in wheel
+    assert not [name for name in wheel if name.startswith("tests")]

@@ -1,0 +1,107 @@
+"""README.md does what it says: every command of it is run, every number compared."""
+
+import doctest
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = ROOT / "README.md"
+SCENE = "shroud.toml"  # the name under which the README lets its scene be saved
+
+
+def blocks(kind):
+    """The fenced blocks of a kind, in their order."""
+    return re.findall(rf"^```{kind}\n(.*?)^```", README.read_text(encoding="utf-8"), re.M | re.S)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A new folder, as a reader has it who has saved the scene."""
+    folder = tmp_path_factory.mktemp("reader")
+    (scene,) = blocks("toml")
+    (folder / SCENE).write_text(scene, encoding="utf-8")
+    return folder
+
+
+def run(command, folder):
+    if command.startswith("make "):  # that the target exists; tests do not call what calls them
+        command, folder = command.replace("make ", "make -n ", 1), ROOT
+    scripts = sysconfig.get_path("scripts")
+    path = os.pathsep.join([scripts, os.environ["PATH"]])
+    return subprocess.run(
+        ["bash", "-euc", command],
+        cwd=folder,
+        env={**os.environ, "PATH": path},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+
+
+def commands():
+    lines = [line for block in blocks("sh") for line in block.splitlines()]
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def test_every_command_of_the_readme_runs(folder):
+    assert len(commands()) >= 5
+    for command in commands():
+        done = run(command, folder)
+        assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+    written = {path.name for path in folder.iterdir()}
+    named = {name for line in commands() for name in re.findall(r"(?:-o|--csv) (\S+)", line)}
+    assert named and written == {SCENE, *named}
+
+
+def test_the_output_shown_is_what_the_command_prints(folder):
+    (shown,) = blocks("text")
+    printed = run(next(line for line in commands() if line.startswith(f"fcm respond {SCENE}")), folder).stdout
+    assert printed.splitlines()[0] == shown.splitlines()[0]
+    assert [lasting(line) for line in printed.splitlines()[1:]] == [
+        lasting(line) for line in shown.splitlines()[1:]
+    ]
+
+
+def lasting(line):
+    """The cells of a curve's line without its points and its time, which may change."""
+    *peaks, _points, _seconds = re.split(r"  +", line.strip())[:7]
+    folds = line.split()[7:]
+    return [
+        pytest.approx(float(cell), rel=2e-5) if cell[0] in "-0123456789" else cell for cell in peaks + folds
+    ]
+
+
+def test_the_python_of_the_readme_prints_what_it_shows():
+    examples = doctest.DocTestParser().get_doctest(
+        "\n".join(blocks("pycon")), {}, "README.md", str(README), 0
+    )
+    assert len(examples.examples) >= 5
+    report = []
+    failed, _tried = doctest.DocTestRunner(verbose=False).run(examples, out=report.append)
+    assert failed == 0, "".join(report)
+
+
+def test_every_block_is_of_a_kind_that_is_tested():
+    kinds = re.findall(r"^```(\S+)$", README.read_text(encoding="utf-8"), re.M)
+    assert set(kinds) <= {"sh", "toml", "text", "pycon"}
+
+
+def test_files_that_the_readme_shows_exist():
+    shown = re.findall(r"!\[.*?\]\((.*?)\)", README.read_text(encoding="utf-8"))
+    assert shown and all((ROOT / name).is_file() for name in shown)
+
+
+def test_bundled_scenes_are_named():
+    text = README.read_text(encoding="utf-8")
+    assert all(f"`{path.stem}`" in text for path in (ROOT / "src/fcm/scenes").glob("*.toml"))
+
+
+def test_python_of_this_test_is_the_one_with_fcm():
+    assert Path(sysconfig.get_path("scripts"), "fcm").exists(), f"{sys.prefix} has no fcm"
