@@ -54,7 +54,7 @@ class Balance:
         scaled = self.group.force * np.asarray(load).reshape(-1, 1)
         external = to_ports(self.group, compliance * scaled)
         d_external = to_ports(self.group, slope * scaled)
-        flat = force.reshape(curves, -1)
+        flat = force.reshape(curves, contacts * FORCES)
         matrix = self._real_matrix(G)
         residual = x + (matrix @ flat[..., None])[..., 0] - _real_vector(external, contacts)
         by_omega = self._harmonic_force(dG, force) - _real_vector(d_external, contacts)
@@ -94,13 +94,13 @@ class Balance:
     def _harmonic_force(self, G: AnyArray, force: FloatArray) -> FloatArray:
         """G times the fundamental of the forces, as unknowns; zero in the means."""
         amplitude = force[..., 0:4:2] + 1j * force[..., 1:4:2]
-        flat = amplitude.reshape(amplitude.shape[0], -1, 1)
+        flat = amplitude.reshape(amplitude.shape[0], G.shape[-1], 1)
         return _real_vector((G @ flat)[..., 0], self.group.contacts)
 
 
 def _real_vector(ports: AnyArray, contacts: int) -> FloatArray:
     """Complex ports (curve, 2 contacts) as unknowns (curve, 5 contacts) with zero means."""
     out = np.zeros((ports.shape[0], contacts, UNKNOWNS))
-    pairs = ports.reshape(-1, contacts, 2)
+    pairs = ports.reshape(ports.shape[0], contacts, 2)
     out[..., 0:4:2], out[..., 1:4:2] = pairs.real, pairs.imag
     return out.reshape(ports.shape[0], contacts * UNKNOWNS)

@@ -6,13 +6,13 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
-from fcm.response.law import FORCES, UNKNOWNS
+from fcm.response.law import UNKNOWNS
 from fcm.response.structure import AnyArray, ComplexArray, modal_compliance
 
 
 def displacements(balance: Balance, x: FloatArray, omega: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Amplitude of the fundamental, x(t) = Im(X exp(i omega t)), and mean; both (point, dof)."""
-    force, _ = balance.law.forces(x.reshape(x.shape[0], -1, UNKNOWNS))
+    force, _ = balance.law.forces(x.reshape(x.shape[0], balance.group.contacts, UNKNOWNS))
     compliance, _ = modal_compliance(balance.group, omega)
     fundamental, mean = _modal_contact_force(balance, force)
     group = balance.group
@@ -21,20 +21,29 @@ def displacements(balance: Balance, x: FloatArray, omega: FloatArray) -> tuple[C
     return _to_dofs(balance, amplitude), _to_dofs(balance, static)
 
 
-def amplitude_growth(balance: Balance, z: FloatArray, direction: FloatArray) -> FloatArray:
-    """Rate of log amplitude of each degree of freedom along a curve, (point, dof).
+def displacement_rates(
+    balance: Balance, z: FloatArray, direction: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Amplitude of the fundamental and its rate along a curve, (point, dof).
 
     z and direction (point, unknown + 1) are points and tangents in the unknowns' own units.
     """
     x, omega = z[:, :-1], z[:, -1]
-    force, tangent = balance.law.forces(x.reshape(x.shape[0], -1, UNKNOWNS))
-    dx = direction[:, :-1].reshape(x.shape[0], -1, UNKNOWNS, 1)
+    blocks = (x.shape[0], balance.group.contacts, UNKNOWNS)
+    force, tangent = balance.law.forces(x.reshape(blocks))
+    d_force = (tangent @ direction[:, :-1].reshape(*blocks, 1))[..., 0]
     compliance, slope = modal_compliance(balance.group, omega)
     fundamental, _ = _modal_contact_force(balance, force)
-    d_fundamental, _ = _modal_contact_force(balance, (tangent @ dx)[..., 0])
+    d_fundamental, _ = _modal_contact_force(balance, d_force)
     load = balance.group.force - fundamental
     X = _to_dofs(balance, compliance * load)
     dX = _to_dofs(balance, slope * direction[:, -1:] * load - compliance * d_fundamental)
+    return X, dX
+
+
+def amplitude_growth(balance: Balance, z: FloatArray, direction: FloatArray) -> FloatArray:
+    """Rate of log amplitude of each degree of freedom along a curve, (point, dof)."""
+    X, dX = displacement_rates(balance, z, direction)
     size = np.abs(X)
     safe = np.where(size > 0.0, size, 1.0)
     return np.where(size > 0.0, (np.conj(X / safe) * dX).real / safe, 0.0)
@@ -42,12 +51,10 @@ def amplitude_growth(balance: Balance, z: FloatArray, direction: FloatArray) -> 
 
 def _modal_contact_force(balance: Balance, force: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Contact forces (point, contact, 6) on the modes: fundamental and mean, (point, mode)."""
-    points = force.shape[0]
-    pairs = (force[..., 0:4:2] + 1j * force[..., 1:4:2]).reshape(points, -1)
-    assert force.shape[-1] == FORCES
-    ports = balance.group.ports
+    points, ports = force.shape[0], balance.group.ports
+    pairs = (force[..., 0:4:2] + 1j * force[..., 1:4:2]).reshape(points, ports.shape[-1])
     fundamental: AnyArray = (ports @ pairs[..., None])[..., 0]
-    mean = (ports @ force[..., 4:6].reshape(points, -1, 1))[..., 0]
+    mean = (ports @ force[..., 4:6].reshape(points, ports.shape[-1], 1))[..., 0]
     return fundamental, mean
 
 

@@ -56,22 +56,27 @@ def locate(balance: Balance, segments: Segments, rate: Rate, extent: FloatArray)
     row /= np.where(length > 0.0, length, 1.0)
     low, high = np.zeros(z.shape[0]), np.ones(z.shape[0])
     f_low, f_high = segments.rate_start.copy(), segments.rate_end.copy()
-    open_ = np.ones(z.shape[0], dtype=bool)
+    missed = np.zeros(z.shape[0], dtype=bool)
     for count in range(MAX_HALVINGS):
-        share = _next_share(low, high, f_low, f_high, count)
-        new = correct(
-            equations, segments.start + share[:, None] * chord, scale, row, close=1e-8, iterations=12
-        )
+        share = np.where(missed, _any_share(low, high, count), _next_share(low, high, f_low, f_high, count))
+        guess = segments.start + share[:, None] * chord
+        new = correct(equations, guess, scale, row, close=1e-12, iterations=12)
         f = rate(equations, new.z, scale * new.tangent, segments.which)
-        use = open_ & new.converged
+        narrow = (high - low) * length[:, 0] <= WIDTH
+        use = new.converged & ~narrow
+        missed = ~new.converged
         z[use] = new.z[use]
         above = np.sign(f) == np.sign(segments.rate_start)
         low, f_low = np.where(use & above, share, low), np.where(use & above, f, f_low)
         high, f_high = np.where(use & ~above, share, high), np.where(use & ~above, f, f_high)
-        open_ = use & ((high - low) * length[:, 0] > WIDTH) & (f != 0.0)
-        if not open_.any():
+        if np.all(narrow | (use & (f == 0.0))):
             break
     return z
+
+
+def _any_share(low: FloatArray, high: FloatArray, count: int) -> FloatArray:
+    """Where no point was found: elsewhere in the bracket, by the golden ratio."""
+    return low + (high - low) * ((count + 1) * 0.6180339887498949 % 1.0)
 
 
 def _next_share(

@@ -25,21 +25,25 @@ from fcm.response.structure import IntArray
 BoolArray = npt.NDArray[np.bool_]
 
 MAX_ITERATIONS = 7  # Newton steps before a predictor is judged too far away
-CLOSE = 3e-6  # a Newton step this short leaves an error of about its square
+CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every point is corrected later
 SAME_DIRECTION = 0.94  # cosine: a smooth step turns by less than 20 degrees
 GENTLE_TURN = 0.25  # [rad] the turn that the step size aims at
 CORNER = 1e-4  # a step this short may turn by any angle below a right angle: it crosses a corner
 POINT = 1e-7  # a corner known to this is a point from which the curve may turn back
+CORNER_TRIES = 16  # directions around a corner in which its regimes are looked for
 STRAIGHT = 0.999  # cosine above which a change of orientation is a branch point and not a corner
 FIRST_STEP = 1e-3
 LONGEST_PATH = 20000  # steps
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
-RUNNING, COMPLETE, RETURNED, STALLED, TOO_LONG = range(5)
+BOUNDLESS = 1e12  # times the amplitude at the start: an undamped resonance
+
+RUNNING, COMPLETE, RETURNED, STALLED, TOO_LONG, UNBOUNDED = range(6)
 REASONS = {
     COMPLETE: "",
     RETURNED: "the curve came back to the frequency where it began; other branches may lie beyond",
     STALLED: "no further point could be found; try a smaller --max-step or another range",
+    UNBOUNDED: "the amplitude grows without limit, at a resonance that nothing damps; add damping",
     TOO_LONG: f"the curve did not leave the range within {LONGEST_PATH} steps; try a larger --max-step",
 }
 
@@ -116,7 +120,7 @@ def solve_each(matrix: FloatArray, right: FloatArray) -> FloatArray:
     finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2))
     try:
         if finite.all():
-            return np.linalg.solve(matrix, right)
+            return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     except np.linalg.LinAlgError:
         pass
     out = np.full(right.shape, np.nan)
@@ -143,15 +147,20 @@ def correct(
     z: FloatArray,
     scale: FloatArray,
     row: FloatArray,
-    close: float = CLOSE,
+    close: FloatArray | float = CLOSE,
     iterations: int = MAX_ITERATIONS,
+    reach: FloatArray | float = 1.0,
 ) -> Newton:
-    """Newton's method in the plane through z with normal row (scaled coordinates)."""
+    """Newton's method in the plane through z with normal row (scaled coordinates).
+
+    Converged when the error that remains, estimated as length (length / length before), is below close;
+    reach is the length that stands before the first step.
+    """
     z = z.copy()
     size = z.shape[1]
     right = np.zeros((z.shape[0], size, 2))
     right[:, -1, 1] = 1.0
-    before = np.full(z.shape[0], np.inf)
+    before = np.broadcast_to(reach, (z.shape[0],))
     done = np.zeros(z.shape[0], dtype=bool)
     matrix = np.empty((z.shape[0], size, size))
     tangent = row.copy()
@@ -163,9 +172,8 @@ def correct(
         tangent = np.where(done[:, None], tangent, solution[:, :, 1])
         z += scale * change
         length = np.sqrt((change * change).sum(axis=1))
-        # quadratic convergence: the next step would be about length * (length / before)^2 at most
-        done |= (length < close) & (length < 0.5 * before)
-        done |= length < 1e-3 * close
+        done |= (length * length < close * before) & (length < 0.1 * before)
+        done |= length < 1e-2 * close
         before = length
         if done.all() or not np.isfinite(length).any():
             break
@@ -212,6 +220,7 @@ class _Follower:
         self.status = np.full(curves, RUNNING)
         self.last_step = np.zeros(curves)
         self.furthest = z[:, -1].copy()
+        self.at_start = amplitudes(z[:, :-1]).max(axis=1, initial=0.0)
         self.points: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self.ticks = 0
         self._begin(z)
@@ -249,7 +258,8 @@ class _Follower:
         front = self.front
         h = front.step[:, None]
         guess = front.z + front.scale * (h * front.tangent + 0.5 * h * h * front.bend)
-        new = correct(self.equations, guess, front.scale, front.tangent)
+        close = np.minimum(CLOSE, 1e-4 * front.step)
+        new = correct(self.equations, guess, front.scale, front.tangent, close, reach=front.step)
         self.ticks += 1
         turn = (new.tangent * front.tangent).sum(axis=1)
         missed = np.sqrt((((new.z - guess) / front.scale) ** 2).sum(axis=1)) / front.step
@@ -271,6 +281,7 @@ class _Follower:
         at_top = front.z[:, -1] >= self.high[front.curve]
         status[landed] = np.where(at_top[landed], COMPLETE, RETURNED)
         status[stuck & ~turned] = STALLED
+        status[front.largest.max(axis=1, initial=0.0) > BOUNDLESS * self.at_start[front.curve]] = UNBOUNDED
         self._retire(status)
 
     def _advance(self, accepted: BoolArray, new: Newton, turn: FloatArray, missed: FloatArray) -> None:
@@ -324,28 +335,40 @@ class _Follower:
         return landed
 
     def _turn_corners(self, stuck: BoolArray) -> BoolArray:
-        """At a corner known to within POINT: take the direction of the curve beyond it."""
-        front = self.front
-        some = np.flatnonzero(stuck)
-        equations = self.equations.take(some)
-        scale, z = front.scale[some], front.z[some]
-        done = np.zeros(some.size, dtype=bool)
-        for reach in (10.0, 100.0):
-            beyond = z + scale * (reach * POINT) * front.tangent[some]
-            tangent = oriented_tangent(equations, beyond, scale, front.tangent[some], front.orientation[some])
-            guess = z + scale * (reach * POINT) * tangent
-            new = correct(equations, guess, scale, tangent)
-            near = np.sqrt((((new.z - guess) / scale) ** 2).sum(axis=1)) < 0.9 * reach * POINT
-            same = (new.tangent * tangent).sum(axis=1) > SAME_DIRECTION
-            ok = ~done & new.converged & near & same & (new.determinant == front.orientation[some])
-            front.z[some[ok]] = new.z[ok]
-            front.tangent[some[ok]] = new.tangent[ok]
-            front.bend[some[ok]] = 0.0
-            front.step[some[ok]] = reach * POINT
-            done |= ok
+        """Leave a corner, known to within POINT, in a direction that may point backwards."""
         turned = np.zeros_like(stuck)
-        turned[some[done]] = True
+        for i in np.flatnonzero(stuck):
+            turned[i] = self._turn_corner(int(i))
         return turned
+
+    def _turn_corner(self, i: int) -> bool:
+        """Try the directions of the curve in the regimes around the corner, at growing distances."""
+        front = self.front
+        directions = np.random.default_rng(0).normal(size=(CORNER_TRIES, front.z.shape[1]))
+        directions[0] = front.tangent[i]
+        directions /= np.sqrt((directions**2).sum(axis=1, keepdims=True))
+        equations = self.equations.take(np.full(CORNER_TRIES, i))
+        scale = np.repeat(front.scale[i : i + 1], CORNER_TRIES, axis=0)
+        orientation = np.full(CORNER_TRIES, front.orientation[i])
+        for reach in POINT * np.array([1e1, 1e2, 1e3, 1e4]):
+            around = front.z[i] + reach * scale * directions
+            tangent = oriented_tangent(equations, around, scale, directions, orientation)
+            guess = front.z[i] + reach * scale * tangent
+            new = correct(equations, guess, scale, tangent, 1e-3 * reach, reach=reach)
+            step = (new.z - front.z[i]) / scale
+            length = np.sqrt((step**2).sum(axis=1))
+            ok = new.converged & (new.determinant == orientation) & (length < 3.0 * reach)
+            ok &= (new.tangent * step).sum(axis=1) > 0.5 * length  # the curve leads away from the corner
+            ok &= step @ front.tangent[i] > -0.99 * length  # and is not the one that led to it
+            if ok.any():
+                self._leave(i, new, int(np.argmax(ok)), reach)
+                return True
+        return False
+
+    def _leave(self, i: int, new: Newton, chosen: int, step: float) -> None:
+        front = self.front
+        front.z[i], front.tangent[i] = new.z[chosen], new.tangent[chosen]
+        front.bend[i], front.step[i] = 0.0, step
 
     def _record(self, which: BoolArray) -> None:
         front = self.front

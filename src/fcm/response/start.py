@@ -12,7 +12,7 @@ from fcm.response.path import COMPLETE, BoolArray, amplitudes, correct, follow, 
 from fcm.response.structure import IntArray
 
 TRIES = 25  # Newton steps from a linear response
-WEAK = 1e-3  # fraction of the load at which a contact is nearly linear
+WEAK = (1e-3, 1e-6, 1e-9)  # fractions of the load at which contacts are nearly linear
 LOAD_STEP = 0.1
 
 
@@ -46,9 +46,10 @@ def starting_points(balance: Balance, omega: FloatArray) -> tuple[FloatArray, Bo
             some = balance.take(left)
             guess = some.linear(omega[left], stuck[left].astype(np.float64))
             x[left], found[left] = _at_level(some, guess, omega[left])
-    left = np.flatnonzero(~found)
-    if left.size:
-        x[left], found[left] = _raise_load(balance.take(left), omega[left], preloaded[left])
+    for weak in WEAK:
+        left = np.flatnonzero(~found)
+        if left.size:
+            x[left], found[left] = _raise_load(balance.take(left), omega[left], preloaded[left], weak)
     return x, found
 
 
@@ -64,10 +65,12 @@ def _at_level(
     return end.z[:, :-1], end.converged
 
 
-def _raise_load(balance: Balance, omega: FloatArray, preloaded: BoolArray) -> tuple[FloatArray, BoolArray]:
+def _raise_load(
+    balance: Balance, omega: FloatArray, preloaded: BoolArray, fraction: float
+) -> tuple[FloatArray, BoolArray]:
     equations = _UnderLoad(balance, omega)
-    weak = np.full(omega.size, WEAK)
-    x = WEAK * balance.linear(omega, preloaded.astype(np.float64))
+    weak = np.full(omega.size, fraction)
+    x = fraction * balance.linear(omega, preloaded.astype(np.float64))
     x, started = _at_level(equations, x, weak)
     some = np.flatnonzero(started)
     found = np.zeros(omega.size, dtype=bool)

@@ -8,13 +8,13 @@ x(t) = Im(X exp(i omega t)), so that sin(omega t) is 1 and cos(omega t) is i.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import Contact, FloatArray, Scene
 
 AnyArray = npt.NDArray[Any]  # real or complex
 ComplexArray = npt.NDArray[np.complex128]
@@ -72,6 +72,14 @@ def _stack(parts: list[AnyArray]) -> AnyArray:
     if all(part is first or np.array_equal(part, first) for part in parts):
         return first[None]
     return np.stack(parts)
+
+
+def with_contact(scene: Scene) -> Scene:
+    """The scene; one without contacts gets one that carries nothing, for the path to follow."""
+    if scene.contacts:
+        return scene
+    along = np.sum([np.abs(force.direction) for force in scene.forces], axis=0)
+    return replace(scene, contacts=(Contact("", along, along, mu=0.0, k_u=0.0, k_v=0.0, n_0=0.0),))
 
 
 def _ports(scene: Scene) -> FloatArray:

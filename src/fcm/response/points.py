@@ -1,0 +1,115 @@
+"""Points of curves made exact: corrected with the closed form, and more where the response needs them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.balance import Balance
+from fcm.response.displacement import displacement_rates, displacements
+from fcm.response.path import Trace, amplitudes, correct, scales
+from fcm.response.structure import AnyArray, IntArray
+
+EXACT = 1e-13  # estimated error of a corrected point, relative
+ITERATIONS = 12
+NEARLY_HIGHEST = 0.7  # a maximum between points may exceed them by this factor
+FINE = 0.08  # distance of points near a summit, so that no maximum hides between two of them
+CHANGE = 0.2  # greatest relative change of a degree of freedom between points
+FLOOR = 0.1  # of its greatest amplitude: below this a change is not followed
+SHORTEST = 1e-6  # arc below which nothing is cut
+MOST_PIECES, ROUNDS = 8, 6
+
+
+@dataclass
+class Points:
+    """Points of all curves in order along each."""
+
+    curve: IntArray  # (point,)
+    z: FloatArray  # (point, unknown + 1), the frequency last
+    direction: FloatArray  # (point, unknown + 1) along the curve
+    shift: FloatArray  # (point,) relative, by the correction; NaN where it failed and the point stayed
+
+
+def corrected(exact: Balance, path: Trace) -> Points:
+    """Every point corrected with the closed form along the normal of its curve."""
+    x, extent = path.z[:, :-1], _extent(exact, path.curve)
+    scale = scales(x, amplitudes(x), extent)
+    row = path.direction / scale
+    row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
+    balance = exact.take(path.curve)
+    new = correct(balance, path.z, scale, row, EXACT, ITERATIONS)
+    kept = new.converged[:, None]
+    z = np.where(kept, new.z, path.z)
+    before, _ = displacements(balance, path.z[:, :-1], path.z[:, -1])
+    after, _ = displacements(balance, z[:, :-1], z[:, -1])
+    size = np.abs(after).max(axis=1, initial=0.0)
+    shift = np.abs(after - before).max(axis=1, initial=0.0) / np.where(size > 0.0, size, 1.0)
+    direction = np.where(kept, scale * new.tangent, path.direction)
+    return Points(path.curve, z, direction, np.where(new.converged, shift, np.nan))
+
+
+def refined(exact: Balance, points: Points) -> Points:
+    """More points where the contacts hardly move but some degree of freedom changes much, and at summits."""
+    for _ in range(ROUNDS):
+        pieces = _pieces(exact, points)
+        if not np.any(pieces > 1):
+            break
+        points = _subdivided(exact, points, pieces)
+    return points
+
+
+def _pieces(exact: Balance, points: Points) -> IntArray:
+    """Into how many pieces each segment between neighbouring points is to be cut, (point - 1,)."""
+    if points.curve.size < 2:
+        return np.ones(0, dtype=np.intp)
+    X, dX = displacement_rates(exact.take(points.curve), points.z, points.direction)
+    size = np.abs(X)
+    highest = np.zeros((points.curve.max() + 1, size.shape[1]))
+    np.maximum.at(highest, points.curve, size)
+    highest = highest[points.curve]
+    x = points.z[:, :-1]
+    scale = scales(x, amplitudes(x), _extent(exact, points.curve))
+    arc = np.sqrt(((np.diff(points.z, axis=0) / scale[:-1]) ** 2).sum(axis=1))
+    speed = np.sqrt(((points.direction / scale) ** 2).sum(axis=1))[:, None]
+    unit = np.maximum(size, FLOOR * highest)
+    unit = np.where(unit > 0.0, unit, 1.0)
+    rate = np.max(np.abs(dX) / (unit * speed), axis=1)  # relative change of a degree of freedom per arc
+    jump = np.max(np.abs(np.diff(X, axis=0)) / np.maximum(unit[1:], unit[:-1]), axis=1)
+    change = np.maximum(jump, arc * np.maximum(rate[1:], rate[:-1]))
+    high = np.any(size > NEARLY_HIGHEST * highest, axis=1)
+    finer = np.maximum(change / CHANGE, np.where(high[1:] | high[:-1], arc / FINE, 0.0))
+    finer = np.where((points.curve[1:] == points.curve[:-1]) & (arc > SHORTEST), finer, 1.0)
+    return np.ceil(np.clip(finer, 1.0, MOST_PIECES)).astype(np.intp)
+
+
+def _subdivided(exact: Balance, points: Points, pieces: IntArray) -> Points:
+    at = np.repeat(np.arange(pieces.size), pieces - 1)
+    number = np.arange(at.size) - np.repeat(np.cumsum(pieces - 1) - (pieces - 1), pieces - 1) + 1
+    share = (number / pieces[at])[:, None]
+    curve, start = points.curve[at], points.z[at]
+    chord = points.z[at + 1] - start
+    scale = scales(start[:, :-1], amplitudes(start[:, :-1]), _extent(exact, curve))
+    row = chord / scale
+    row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
+    new = correct(exact.take(curve), start + share * chord, scale, row, EXACT, ITERATIONS)
+    ok = new.converged
+    order = np.argsort(np.concatenate((np.arange(points.curve.size), (at + share[:, 0])[ok])))
+
+    def merged(old: AnyArray, extra: AnyArray) -> AnyArray:
+        return np.concatenate((old, extra[ok]))[order]
+
+    return Points(
+        merged(points.curve, curve),
+        merged(points.z, new.z),
+        merged(points.direction, scale * new.tangent),
+        # these never saw the table; the error that its neighbours would have had
+        merged(points.shift, np.maximum(points.shift[at], points.shift[at + 1])),
+    )
+
+
+def _extent(exact: Balance, curve: IntArray) -> FloatArray:
+    """Length of the frequency range of each point's curve."""
+    extent = exact.group.high - exact.group.low
+    return np.broadcast_to(extent, (curve.size,)) if extent.size == 1 else extent[curve]
