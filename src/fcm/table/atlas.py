@@ -13,38 +13,30 @@ across n0 = -b, b and b + E says that dG/du = 0 there. Where F is not smooth the
 
 * b -> 0 and b -> infinity, expansions in sqrt(b) and 1/b: s = 4/pi arctan(sqrt(b)) - 1;
 * b = 1 with phi = 0 or pi, where ell_1 or ell_2 vanishes and F is a cone in (b - 1, sin(phi)): x turns from s to
-  its square root there, over a width proportional to sin(phi); z gathers near 0 and pi;
+  its cube root there, over a width proportional to sin(phi); z gathers near 0 and pi;
 * b -> infinity with n0 -> b, a cone in (1/b, delta): u turns from delta to its square root over a width 1/(1 + b).
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-FOLD_Z = 1.55  # z gathers near phi = 0, pi: 2 phi / pi - 1 = sin(FOLD_Z (2 z - 1)) / sin(FOLD_Z)
+FOLD_Z = 1.555  # z gathers near phi = 0, pi: 2 phi / pi - 1 = sin(FOLD_Z (2 z - 1)) / sin(FOLD_Z)
 FOLD_U = 1.2  # the same towards theta_1 = 0
-CONE = 0.25  # (width of the cone at b = 1)^2 is CONE (sin(phi)^2 + TIP)
+CONE = 0.1  # (width of the cone at b = 1)^2 is CONE (sin(phi)^2 + TIP)
 TIP = 1e-8
 LARGEST_B = 1e8  # beyond, G has reached its limit
 HUGE_B = 1e150  # beyond, ell_1 and ell_2 would overflow
+NEWTON_STEPS = 60  # the first ones gain a third only
 NEAR = 1e-14  # a u this close to its end is moved away, so that dG/du over the vanishing slope is defined
 
 
-class Geometry(NamedTuple):
-    """Amplitudes of (A9) less b, the width of the slip regime, with their derivatives by b and phi."""
-
-    low: FloatArray  # ell_1 - b
-    high: FloatArray  # ell_2 - b
-    width: FloatArray  # E = (ell_1 + ell_2) / 2 - b, without cancellation
-    ell_1_b: FloatArray
-    ell_1_phi: FloatArray
-    ell_2_b: FloatArray
-    ell_2_phi: FloatArray
 
 
 class Phase(NamedTuple):
@@ -58,50 +50,59 @@ class Phase(NamedTuple):
 
     @classmethod
     def of(cls, phi: FloatArray) -> Phase:
-        sin_half, cos_half = np.sin(0.5 * phi), np.cos(0.5 * phi)
-        return cls(
-            phi,
-            sin_half,
-            cos_half,
-            2.0 * sin_half * cos_half,
-            (cos_half - sin_half) * (cos_half + sin_half),
-        )
+        half = 0.5 * phi
+        sin_half, cos_half = np.sin(half), np.cos(half)
+        cos = (cos_half - sin_half) * (cos_half + sin_half)
+        return cls(phi, sin_half, cos_half, np.sin(phi), cos)
+
+    def at(self, chosen: Any) -> Phase:
+        """Some of them."""
+        return Phase(*(field[chosen] for field in self))
+
+
+class Geometry(NamedTuple):
+    """Amplitudes of (A9) and the width of the slip regime."""
+
+    b: FloatArray  # at most HUGE_B
+    ell_1: FloatArray
+    ell_2: FloatArray
+    low: FloatArray  # ell_1 - b
+    high: FloatArray  # ell_2 - b
+    width: FloatArray  # E = (ell_1 + ell_2) / 2 - b
+
+    def slopes(self, phase: Phase) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Derivatives of ell_1 and ell_2 by b, then by phi."""
+        safe_1, safe_2 = np.maximum(self.ell_1, 1e-300), np.maximum(self.ell_2, 1e-300)
+        side = self.b * phase.sin
+        return (self.b - phase.cos) / safe_1, (self.b + phase.cos) / safe_2, side / safe_1, -side / safe_2
 
 
 def fold(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
     """phi modulo pi in [0, pi], and the sign that F_b takes with it."""
-    turns = np.floor(phi / np.pi)
-    return np.minimum(np.maximum(phi - turns * np.pi, 0.0), np.pi), 1.0 - 2.0 * np.mod(turns, 2.0)
+    turn = np.remainder(phi, 2.0 * np.pi)
+    upper = (turn >= np.pi).astype(np.float64)
+    return turn - np.pi * upper, 1.0 - 2.0 * upper
 
 
 def geometry(b_bar: FloatArray, phase: Phase) -> Geometry:
-    """ell_1, ell_2 of (A9) and the width E of the slip regime; relative accuracy kept where E is small."""
+    """ell_1, ell_2 of (A9), and E with full relative accuracy however small it is."""
     b = np.minimum(b_bar, HUGE_B)
     gap, root = b - 1.0, 2.0 * np.sqrt(b)
     ell_1, ell_2 = np.hypot(gap, root * phase.sin_half), np.hypot(gap, root * phase.cos_half)
-    product, twice, side = ell_1 * ell_2, 2.0 * b * phase.cos, b * phase.sin
-    square = np.abs(gap) * (b + 1.0)
-    total = product + square
-    # ell_1 ell_2 + 1 - b^2, for b > 1 as a quotient
-    part = np.where(gap > 0.0, 4.0 * side * side / np.where(total > 0.0, total, 1.0), total)
-    safe_1, safe_2 = np.where(ell_1 > 0.0, ell_1, 1.0), np.where(ell_2 > 0.0, ell_2, 1.0)
-    return Geometry(
-        low=(1.0 - twice) / (ell_1 + b),
-        high=(1.0 + twice) / (ell_2 + b),
-        width=part / (ell_1 + ell_2 + 2.0 * b),
-        ell_1_b=(b - phase.cos) / safe_1,
-        ell_1_phi=side / safe_1,
-        ell_2_b=(b + phase.cos) / safe_2,
-        ell_2_phi=-side / safe_2,
-    )
+    twice, side = 2.0 * b * phase.cos, 2.0 * b * phase.sin
+    sum_1, sum_2 = ell_1 + b, ell_2 + b
+    # E (ell_1 + ell_2 + 2 b) = ell_1 ell_2 + 1 - b^2, for b > 1 as a quotient
+    total = ell_1 * ell_2 + np.abs(gap) * (b + 1.0)
+    part = np.where(gap > 0.0, side * side / np.maximum(total, 1e-300), total)
+    return Geometry(b, ell_1, ell_2, (1.0 - twice) / sum_1, (1.0 + twice) / sum_2, part / (sum_1 + sum_2))
 
 
 def u_separation(delta: FloatArray, b_bar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """u of the separation chart, 0 at n0 = b and 1 at n0 = -b, and its derivatives by delta and b."""
     layer = 1.0 / (1.0 + b_bar)
     near, far = 1.0 / (delta + layer), 1.0 / (np.pi + layer)
-    ratio = np.sqrt(near / far) * (np.sin(FOLD_U) / np.pi)
-    sine = np.minimum(delta * ratio, np.sin(FOLD_U))
+    ratio = np.sqrt(near / far) * (math.sin(FOLD_U) / np.pi)
+    sine = delta * ratio
     slope = 1.0 / (FOLD_U * np.sqrt(1.0 - sine * sine))
     by_delta = slope * ratio * (1.0 - 0.5 * delta * near)
     by_b = slope * sine * 0.5 * (near - far) * layer * layer
@@ -133,31 +134,32 @@ def x_variation(b_bar: FloatArray, phase: Phase) -> tuple[FloatArray, FloatArray
     s = np.arctan(root) * (4.0 / np.pi) - 1.0
     cone = CONE * (phase.sin * phase.sin + TIP)
     square = s * s
-    inverse = 1.0 / (square + cone)
-    half = 0.5 * np.sqrt(np.sqrt((1.0 + cone) * inverse))
-    x = s * half + 0.5
-    by_s = half * (1.0 - 0.5 * square * inverse)
-    by_cone = 0.25 * s * half * (1.0 / (1.0 + cone) - inverse)
-    return x, by_s * (2.0 / np.pi) / (1.0 + root * root), by_cone * (2.0 * CONE) * phase.sin * phase.cos
+    inverse, other = 1.0 / (square + cone), 1.0 / (1.0 + cone)
+    half = 0.5 * np.cbrt(inverse / other)
+    moved = s * half
+    by_s = half * (1.0 - square * inverse * (2.0 / 3.0)) * (2.0 / np.pi)
+    by_cone = moved * (other - inverse) * (2.0 * CONE / 3.0)
+    return moved + 0.5, by_s / (1.0 + root * root), by_cone * phase.sin * phase.cos
 
 
 def b_variation(x: FloatArray, phi: FloatArray) -> FloatArray:
-    """Inverse of `x_variation`, infinity replaced by LARGEST_B."""
+    """Inverse of `x_variation` by Newton's method, infinity replaced by LARGEST_B."""
     w = 2.0 * x - 1.0
     cone = CONE * (np.sin(phi) ** 2 + TIP)
-    fourth = w**4 / (1.0 + cone)
-    square = np.minimum(0.5 * (fourth + np.sqrt(fourth * (fourth + 4.0 * cone))), 1.0)
-    s = np.sign(w) * np.sqrt(square)
+    cube = np.abs(w) ** 3 / (1.0 + cone)  # |s|^3 = cube (s^2 + cone); convex above the root, so 1 is a start
+    s = np.ones_like(cube)
+    for _ in range(NEWTON_STEPS):
+        s = s - ((s - cube) * s * s - cube * cone) / np.maximum((3.0 * s - 2.0 * cube) * s, 1e-300)
     limit = 4.0 / np.pi * np.arctan(np.sqrt(LARGEST_B)) - 1.0
-    return np.tan(0.25 * np.pi * (np.minimum(s, limit) + 1.0)) ** 2
+    return np.tan(0.25 * np.pi * (np.minimum(np.sign(w) * s, limit) + 1.0)) ** 2
 
 
 def z_phase(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
     """z in [0, 1] and dz/dphi."""
-    sine = (phi * (2.0 / np.pi) - 1.0) * np.sin(FOLD_Z)
-    return np.arcsin(sine) * (0.5 / FOLD_Z) + 0.5, (np.sin(FOLD_Z) / (np.pi * FOLD_Z)) / np.sqrt(
-        1.0 - sine * sine
-    )
+    height = math.sin(FOLD_Z)
+    sine = phi * (2.0 * height / np.pi) - height
+    slope = (height / (np.pi * FOLD_Z)) / np.sqrt(1.0 - sine * sine)
+    return np.arcsin(sine) * (0.5 / FOLD_Z) + 0.5, slope
 
 
 def phi_phase(z: FloatArray) -> FloatArray:

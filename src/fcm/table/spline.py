@@ -18,30 +18,27 @@ IntArray = npt.NDArray[np.int64]
 
 FREE, FLAT = "free", "flat"  # end conditions: third derivative continuous at the second node; zero slope
 
-# rows: 1, f, f^2, f^3; columns: the four weights
-WEIGHTS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
-SLOPES = np.array([[-3, 0, 3, 0], [6, -12, 6, 0], [-3, 9, -9, 3], [0, 0, 0, 0]]) / 6.0
+# rows: the four weights; columns: 1, f, f^2, f^3
+WEIGHTS = np.array([[1, -3, 3, -1], [4, 0, -6, 3], [1, 3, 3, -3], [0, 0, 0, 1]]) / 6.0
+SLOPES = np.array([[-3, 6, -3, 0], [0, -12, 9, 0], [3, 6, -9, 0], [0, 0, 3, 0]]) / 6.0
 # for each axis, the factors of: value, derivative along axis 0, 1, 2
-FACTORS = np.stack(
-    [np.concatenate([SLOPES if k == axis + 1 else WEIGHTS for k in range(4)], axis=1) for axis in range(3)]
-)
+FACTORS = np.stack([np.concatenate([SLOPES if k == axis else WEIGHTS for k in (-1, 0, 1, 2)]) for axis in range(3)])
+
+PART = 256  # points at a time, so that their 64 weights and coefficients stay in the processor's cache
 
 
 def interpolate(values: FloatArray, ends: tuple[tuple[str, str], ...]) -> FloatArray:
-    """Coefficients, shape (n0+2, n1+2, n2+2, ...), of the spline through values, shape (n0, n1, n2, ...)."""
-    for axis, end in enumerate(ends):
-        matrix = _inverse(values.shape[axis], end)
-        moved = np.moveaxis(values, axis, 0)
-        solved = (matrix @ moved.reshape(moved.shape[0], -1)).reshape(-1, *moved.shape[1:])
-        values = np.moveaxis(solved, 0, axis)
-    return np.ascontiguousarray(values)
+    """Coefficients, shape (3, n0+2, n1+2, n2+2), of the splines through values, shape (3, n0, n1, n2)."""
+    first, second, third = (_inverse(n, end) for n, end in zip(values.shape[1:], ends, strict=True))
+    solved = second @ (values @ third.T)
+    return (first @ solved.reshape(*solved.shape[:2], -1)).reshape(3, -1, *solved.shape[2:])
 
 
 def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
     """Matrix from node values to coefficients."""
     matrix = np.zeros((nodes + 2, nodes + 2))
     rows = np.arange(nodes)
-    for offset, weight in enumerate(WEIGHTS[0, :3]):
+    for offset, weight in enumerate(WEIGHTS[:3, 0]):
         matrix[rows + 1, rows + offset] = weight
     third = np.array([-1.0, 4.0, -6.0, 4.0, -1.0])
     slope = np.array([-0.5, 0.0, 0.5, 0.0, 0.0])
@@ -51,28 +48,77 @@ def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
     return inverse
 
 
-def neighbours(shape: tuple[int, ...]) -> IntArray:
-    """Offsets of the 64 coefficients of a cell in a flattened array of this shape."""
-    steps = np.arange(4)
-    offsets = (steps[:, None, None] * shape[1] + steps[:, None]) * shape[2] + steps
-    return offsets.reshape(64)
+def stack(*parts: FloatArray) -> FloatArray:
+    """Coefficients of several splines one after the other along their first axis, shape (3, rows).
 
-
-def evaluate(coefficients: FloatArray, cells: IntArray, fractions: FloatArray, derivatives: bool) -> FloatArray:
-    """Value, or value and the three derivatives by the node coordinates.
-
-    coefficients has shape (M, 3); cells, shape (p, 64), says which rows; fractions, shape (3, p), are the
-    positions within the cell. The answer has shape (p, 1, 3) or (p, 4, 3).
+    A point on the last node of a row of cells reads beyond it, with weight 0: hence the zeros at the end.
     """
-    powers = np.empty((3, fractions.shape[1], 4))
-    powers[..., 0] = 1.0
-    powers[..., 1] = fractions
-    np.multiply(fractions, fractions, out=powers[..., 2])
-    np.multiply(powers[..., 2], fractions, out=powers[..., 3])
-    kinds = 4 if derivatives else 1
-    factors = (powers @ FACTORS[:, :, :16] if derivatives else powers @ WEIGHTS).reshape(3, -1, kinds, 4)
+    beyond = np.zeros_like(parts[0][:, :2])
+    return np.concatenate((*parts, beyond), axis=1).reshape(3, -1)
+
+
+def strides(shape: tuple[int, int]) -> tuple[IntArray, IntArray]:
+    """Steps of the three axes in stacked coefficients whose last two axes have this shape, and the 64 neighbours."""
+    steps = np.array((shape[0] * shape[1], shape[1], 1))
+    four = np.arange(4)
+    offsets = four[:, None, None] * steps[0] + four[:, None] * steps[1] + four
+    return steps, offsets.reshape(64, 1)
+
+
+def evaluate(
+    coefficients: FloatArray, q: FloatArray, steps: IntArray, neighbours: IntArray, kinds: int
+) -> FloatArray:
+    """Value (kinds = 1), or value and the three derivatives by q (kinds = 4): shape (3, kinds, p).
+
+    coefficients as from `stack`; q, shape (3, p), not negative, in units of nodes; the others from `strides`.
+    """
+    points = q.shape[1]
+    cells = q.astype(np.int64)
+    powers = np.empty((3, 4, points))
+    powers[:, 0] = 1.0
+    fraction = np.subtract(q, cells, out=powers[:, 1])
+    square = np.multiply(fraction, fraction, out=powers[:, 2])
+    np.multiply(square, fraction, out=powers[:, 3])
+    factors = ((WEIGHTS if kinds == 1 else FACTORS) @ powers).reshape(3, kinds, 4, points)
+    corners = steps @ cells
+    if points <= PART:
+        return _contract(coefficients, corners, neighbours, factors)
+    values = np.empty((3, kinds, points))
+    space = _Space(kinds)
+    for first in range(0, points, PART):
+        part = slice(first, first + PART)
+        values[..., part] = _contract(coefficients, corners[part], neighbours, factors[..., part], space)
+    return values
+
+
+class _Space:
+    """Memory used again for one part after the other: to have it from the system anew costs more than the sums."""
+
+    def __init__(self, kinds: int) -> None:
+        self.plane = np.empty((kinds, 4, 4, PART))
+        self.weights = np.empty((kinds, 16, 4, PART))
+        self.rows = np.empty((64, PART), dtype=np.int64)
+        self.gathered = np.empty((3, 64, PART))
+
+    def fits(self, points: int) -> bool:
+        return points == PART
+
+
+def _contract(
+    coefficients: FloatArray,
+    corners: IntArray,
+    neighbours: IntArray,
+    factors: FloatArray,
+    space: _Space | None = None,
+) -> FloatArray:
+    """Sums of 64 coefficients times the products of the factors of the three axes."""
+    _, kinds, _, points = factors.shape
+    use = space if space is not None and space.fits(points) else None
     first, second, third = factors
-    weights = (first[..., None] * second[:, :, None, :]).reshape(-1, kinds, 16, 1) * third[:, :, None, :]
-    gathered = coefficients.take(cells, axis=0)
-    result: FloatArray = weights.reshape(-1, kinds, 64) @ gathered
-    return result
+    plane = np.multiply(first[:, :, None], second[:, None], out=use and use.plane)
+    plane = plane.reshape(kinds, 16, 1, points)
+    weights = np.multiply(plane, third[:, None], out=use and use.weights).reshape(kinds, 64, points)
+    rows = np.add(neighbours, corners, out=use and use.rows)
+    gathered = coefficients.take(rows, axis=1, out=use and use.gathered, mode="clip")
+    values: FloatArray = np.einsum("dkp,ckp->cdp", weights, gathered)
+    return values

@@ -66,8 +66,8 @@ def _write(
             ("level", levels),
             ("variation", nx),
             ("phase", nz),
-            ("level_open", separation.shape[0]),
-            ("level_slip", slip.shape[0]),
+            ("level_open", separation.shape[1]),
+            ("level_slip", slip.shape[1]),
         ):
             file.createDimension(dimension, size)
         for key, (dimensions, values, attributes) in variables.items():
@@ -84,7 +84,7 @@ def _write(
                 "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {history}",
                 "comment": COMMENT,
                 "layout": np.int32(LAYOUT),
-                "resolution": np.array([separation.shape[0], slip.shape[0], nx, nz], dtype=np.int32),
+                "resolution": np.array(build.resolution_of(separation, slip), dtype=np.int32),
                 "measured_error": json.dumps(error),
                 "checksum": _checksum({key: values for key, (_, values, _) in variables.items()}),
             }
@@ -117,11 +117,11 @@ def _variables(separation: FloatArray, slip: FloatArray) -> dict[str, Variable]:
     for k, name in enumerate(NAMES):
         what = f"limit of F_{name} / b_bar as b_bar vanishes, in separation"
         found[f"ratio_{name}"] = (
-            ("level_open", "phase"), separation[::-1, 0, :, k].astype(np.float32), {"long_name": what, "units": "1"}
+            ("level_open", "phase"), separation[k, ::-1, 0].astype(np.float32), {"long_name": what, "units": "1"}
         )
         what = f"mean slope of F_{name} by n0_bar from the slip limit back to the node, negative, in slip"
         found[f"slope_{name}"] = (
-            ("level_slip", *grid[1:]), slip[..., k].astype(np.float32), {"long_name": what, "units": "1"}
+            ("level_slip", *grid[1:]), slip[k].astype(np.float32), {"long_name": what, "units": "1"}
         )
     return found
 
@@ -154,14 +154,12 @@ def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[s
         raise TableError(f"{name}: damaged, it holds values that are not finite numbers")
     if _checksum(arrays) != attributes.get("checksum"):
         raise TableError(f"{name}: damaged, its checksum does not match its data; make it anew")
-    F = np.stack([arrays[f"F_{k}"] for k in NAMES], axis=-1)
-    ratio = np.stack([arrays[f"ratio_{k}"] for k in NAMES], axis=-1)
-    slip = np.stack([arrays[f"slope_{k}"] for k in NAMES], axis=-1)
+    F, ratio, slip = (np.stack([arrays[f"{kind}_{k}"] for k in NAMES]) for kind in ("F", "ratio", "slope"))
     b = arrays["b_bar"][1:]
-    separation = np.empty((ratio.shape[0], *F.shape[1:]))
-    separation[:, 0] = ratio
-    separation[:, 1:] = F[: ratio.shape[0], 1:] * ((1.0 + b) / b)[..., None]
-    return separation[::-1], slip.astype(np.float64), json.loads(attributes["measured_error"])
+    separation = np.empty((*ratio.shape[:2], *F.shape[2:]))
+    separation[:, :, 0] = ratio
+    np.multiply(F[:, : ratio.shape[1], 1:], (1.0 + b) / b, out=separation[:, :, 1:])
+    return separation[:, ::-1], slip.astype(np.float64), json.loads(attributes["measured_error"])
 
 
 def _read(name: Path) -> tuple[dict[str, Any], dict[str, npt.NDArray[Any]]]:
