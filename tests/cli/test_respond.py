@@ -96,10 +96,13 @@ def test_a_shorter_step_gives_more_points(fcm, scene):
 @pytest.mark.parametrize(
     ("args", "said"),
     [
-        (["-o", "folder"], "it is a folder"),
+        (["-o", "folder"], "the name has to end in .nc"),
+        (["-o", "folder.nc"], "it is a folder"),
         (["-o", "a.txt"], "the name has to end in .nc"),
         (["--csv", "a.nc"], "the name has to end in .csv"),
         (["-o", "no/where/a.nc"], "there is no folder 'no/where'"),
+        (["-o", "x" * 300 + ".nc"], "it cannot be written: File name too long"),
+        (["-o", "\udcff.nc"], "the name is not valid text"),
         (["--max-step", "0"], "must be greater than 0"),
         (["--max-step", "nan"], "must be finite"),
         (["--max-step", "2"], "must be greater than 0 and at most 1"),
@@ -109,11 +112,11 @@ def test_a_shorter_step_gives_more_points(fcm, scene):
     ],
 )
 def test_wrong_options_are_refused_before_anything_is_computed(fcm, scene, tmp_path, monkeypatch, args, said):
-    (tmp_path / "folder").mkdir()
+    (tmp_path / "folder.nc").mkdir()
     monkeypatch.setattr("fcm.response.trace", refuse)
     done = fcm("respond", scene, *args)
     assert done.code == 2 and done.out == "" and said in done.err
-    assert files(tmp_path) == ["folder", "scene.toml"]
+    assert files(tmp_path) == ["folder.nc", "scene.toml"]
 
 
 @pytest.mark.parametrize(
@@ -165,6 +168,16 @@ def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path, monk
     assert "NOT COMPLETE: stopped at 1.2 rad/s" in done.out
     assert "1 of 1 curves not complete" in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
+
+
+def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeypatch):
+    def full(*_args):
+        raise OSError(28, "No space left on device", "a.nc")
+
+    monkeypatch.setattr("fcm.response.output.write_netcdf", full)
+    done = fcm("respond", scene, "-o", "a.nc")
+    assert done.code == 3 and "peak u" in done.out
+    assert done.err == "fcm: error: a.nc: No space left on device\n"
 
 
 def test_an_interrupted_run_says_so_and_leaves_nothing(scene, tmp_path):

@@ -24,18 +24,28 @@ def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> C
 
 def check_output(path: Path, endings: tuple[str, ...]) -> None:
     """A file with one of the endings, in a folder that exists and can be written; or a usage error."""
-    folder = path.parent
+    try:
+        problem = _problem(path, endings)
+    except UnicodeEncodeError:
+        problem = "the name is not valid text"
+    except OSError as error:
+        problem = f"it cannot be written: {error.strerror}"
+    if problem:
+        raise click.BadParameter(f"{str(path)!r}: {problem}.")
+
+
+def _problem(path: Path, endings: tuple[str, ...]) -> str:
+    if path.suffix.lower() not in endings:
+        return f"the name has to end in {' or '.join(endings)}"
     if path.is_dir():
-        problem = "it is a folder, not a file to write"
-    elif path.suffix.lower() not in endings:
-        problem = f"the name has to end in {' or '.join(endings)}"
-    elif not folder.is_dir():
-        problem = f"there is no folder '{folder}'"
-    elif not os.access(folder, os.W_OK | os.X_OK):
-        problem = f"the folder '{folder}' cannot be written"
-    else:
-        return
-    raise click.BadParameter(f"'{path}': {problem}.")
+        return "it is a folder, not a file to write"
+    if not path.parent.is_dir():
+        return f"there is no folder {str(path.parent)!r}"
+    str(path).encode()
+    probe = path.with_name(f".{path.name}.{os.getpid()}")  # permissions alone know no read-only disk
+    probe.touch(exist_ok=False)
+    probe.unlink()
+    return ""
 
 
 @contextmanager

@@ -65,10 +65,12 @@ def respond(
     from fcm.response.output import summary
 
     response = _traced(messages, scene, method, table, max_step)
-    _write(messages, response, output, csv)
     result = summary(response)
     unit = response.frequency_unit
-    click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_table(result, unit))
+    try:
+        _write(messages, response, output, csv)
+    finally:  # a full disk does not take the result away
+        click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_table(result, unit))
     _close(messages, result)
 
 

@@ -41,6 +41,8 @@ def read_response(path: Path) -> DrawnResponse:
     from netCDF4 import Dataset
 
     try:
+        if not path.is_file():
+            raise OSError
         dataset = Dataset(str(path))
     except (OSError, ValueError) as error:
         raise PlotError(f"{path}: not a netCDF file that can be read") from error

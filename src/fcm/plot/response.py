@@ -46,7 +46,7 @@ def _column(response: DrawnResponse, dof: str | None) -> int:
 
 def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
     peaks = [np.nanmax(curve.amplitude[:, column]) for curve in curves]
-    return bool(max(peaks) > _DECADE * min(peaks) > 0)
+    return bool(np.max(peaks) > _DECADE * np.min(peaks) > 0)
 
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, colour: str) -> None:
