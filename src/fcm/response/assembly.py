@@ -10,7 +10,7 @@ from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
 from fcm.response.balance import Balance
 from fcm.response.displacement import amplitude_growth, displacements
-from fcm.response.extrema import Segments, fold_rate, locate, peak_rate
+from fcm.response.extrema import fold_rate, locate, peak_rate
 from fcm.response.path import COMPLETE, REASONS, BoolArray
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.result import Curve
@@ -23,9 +23,7 @@ class Assembly:
 
     def __init__(self, exact: Balance, points: Points, status: IntArray, lost: BoolArray) -> None:
         self.exact, self.points, self.status, self.lost = exact, points, status, lost
-        self.z, self.direction = points.z, points.direction
-        z = self.z
-        self.extent = np.broadcast_to(exact.group.high - exact.group.low, status.shape)
+        self.z = z = points.z
         at_points = exact.take(points.curve)
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
         arguments = at_points.law.arguments(z[:, :-1].reshape(z.shape[0], exact.group.contacts, 5))
@@ -66,10 +64,11 @@ class Assembly:
 
     def _folds(self) -> tuple[FloatArray, IntArray]:
         """Frequencies of the folds in order along the curves, and the curve of each."""
-        rate = self.direction[:, -1]
+        rate = self.points.direction[:, -1]
         at = np.flatnonzero(self.same & (np.sign(rate[1:]) * np.sign(rate[:-1]) < 0.0))
-        segments = self._segments(at, rate[at], rate[at + 1], np.zeros_like(at))
-        return locate(self.exact, segments, fold_rate, self.extent)[:, -1], segments.curve
+        segments = self.points.segments(at, self.exact)
+        z = locate(self.exact, segments, fold_rate, rate[at], rate[at + 1], at)
+        return z[:, -1], segments.curve
 
     def _peaks(self, bounds: IntArray) -> FloatArray:
         """(curve, dof, 2): amplitude and frequency of the greatest peak."""
@@ -79,21 +78,25 @@ class Assembly:
             if last > first:
                 highest = first + size[first:last].argmax(axis=0)
                 peaks[i] = np.column_stack((size[highest, np.arange(size.shape[1])], self.z[highest, -1]))
-        segments = self._summits(size, peaks[:, :, 0])
-        z = locate(self.exact, segments, peak_rate, self.extent)
+        at, which, before, after = self._summits(size, peaks[:, :, 0])
+        segments = self.points.segments(at, self.exact)
+        z = locate(self.exact, segments, peak_rate, before, after, which)
         X, _ = displacements(self.exact.take(segments.curve), z[:, :-1], z[:, -1])
-        for point, curve, dof, value in zip(z, segments.curve, segments.which, np.abs(X), strict=True):
+        for point, curve, dof, value in zip(z, segments.curve, which, np.abs(X), strict=True):
             if value[dof] > peaks[curve, dof, 0]:
                 peaks[curve, dof] = value[dof], point[-1]
         return peaks
 
-    def _summits(self, size: FloatArray, highest: FloatArray) -> Segments:
-        """Segments that hold a maximum of a degree of freedom which may be the greatest of its curve."""
-        growth = amplitude_growth(self.exact.take(self.points.curve), self.z, self.direction)
-        rises = (growth[:-1] > 0.0) & (growth[1:] < 0.0) & self.same[:, None]
-        near = np.maximum(size[:-1], size[1:]) > NEARLY_HIGHEST * highest[self.points.curve[:-1]]
-        at, dof = np.nonzero(rises & near)
-        return self._segments(at, growth[at, dof], growth[at + 1, dof], dof)
+    def _summits(
+        self, size: FloatArray, highest: FloatArray
+    ) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+        """Segments that hold a maximum of a degree of freedom which may be the greatest of its curve.
 
-    def _segments(self, at: IntArray, before: FloatArray, after: FloatArray, which: IntArray) -> Segments:
-        return Segments(self.points.curve[at], self.z[at], self.z[at + 1], before, after, which)
+        Points where they begin, degrees of freedom, and growth at both ends.
+        """
+        curve = self.points.curve
+        growth = amplitude_growth(self.exact.take(curve), self.z, self.points.direction)
+        rises = (growth[:-1] > 0.0) & (growth[1:] < 0.0) & self.same[:, None]
+        near = np.maximum(size[:-1], size[1:]) > NEARLY_HIGHEST * highest[curve[:-1]]
+        at, dof = np.nonzero(rises & near)
+        return at, dof, growth[at, dof], growth[at + 1, dof]

@@ -6,31 +6,18 @@ At a smooth extreme the rate passes through zero; at a corner it jumps. A bracke
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.displacement import amplitude_growth
-from fcm.response.path import amplitudes, correct, scales
+from fcm.response.segment import Segments
 from fcm.response.structure import IntArray
 
 WIDTH = 1e-10  # arc within which an extreme is known, relative to the curve's own size
 MAX_HALVINGS = 60
 Rate = Callable[[Balance, FloatArray, FloatArray, IntArray], FloatArray]
-
-
-@dataclass
-class Segments:
-    """Pieces of curves between neighbouring points, at whose ends a rate has opposite signs."""
-
-    curve: IntArray
-    start: FloatArray  # (segment, unknown + 1)
-    end: FloatArray
-    rate_start: FloatArray
-    rate_end: FloatArray
-    which: IntArray  # passed to the rate: the degree of freedom whose peak is sought
 
 
 def fold_rate(balance: Balance, z: FloatArray, direction: FloatArray, which: IntArray) -> FloatArray:
@@ -43,32 +30,28 @@ def peak_rate(balance: Balance, z: FloatArray, direction: FloatArray, which: Int
     return amplitude_growth(balance, z, direction)[np.arange(z.shape[0]), which]
 
 
-def locate(balance: Balance, segments: Segments, rate: Rate, extent: FloatArray) -> FloatArray:
-    """The point of each segment where the rate changes its sign, (segment, unknown + 1)."""
+def locate(
+    exact: Balance, segments: Segments, rate: Rate, at_start: FloatArray, at_end: FloatArray, which: IntArray
+) -> FloatArray:
+    """The point of each segment where the rate changes its sign, (segment, unknown + 1).
+
+    at_start and at_end are the rates at the ends; which is passed on to the rate.
+    """
     z = segments.start.copy()
-    if z.shape[0] == 0:
-        return z
-    equations = balance.take(segments.curve)
-    chord = segments.end - segments.start
-    scale = scales(segments.start[:, :-1], amplitudes(segments.end[:, :-1]), extent[segments.curve])
-    row = chord / scale
-    length = np.sqrt((row * row).sum(axis=1, keepdims=True))
-    row /= np.where(length > 0.0, length, 1.0)
     low, high = np.zeros(z.shape[0]), np.ones(z.shape[0])
-    f_low, f_high = segments.rate_start.copy(), segments.rate_end.copy()
+    f_low, f_high = at_start.copy(), at_end.copy()
     missed = np.zeros(z.shape[0], dtype=bool)
-    for count in range(MAX_HALVINGS):
+    for count in range(MAX_HALVINGS if z.shape[0] else 0):
         share = np.where(missed, _any_share(low, high, count), _next_share(low, high, f_low, f_high, count))
-        guess = segments.start + share[:, None] * chord
-        new = correct(equations, guess, scale, row, close=1e-12, iterations=12)
-        f = rate(equations, new.z, scale * new.tangent, segments.which)
-        narrow = (high - low) * length[:, 0] <= WIDTH
+        new = segments.points(exact, share)
+        f = rate(exact.take(segments.curve), new.z, new.tangent, which)
+        narrow = (high - low) * segments.length <= WIDTH
         use = new.converged & ~narrow
         missed = ~new.converged
         z[use] = new.z[use]
-        above = np.sign(f) == np.sign(segments.rate_start)
-        low, f_low = np.where(use & above, share, low), np.where(use & above, f, f_low)
-        high, f_high = np.where(use & ~above, share, high), np.where(use & ~above, f, f_high)
+        before = np.sign(f) == np.sign(at_start)
+        low, f_low = np.where(use & before, share, low), np.where(use & before, f, f_low)
+        high, f_high = np.where(use & ~before, share, high), np.where(use & ~before, f, f_high)
         if np.all(narrow | (use & (f == 0.0))):
             break
     return z

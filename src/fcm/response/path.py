@@ -103,7 +103,7 @@ def amplitudes(x: FloatArray) -> FloatArray:
     blocks = x.reshape(x.shape[0], x.shape[1] // 5, 5)
     u = np.hypot(blocks[..., 0], blocks[..., 1])
     v = np.maximum(np.hypot(blocks[..., 2], blocks[..., 3]), np.abs(blocks[..., 4]))
-    return np.stack((u, v), axis=-1).reshape(x.shape[0], -1)
+    return np.stack((u, v), axis=-1).reshape(x.shape[0], 2 * blocks.shape[1])
 
 
 def scales(x: FloatArray, largest: FloatArray, extent: FloatArray) -> FloatArray:
@@ -111,7 +111,8 @@ def scales(x: FloatArray, largest: FloatArray, extent: FloatArray) -> FloatArray
     overall = largest.max(axis=1, initial=0.0, keepdims=True)
     size = np.maximum(amplitudes(x), np.maximum(OWN_FLOOR * largest, OTHER_FLOOR * overall))
     size = np.where(size > 0.0, size, 1.0) * np.sqrt(max(size.shape[1], 1))
-    each = np.repeat(size.reshape(x.shape[0], -1, 2), [2, 3], axis=2).reshape(x.shape[0], -1)
+    pairs = size.reshape(x.shape[0], x.shape[1] // 5, 2)
+    each = np.repeat(pairs, [2, 3], axis=2).reshape(x.shape)
     return np.concatenate((each, np.broadcast_to(extent, (x.shape[0],))[:, None]), axis=1)
 
 

@@ -10,10 +10,9 @@ from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.displacement import displacement_rates, displacements
 from fcm.response.path import Trace, amplitudes, correct, scales
+from fcm.response.segment import EXACT, ITERATIONS, Segments
 from fcm.response.structure import AnyArray, IntArray
 
-EXACT = 1e-13  # estimated error of a corrected point, relative
-ITERATIONS = 12
 NEARLY_HIGHEST = 0.7  # a maximum between points may exceed them by this factor
 FINE = 0.08  # distance of points near a summit, so that no maximum hides between two of them
 CHANGE = 0.2  # greatest relative change of a degree of freedom between points
@@ -31,11 +30,16 @@ class Points:
     direction: FloatArray  # (point, unknown + 1) along the curve
     shift: FloatArray  # (point,) relative, by the correction; NaN where it failed and the point stayed
 
+    def segments(self, at: IntArray, exact: Balance) -> Segments:
+        """The segments from points at (segment,) to the points that follow them."""
+        curve, z, d = self.curve[at], self.z, self.direction
+        return Segments(curve, z[at], z[at + 1], d[at], d[at + 1], extent(exact, curve))
+
 
 def corrected(exact: Balance, path: Trace) -> Points:
     """Every point corrected with the closed form along the normal of its curve."""
-    x, extent = path.z[:, :-1], _extent(exact, path.curve)
-    scale = scales(x, amplitudes(x), extent)
+    x = path.z[:, :-1]
+    scale = scales(x, amplitudes(x), extent(exact, path.curve))
     row = path.direction / scale
     row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
     balance = exact.take(path.curve)
@@ -70,7 +74,7 @@ def _pieces(exact: Balance, points: Points) -> IntArray:
     np.maximum.at(highest, points.curve, size)
     highest = highest[points.curve]
     x = points.z[:, :-1]
-    scale = scales(x, amplitudes(x), _extent(exact, points.curve))
+    scale = scales(x, amplitudes(x), extent(exact, points.curve))
     arc = np.sqrt(((np.diff(points.z, axis=0) / scale[:-1]) ** 2).sum(axis=1))
     speed = np.sqrt(((points.direction / scale) ** 2).sum(axis=1))[:, None]
     unit = np.maximum(size, FLOOR * highest)
@@ -81,35 +85,31 @@ def _pieces(exact: Balance, points: Points) -> IntArray:
     high = np.any(size > NEARLY_HIGHEST * highest, axis=1)
     finer = np.maximum(change / CHANGE, np.where(high[1:] | high[:-1], arc / FINE, 0.0))
     finer = np.where((points.curve[1:] == points.curve[:-1]) & (arc > SHORTEST), finer, 1.0)
-    return np.ceil(np.clip(finer, 1.0, MOST_PIECES)).astype(np.intp)
+    pieces: IntArray = np.ceil(np.clip(finer, 1.0, MOST_PIECES)).astype(np.intp)
+    return pieces
 
 
 def _subdivided(exact: Balance, points: Points, pieces: IntArray) -> Points:
     at = np.repeat(np.arange(pieces.size), pieces - 1)
     number = np.arange(at.size) - np.repeat(np.cumsum(pieces - 1) - (pieces - 1), pieces - 1) + 1
-    share = (number / pieces[at])[:, None]
-    curve, start = points.curve[at], points.z[at]
-    chord = points.z[at + 1] - start
-    scale = scales(start[:, :-1], amplitudes(start[:, :-1]), _extent(exact, curve))
-    row = chord / scale
-    row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
-    new = correct(exact.take(curve), start + share * chord, scale, row, EXACT, ITERATIONS)
+    share = number / pieces[at]
+    new = points.segments(at, exact).points(exact, share)
     ok = new.converged
-    order = np.argsort(np.concatenate((np.arange(points.curve.size), (at + share[:, 0])[ok])))
+    order = np.argsort(np.concatenate((np.arange(points.curve.size), (at + share)[ok])))
 
     def merged(old: AnyArray, extra: AnyArray) -> AnyArray:
         return np.concatenate((old, extra[ok]))[order]
 
     return Points(
-        merged(points.curve, curve),
+        merged(points.curve, points.curve[at]),
         merged(points.z, new.z),
-        merged(points.direction, scale * new.tangent),
+        merged(points.direction, new.tangent),
         # these never saw the table; the error that its neighbours would have had
         merged(points.shift, np.maximum(points.shift[at], points.shift[at + 1])),
     )
 
 
-def _extent(exact: Balance, curve: IntArray) -> FloatArray:
-    """Length of the frequency range of each point's curve."""
-    extent = exact.group.high - exact.group.low
-    return np.broadcast_to(extent, (curve.size,)) if extent.size == 1 else extent[curve]
+def extent(exact: Balance, curve: IntArray) -> FloatArray:
+    """Length of the frequency range of each of the curves."""
+    length = exact.group.high - exact.group.low
+    return np.broadcast_to(length, curve.shape) if length.size == 1 else length[curve]
