@@ -1,6 +1,7 @@
 """The program around its commands: help, what it imports, how it ends."""
 
 import json
+import os
 import subprocess
 import sys
 import time
@@ -127,6 +128,17 @@ def test_a_warning_is_one_line_on_standard_error(capsys):
     with click.Context(click.Command("x"), obj=Messages()) as ctx:
         guarded(run, ctx)
     assert capsys.readouterr().err == "fcm: warning: mind the gap\n"
+
+
+def test_names_that_the_terminal_cannot_show_are_escaped(scene):
+    scene.write_text(scene.read_text().replace('"u"', '"ü位"'), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "fcm.cli", "respond", scene],
+        env={**os.environ, "PYTHONIOENCODING": "latin-1"},
+        capture_output=True,
+        check=True,
+    )
+    assert b"peak \xfc\\u4f4d" in done.stdout
 
 
 def test_a_reader_that_leaves_is_no_error():

@@ -1,5 +1,7 @@
 """What is drawn: the lines, their labels, the axes; no pixels."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
@@ -77,6 +79,23 @@ def test_curves_that_leave_no_room_for_names_have_a_legend():
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == [f"$n_{{0}}$ = {n}" for n in range(8)]
     assert names(figure.axes[0]) == []
+
+
+def test_several_swept_quantities_are_named_once_above_their_values():
+    keys = ("contact.a.n_0", "contact.b.n_0", "contact.a.mu")
+    values = [(1.0, 2.0, 0.4), (1.0, 3.0, 0.4)]
+    same = resonance(9.0, 1.2, 0.0)
+    curves = [replace(same, parameters=dict(zip(keys, value, strict=True))) for value in values]
+    (legend,) = draw_response(response(*curves * 5)).legends
+    assert legend.get_title().get_text() == "contact.a.n_0,\ncontact.b.n_0,\n$\\mu$"
+    assert [text.get_text() for text in legend.get_texts()][:2] == ["1, 2, 0.4", "1, 3, 0.4"]
+
+
+def test_names_hold_no_mathematics_of_their_own():
+    curves = [replace(resonance(9.0, 1.2, 0.0), parameters={"contact.$a_{.tangential.$u": n}) for n in (1, 2)]
+    figure = draw_response(DrawnResponse(("$u_{", "v"), "rad/s", tuple(curves * 4)))
+    figure.draw_without_rendering()
+    assert figure.axes[0].get_ylabel() == "Amplitude of $u_{"
 
 
 def test_of_very_many_curves_the_first_and_the_last_are_named():

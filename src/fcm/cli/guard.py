@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import sys
 import traceback
@@ -29,6 +30,7 @@ _EXIT_CODES = (
 def guarded(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
     """``run(ctx)``; whatever it raises ends the program as the exit codes promise."""
     messages = ctx.ensure_object(Messages)
+    _print_any_name()
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _shown_by(messages)
@@ -76,6 +78,13 @@ def _shown_by(messages: Messages) -> Callable[..., None]:
         messages.detail(f"  {category.__name__} at {filename}:{lineno}")
 
     return show
+
+
+def _print_any_name() -> None:
+    """Characters that the terminal does not have are escaped, not an error."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def _discard_output() -> None:

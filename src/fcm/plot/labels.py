@@ -21,27 +21,26 @@ def short_names(keys: Iterable[str]) -> dict[str, str]:
     return {key: name if name in _WORDS and several.count(name) == 1 else key for key, name in last.items()}
 
 
+def symbols(keys: Iterable[str]) -> list[str]:
+    """How each swept quantity is written in a picture, in matplotlib's mathematical text.
+
+    >>> symbols(["contact.shroud.n_0", "contact.shroud.mu", "modal.shapes.0.u"])
+    ['$n_{0}$', '$\\\\mu$', 'modal.shapes.0.u']
+    """
+    return [_SYMBOLS.get(name, name.replace("$", r"\$")) for name in short_names(keys).values()]
+
+
 def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:
-    """What was swept, in matplotlib's mathematical text; without names only the values.
+    """What was swept; without names only the values.
 
     >>> curve_label({"contact.shroud.n_0": -5.0, "contact.shroud.mu": 0.4})
     '$n_{0}$ = −5, $\\\\mu$ = 0.4'
     """
-    values = {short: _number(parameters[key]) for key, short in short_names(parameters).items()}
+    values = [f"{value:.4g}".replace("-", "−") for value in parameters.values()]
     if not named:
-        return ", ".join(values.values())
-    return ", ".join(f"{_SYMBOLS.get(name, _plain(name))} = {value}" for name, value in values.items())
+        return ", ".join(values)
+    return ", ".join(f"{name} = {value}" for name, value in zip(symbols(parameters), values, strict=True))
 
 
 def frequency_label(unit: str) -> str:
     return "Frequency $f$ (Hz)" if unit == "Hz" else f"Frequency $\\omega$ ({unit})"
-
-
-def _number(value: float) -> str:
-    """A short number with a true minus sign."""
-    return f"{value:.4g}".replace("-", "−")
-
-
-def _plain(text: str) -> str:
-    """Text in which matplotlib is to find no mathematics."""
-    return text.replace("$", r"\$")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label
+from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.place import label_at_peaks
 from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
+_UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
 
@@ -55,9 +56,9 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, colour: str) -> None
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
     solid, dashed = _split(amplitude, unstable)
     alone = "." if len(amplitude) == 1 else ""
-    axes.plot(curve.frequency, solid, color=colour, marker=alone, label=_named(curve))
+    axes.plot(curve.frequency, solid, color=colour, marker=alone)
     if unstable.any():
-        axes.plot(curve.frequency, dashed, color=colour, linestyle=(0, (3, 1.6)), label="_unstable")
+        axes.plot(curve.frequency, dashed, color=colour, linestyle=(0, (3, 1.6)), label=_UNSTABLE)
 
 
 def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -68,9 +69,9 @@ def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, Floa
     return np.where(unstable, np.nan, amplitude), np.where(beside, amplitude, np.nan)
 
 
-def _named(curve: DrawnCurve, symbols: bool = True) -> str:
+def _named(curve: DrawnCurve, names: bool = True) -> str:
     state = {frozenset({"E"}): " (stuck)", frozenset({"S"}): " (open)"}.get(curve.regimes, "")
-    return (curve_label(curve.parameters, symbols) + state).strip()
+    return (curve_label(curve.parameters, names) + state).strip()
 
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
@@ -86,12 +87,22 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
 
 def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int) -> None:
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
-    names = [_named(curve, symbols=i == 0) for i, curve in enumerate(curves)]
+    names = [_named(curve, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= _MOST_NAMES and label_at_peaks(figure, axes, lines, names):
         return
-    handles = [line for line in axes.get_lines() if not str(line.get_label()).startswith("_")]
-    if len(handles) > _MOST_NAMES:
-        handles = [handles[0], handles[-1]]
     if any(names):
-        figure.legend(handles=handles, loc="outside right upper")
+        _legend(figure, axes, curves)
+
+
+def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve]) -> None:
+    """Beside the axes; several swept quantities are named once, above their values."""
+    lines = [line for line in axes.get_lines() if line.get_label() != _UNSTABLE]
+    shown = slice(None, None, len(lines) - 1 if len(lines) > _MOST_NAMES else 1)
+    several = len(curves[0].parameters) > 1
+    figure.legend(
+        lines[shown],
+        [_named(curve, names=not several) for curve in curves[shown]],
+        title=",\n".join(symbols(curves[0].parameters)) if several else None,
+        loc="outside right upper",
+    )

@@ -22,10 +22,10 @@ STYLE: dict[Any, Any] = {
     "axes.linewidth": 0.6,
     "axes.prop_cycle": "cycler('color', ['#0072b2'])",
     "axes.unicode_minus": True,
-    "font.family": "serif",
-    "font.serif": ["STIXGeneral", "DejaVu Serif"],
+    "font.family": ["STIXGeneral", "DejaVu Serif"],  # a character that the first lacks is of the second
     "font.size": 9,
     "legend.fontsize": 8,
+    "legend.title_fontsize": 8,
     "legend.frameon": False,
     "lines.linewidth": 1.1,
     "lines.solid_capstyle": "round",
