@@ -8,6 +8,8 @@ first, up to h too little or too much: 4 / pi of that in a coefficient. `test_re
 
 import numpy as np
 
+TOUCH = 1e-12  # a limit that is touched to within rounding does not push
+
 
 def error(n0_bar, b_bar, steps):
     """Bound of the error of `coefficients`."""
@@ -27,8 +29,9 @@ def march(n0_bar, b_bar, phi, steps, cycles=2):
         trial = force + u[i] - u[i - 1]
         force = np.clip(trial, -load[i], load[i])
         forces[i] = force
-        states[i] = np.where(load[i] == 0.0, "S", np.where(trial >= load[i], "P", "E"))
-        states[i] = np.where((load[i] > 0.0) & (trial <= -load[i]), "N", states[i])
+        states[i] = np.select(
+            [load[i] == 0.0, trial - load[i] > TOUCH, -trial - load[i] > TOUCH], ["S", "P", "N"], "E"
+        )
     return theta, forces, states
 
 
