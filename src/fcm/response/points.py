@@ -41,6 +41,11 @@ def corrected(exact: Balance, path: Trace) -> Points:
     x = path.z[:, :-1]
     scale = scales(x, amplitudes(x), extent(exact, path.curve))
     row = path.direction / scale
+    low, high = (
+        np.broadcast_to(f, path.status.shape)[path.curve] for f in (exact.group.low, exact.group.high)
+    )
+    ends = (path.z[:, -1] == low) | (path.z[:, -1] == high)
+    row[ends] = np.eye(path.z.shape[1])[-1]  # the ends of the range stay where they are
     row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
     balance = exact.take(path.curve)
     new = correct(balance, path.z, scale, row, EXACT, ITERATIONS)
@@ -50,7 +55,9 @@ def corrected(exact: Balance, path: Trace) -> Points:
     after, _ = displacements(balance, z[:, :-1], z[:, -1])
     size = np.abs(after).max(axis=1, initial=0.0)
     shift = np.abs(after - before).max(axis=1, initial=0.0) / np.where(size > 0.0, size, 1.0)
-    direction = np.where(kept, scale * new.tangent, path.direction)
+    z[ends, -1] = path.z[ends, -1]
+    along = np.sign((new.tangent * path.direction / scale).sum(axis=1, keepdims=True))
+    direction = np.where(kept, along * scale * new.tangent, path.direction)
     return Points(path.curve, z, direction, np.where(new.converged, shift, np.nan))
 
 

@@ -49,12 +49,13 @@ def trace(
     Raises
     ------
     ResponseError
-        If the method is unknown.
+        If the method is unknown, or a mode has frequency 0.
     """
     if method not in METHODS:
         raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
     begin = time.perf_counter()
     curves = scene.each_curve()
+    _check(curves)
     group = group_of([with_contact(curve) for curve in curves])
     exact = Balance(group, ClosedForm())
     used = exact if method == "closed-form" else Balance(group, table or _default_table())
@@ -73,6 +74,17 @@ def trace(
     for curve in results:  # curves advance together: each is charged by its points
         curve.seconds = share * curve.points
     return response
+
+
+def _check(curves: tuple[Scene, ...]) -> None:
+    """Refuse what the balanced equations cannot express."""
+    for curve in curves:
+        rigid = np.flatnonzero(curve.modal.frequency == 0.0)
+        if rigid.size:
+            raise ResponseError(
+                f"modal.frequency[{rigid[0]}] is 0: a rigid-body mode has no static equilibrium "
+                "without its contacts, and is not supported yet; give it a small frequency instead"
+            )
 
 
 def _default_table() -> Coefficients:
