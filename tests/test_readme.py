@@ -1,6 +1,7 @@
 """README.md does what it says: every command of it is run, every number compared."""
 
 import doctest
+import json
 import os
 import re
 import subprocess
@@ -86,6 +87,12 @@ def test_the_python_of_the_readme_prints_what_it_shows():
     report = []
     failed, _tried = doctest.DocTestRunner(verbose=False).run(examples, out=report.append)
     assert failed == 0, "".join(report)
+
+
+def test_the_table_is_as_accurate_as_claimed(folder):
+    (claim,) = re.findall(r"moves no point by more than (\S+) of", README.read_text(encoding="utf-8"))
+    result = json.loads(run("fcm respond yang1998 --json", folder).stdout)
+    assert 0 < max(curve["table_error"] for curve in result["curves"]) < float(claim)
 
 
 def test_every_block_is_of_a_kind_that_is_tested():

@@ -83,6 +83,7 @@ def _traced(
     loaded = load_scene(scene)
     if max_step is not None:
         loaded = _with_step(loaded, max_step)
+    messages.detail(f"{loaded.title or scene}: curves to trace: {len(loaded.each_curve())}, method: {method}")
     response = trace(loaded, method=method, table=_opened(table), progress=messages.progress)
     messages.clear()
     return response

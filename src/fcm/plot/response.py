@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
+_WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
+_DASHES = (0, (3, 1.6))
 _UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
@@ -30,8 +32,9 @@ def draw_response(response: DrawnResponse, dof: str | None = None, log: bool | N
     with house_style():
         figure = new_figure()
         axes = figure.add_subplot()
-        for curve, colour in zip(curves, sequence_colours(len(curves)), strict=True):
-            _draw_curve(axes, curve, column, colour)
+        axes.set_prop_cycle(color=sequence_colours(len(curves)))
+        for curve in curves:
+            _draw_curve(axes, curve, column, _WIDTH if len(curves) <= _MOST_NAMES else _THIN)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         _name_curves(figure, axes, curves, column)
     return figure
@@ -50,15 +53,22 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
     return bool(np.max(peaks) > _DECADE * np.min(peaks) > 0)
 
 
-def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, colour: str) -> None:
+def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> None:
     """A solid line where the curve is stable or its stability unknown, a dashed one elsewhere."""
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
     solid, dashed = _split(amplitude, unstable)
     alone = "." if len(amplitude) == 1 else ""
-    axes.plot(curve.frequency, solid, color=colour, marker=alone)
+    (line,) = axes.plot(curve.frequency, solid, linewidth=width, marker=alone)
     if unstable.any():
-        axes.plot(curve.frequency, dashed, color=colour, linestyle=(0, (3, 1.6)), label=_UNSTABLE)
+        axes.plot(
+            curve.frequency,
+            dashed,
+            color=line.get_color(),
+            linewidth=width,
+            linestyle=_DASHES,
+            label=_UNSTABLE,
+        )
 
 
 def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
