@@ -7,14 +7,16 @@ regimes have one *chart* each, a cube (u, x, z) in [0, 1]^3 with a smooth functi
     separation |n0| < b       F = beta G,       beta = b / (1 + b)        u from delta = arccos(n0 / b)
     slip       b <= n0 < b+E  F = F_edge + E G, E = (ell_1 + ell_2)/2 - b  u from t = (n0 - b) / E
 
-F_edge = ((ell_2 - ell_1)/2, 1, 0) are the coefficients at the slip limit n0 = b + E of (25). The factors take out
-what vanishes, so that derivatives stay bounded however thin a regime becomes; that F has a continuous gradient
-across n0 = -b, b and b + E says that dG/du = 0 there. Where F is not smooth the coordinates gather and turn:
+F_edge = ((ell_2 - ell_1)/2, 1, 0) are the coefficients at the slip limit n0 = b + E of (25). The factors take
+out what vanishes, so that derivatives stay bounded however thin a regime becomes; that F has a continuous
+gradient across n0 = -b, b and b + E says that dG/du = 0 there. Where F is not smooth the coordinates gather
+and turn:
 
 * b -> 0 and b -> infinity, expansions in sqrt(b) and 1/b: s = 4/pi arctan(sqrt(b)) - 1;
-* b = 1 with phi = 0 or pi, where ell_1 or ell_2 vanishes and F is a cone in (b - 1, sin(phi)): x turns from s to
-  its cube root there, over a width proportional to sin(phi); z gathers near 0 and pi;
-* b -> infinity with n0 -> b, a cone in (1/b, delta): u turns from delta to its square root over a width 1/(1 + b).
+* b = 1 with phi = 0 or pi, where ell_1 or ell_2 vanishes and F is a cone in (b - 1, sin(phi)): x turns from
+  s to its cube root there, over a width proportional to sin(phi); z gathers near 0 and pi;
+* b -> infinity with n0 -> b, a cone in (1/b, delta): u turns from delta to its square root over a width
+  1/(1 + b).
 """
 
 from __future__ import annotations
@@ -35,8 +37,6 @@ LARGEST_B = 1e8  # beyond, G has reached its limit
 HUGE_B = 1e150  # beyond, ell_1 and ell_2 would overflow
 NEWTON_STEPS = 60  # the first ones gain a third only
 NEAR = 1e-14  # a u this close to its end is moved away, so that dG/du over the vanishing slope is defined
-
-
 
 
 class Phase(NamedTuple):
@@ -113,7 +113,8 @@ def delta_separation(u: FloatArray, b_bar: FloatArray) -> FloatArray:
     """Inverse of `u_separation`."""
     layer = 1.0 / (1.0 + b_bar)
     scaled = (np.pi * np.sin(FOLD_U * u) / np.sin(FOLD_U)) ** 2 / (np.pi + layer)
-    return np.minimum(0.5 * (scaled + np.sqrt(scaled * (scaled + 4.0 * layer))), np.pi)
+    delta: FloatArray = np.minimum(0.5 * (scaled + np.sqrt(scaled * (scaled + 4.0 * layer))), np.pi)
+    return delta
 
 
 def u_slip(t: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -151,7 +152,8 @@ def b_variation(x: FloatArray, phi: FloatArray) -> FloatArray:
     for _ in range(NEWTON_STEPS):
         s = s - ((s - cube) * s * s - cube * cone) / np.maximum((3.0 * s - 2.0 * cube) * s, 1e-300)
     limit = 4.0 / np.pi * np.arctan(np.sqrt(LARGEST_B)) - 1.0
-    return np.tan(0.25 * np.pi * (np.minimum(np.sign(w) * s, limit) + 1.0)) ** 2
+    b: FloatArray = np.tan(0.25 * np.pi * (np.minimum(np.sign(w) * s, limit) + 1.0)) ** 2
+    return b
 
 
 def z_phase(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -165,4 +167,5 @@ def z_phase(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
 def phi_phase(z: FloatArray) -> FloatArray:
     """Inverse of `z_phase`."""
     phi = 0.5 * np.pi * (1.0 + np.sin(FOLD_Z * (2.0 * z - 1.0)) / np.sin(FOLD_Z))
-    return np.clip(phi, 0.0, np.pi)
+    inside: FloatArray = np.clip(phi, 0.0, np.pi)
+    return inside

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray, Geometry, Phase
 
+BoolArray = npt.NDArray[np.bool_]
 Resolution = tuple[int, int, int, int]  # nodes along u in separation, u in slip, x, z
+NODES_BETWEEN = 3  # from the last node of separation to the first of slip in the stacked coefficients
 
 
 class Place(NamedTuple):
@@ -107,7 +110,7 @@ def _slip(
     t = np.minimum(np.maximum(excess / np.maximum(width, 1e-300), atlas.NEAR), 1.0 - atlas.NEAR)
     u, u_t = atlas.u_slip(t)
     scale = width * inside
-    low, mean, high = _mean_force(excess, shape)
+    mean = _mean_force(excess, shape)
     node = u * spans[1] + (spans[0] + NODES_BETWEEN)
     one = np.ones_like(t)
     if not derivatives:
@@ -115,7 +118,7 @@ def _slip(
     ell_1_b, ell_2_b, ell_1_phi, ell_2_phi = shape.slopes(phase)
     by_t = u_t * inside * spans[1]
     width_b, width_phi = 0.5 * (ell_1_b + ell_2_b) - 1.0, 0.5 * (ell_1_phi + ell_2_phi)
-    at_low, at_high = _shares(inside, low, mean, high)
+    at_low, at_high = _shares(inside, mean)
     return np.array(
         (
             node,
@@ -134,20 +137,17 @@ def _slip(
     )
 
 
-NODES_BETWEEN = 3  # from the last node of separation to the first of slip in the stacked coefficients
+def _mean_force(excess: FloatArray, shape: Geometry) -> FloatArray:
+    """Mean force of a contact that does not slip, the admissible one nearest to zero.
 
-
-def _mean_force(excess: FloatArray, shape: Geometry) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Bounds on the mean force of a contact that does not slip, and the one between them nearest to zero.
-
-    Below the slip limit those at the limit, where both bounds are F_edge.
+    Below the slip limit the one at the limit, where both bounds are F_edge.
     """
     reach = np.maximum(excess, shape.width)
     low, high = shape.high - reach, reach - shape.low
-    return low, np.minimum(np.maximum(0.0, low), np.maximum(high, low)), high
+    return np.minimum(np.maximum(0.0, low), np.maximum(high, low))
 
 
-def _shares(inside: Any, low: FloatArray, mean: FloatArray, high: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _shares(inside: BoolArray, mean: FloatArray) -> tuple[FloatArray, FloatArray]:
     """How much of the mean force's derivative is that of the lower bound, and of the upper."""
     half = 0.5 * inside
     return np.where(inside, half, mean > 0.0), np.where(inside, half, mean < 0.0)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
-from fcm.table.locate import NODES_BETWEEN, Resolution, locate
+from fcm.table.locate import Resolution, locate
 
 BLOCK = 4096  # points at a time, so that the intermediate arrays stay in the processor's cache
 FARTHEST = 1e300  # stands for an infinite preload or gap
@@ -49,7 +49,7 @@ class Table:
     def __call__(
         self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """F_b, F_s, F_c [-] at n0_bar [-], b_bar >= 0 [-], phi [rad]; arguments as `fcm.fourier_coefficients`.
+        """F_b, F_s, F_c [-] at n0_bar [-], b_bar >= 0 [-] and phi [rad], as `fcm.fourier_coefficients`.
 
         Raises
         ------

@@ -4,8 +4,8 @@ On an axis with n nodes a spline is ``sum_k c_k B(q - k)`` with n + 2 coefficien
 
     B_i-1 .. B_i+2 = (1-f)^3/6, (4 - 6f^2 + 3f^3)/6, (1 + 3f + 3f^2 - 3f^3)/6, f^3/6.
 
-It is twice continuously differentiable, local to evaluate (64 coefficients), and its error on a smooth function is
-h^4 f''''/384.
+It is twice continuously differentiable, local to evaluate (64 coefficients), and its error on a smooth
+function is h^4 f''''/384.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ FREE, FLAT = "free", "flat"  # end conditions: third derivative continuous at th
 WEIGHTS = np.array([[1, -3, 3, -1], [4, 0, -6, 3], [1, 3, 3, -3], [0, 0, 0, 1]]) / 6.0
 SLOPES = np.array([[-3, 6, -3, 0], [0, -12, 9, 0], [3, 6, -9, 0], [0, 0, 3, 0]]) / 6.0
 # for each axis, the factors of: value, derivative along axis 0, 1, 2
-FACTORS = np.stack([np.concatenate([SLOPES if k == axis else WEIGHTS for k in (-1, 0, 1, 2)]) for axis in range(3)])
+FACTORS = np.stack(
+    [np.concatenate([SLOPES if k == axis else WEIGHTS for k in (-1, 0, 1, 2)]) for axis in range(3)]
+)
 
 PART = 256  # points at a time, so that their 64 weights and coefficients stay in the processor's cache
 
@@ -31,7 +33,9 @@ def interpolate(values: FloatArray, ends: tuple[tuple[str, str], ...]) -> FloatA
     """Coefficients, shape (3, n0+2, n1+2, n2+2), of the splines through values, shape (3, n0, n1, n2)."""
     first, second, third = (_inverse(n, end) for n, end in zip(values.shape[1:], ends, strict=True))
     solved = second @ (values @ third.T)
-    return (first @ solved.reshape(*solved.shape[:2], -1)).reshape(3, -1, *solved.shape[2:])
+    flat = solved.reshape(*solved.shape[:2], -1)
+    coefficients: FloatArray = (first @ flat).reshape(3, -1, *solved.shape[2:])
+    return coefficients
 
 
 def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
@@ -44,8 +48,7 @@ def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
     slope = np.array([-0.5, 0.0, 0.5, 0.0, 0.0])
     matrix[0, :5] = slope if ends[0] == FLAT else third
     matrix[-1, -5:] = -slope[::-1] if ends[1] == FLAT else third
-    inverse: FloatArray = np.linalg.inv(matrix)[:, 1:-1]
-    return inverse
+    return np.asarray(np.linalg.inv(matrix)[:, 1:-1], dtype=np.float64)
 
 
 def stack(*parts: FloatArray) -> FloatArray:
@@ -58,7 +61,7 @@ def stack(*parts: FloatArray) -> FloatArray:
 
 
 def strides(shape: tuple[int, int]) -> tuple[IntArray, IntArray]:
-    """Steps of the three axes in stacked coefficients whose last two axes have this shape, and the 64 neighbours."""
+    """Steps of the three axes in stacked coefficients with last axes of this shape, and the 64 neighbours."""
     steps = np.array((shape[0] * shape[1], shape[1], 1))
     four = np.arange(4)
     offsets = four[:, None, None] * steps[0] + four[:, None] * steps[1] + four
@@ -72,53 +75,45 @@ def evaluate(
 
     coefficients as from `stack`; q, shape (3, p), not negative, in units of nodes; the others from `strides`.
     """
-    points = q.shape[1]
     cells = q.astype(np.int64)
-    powers = np.empty((3, 4, points))
+    powers = np.empty((3, 4, q.shape[1]))
     powers[:, 0] = 1.0
     fraction = np.subtract(q, cells, out=powers[:, 1])
     square = np.multiply(fraction, fraction, out=powers[:, 2])
     np.multiply(square, fraction, out=powers[:, 3])
-    factors = ((WEIGHTS if kinds == 1 else FACTORS) @ powers).reshape(3, kinds, 4, points)
+    factors = ((WEIGHTS if kinds == 1 else FACTORS) @ powers).reshape(3, kinds, 4, -1)
     corners = steps @ cells
-    if points <= PART:
-        return _contract(coefficients, corners, neighbours, factors)
-    values = np.empty((3, kinds, points))
-    space = _Space(kinds)
-    for first in range(0, points, PART):
+    if corners.size <= PART:
+        return _Space(kinds, corners.size).contract(coefficients, corners, neighbours, factors)
+    values = np.empty((3, kinds, corners.size))
+    space = _Space(kinds, PART)
+    for first in range(0, corners.size, PART):
         part = slice(first, first + PART)
-        values[..., part] = _contract(coefficients, corners[part], neighbours, factors[..., part], space)
+        if corners[part].size < PART:
+            space = _Space(kinds, corners[part].size)
+        values[..., part] = space.contract(coefficients, corners[part], neighbours, factors[..., part])
     return values
 
 
 class _Space:
-    """Memory used again for one part after the other: to have it from the system anew costs more than the sums."""
+    """Memory used for one part after the other: having it from the system anew costs more than the sums."""
 
-    def __init__(self, kinds: int) -> None:
-        self.plane = np.empty((kinds, 4, 4, PART))
-        self.weights = np.empty((kinds, 16, 4, PART))
-        self.rows = np.empty((64, PART), dtype=np.int64)
-        self.gathered = np.empty((3, 64, PART))
+    def __init__(self, kinds: int, points: int) -> None:
+        self.plane = np.empty((kinds, 4, 4, points))
+        self.weights = np.empty((kinds, 16, 4, points))
+        self.rows = np.empty((64, points), dtype=np.int64)
+        self.gathered = np.empty((3, 64, points))
 
-    def fits(self, points: int) -> bool:
-        return points == PART
-
-
-def _contract(
-    coefficients: FloatArray,
-    corners: IntArray,
-    neighbours: IntArray,
-    factors: FloatArray,
-    space: _Space | None = None,
-) -> FloatArray:
-    """Sums of 64 coefficients times the products of the factors of the three axes."""
-    _, kinds, _, points = factors.shape
-    use = space if space is not None and space.fits(points) else None
-    first, second, third = factors
-    plane = np.multiply(first[:, :, None], second[:, None], out=use and use.plane)
-    plane = plane.reshape(kinds, 16, 1, points)
-    weights = np.multiply(plane, third[:, None], out=use and use.weights).reshape(kinds, 64, points)
-    rows = np.add(neighbours, corners, out=use and use.rows)
-    gathered = coefficients.take(rows, axis=1, out=use and use.gathered, mode="clip")
-    values: FloatArray = np.einsum("dkp,ckp->cdp", weights, gathered)
-    return values
+    def contract(
+        self, coefficients: FloatArray, corners: IntArray, neighbours: IntArray, factors: FloatArray
+    ) -> FloatArray:
+        """Sums of 64 coefficients times the products of the factors of the three axes."""
+        first, second, third = factors
+        kinds, _, points = first.shape
+        np.multiply(first[:, :, None], second[:, None], out=self.plane)
+        np.multiply(self.plane.reshape(kinds, 16, 1, points), third[:, None], out=self.weights)
+        np.add(neighbours, corners, out=self.rows)
+        coefficients.take(self.rows, axis=1, out=self.gathered, mode="clip")
+        weights = self.weights.reshape(kinds, 64, points)
+        values: FloatArray = np.einsum("dkp,ckp->cdp", weights, self.gathered)
+        return values

@@ -1,11 +1,18 @@
-"""The table file: netCDF-4 after the CF conventions, checked when read, written whole or not at all."""
+"""The table file: netCDF-4 after the CF conventions, written whole or not at all, checked when read.
+
+A table is one grid of nodes (level, variation, phase). Levels run from fully open (n0_bar = -b_bar) through
+separation to its onset (n0_bar = b_bar), and on through slip to the slip limit. At every node the file has
+n0_bar, b_bar, phi and the coefficients F_b, F_s, F_c. Where F over the factor that `atlas` takes out cannot
+be had from these, because both vanish, the file has it besides: ``ratio`` on b_bar = 0 and ``slope`` in slip.
+"""
 
 from __future__ import annotations
 
+import errno
 import json
-import os
 import tempfile
 import zlib
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -14,127 +21,140 @@ import numpy as np
 import numpy.typing as npt
 
 import fcm
-from fcm.contact import fourier_coefficients
-from fcm.table import atlas, build
 from fcm.table.atlas import FloatArray
 
 LAYOUT = 1
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
-NAMES = ("b", "s", "c")
-KINDS = {"b": "mean", "s": "sine (stiffness)", "c": "cosine (damping)"}
+COMMENT = (
+    "Levels: the first level_open are with separation, from n0_bar = -b_bar (fully open) to n0_bar = b_bar; "
+    "the others slip without separation, from n0_bar = b_bar to the slip limit. phi + pi changes the sign of "
+    "F_b alone. b_bar = 1e8 stands for infinity. Between the nodes fcm interpolates F (1 + b_bar) / b_bar in "
+    "separation and the slopes in slip by cubic splines; measured_error is the absolute error of that."
+)
+COEFFICIENTS = {"b": "mean", "s": "sine (stiffness)", "c": "cosine (damping)"}
+GRID = ("level", "variation", "phase")
+VARIABLES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
+    "n0_bar": (GRID, {"long_name": "preload mu n_0 / (k_u a)", "units": "1"}),
+    "b_bar": (GRID[1:], {"long_name": "normal load variation mu k_v b / (k_u a)", "units": "1"}),
+    "phi": (GRID[2:], {"long_name": "phase of normal before tangential motion", "units": "radian"}),
+}
+for _k, _what in COEFFICIENTS.items():
+    VARIABLES[f"F_{_k}"] = (
+        GRID,
+        {
+            "long_name": f"{_what} coefficient of the friction force over k_u a",
+            "units": "1",
+            "coordinates": "n0_bar b_bar phi",
+        },
+    )
+    VARIABLES[f"ratio_{_k}"] = (
+        ("level_open", "phase"),
+        {"long_name": f"limit of F_{_k} / b_bar in separation as b_bar vanishes", "units": "1"},
+    )
+    VARIABLES[f"slope_{_k}"] = (
+        ("level_slip", *GRID[1:]),
+        {"long_name": f"F_{_k} less its value at the slip limit, over the width of slip", "units": "1"},
+    )
+
+Arrays = dict[str, npt.NDArray[Any]]
 
 
 class TableError(ValueError):
-    """A file that is not a sound table; the message says why and for which file."""
+    """A file that is not a sound table; the message says which file and why."""
 
 
-def save(
-    path: str | Path,
-    separation: FloatArray,
-    slip: FloatArray,
-    error: dict[str, Any],
-    history: str = "fcm.table.build_table",
-) -> None:
-    """Write the reduced coefficients of both charts, as returned by `fcm.table.build.charts`.
+def encode(separation: FloatArray, slip: FloatArray) -> Arrays:
+    """The arrays of the file, from the reduced coefficients of the two charts, shapes (3, nu, nx, nz)."""
+    from fcm.contact import fourier_coefficients
+    from fcm.table.nodes import all_nodes
 
-    The file is written under a temporary name in the same folder, then renamed.
+    nodes = all_nodes((separation.shape[1], *slip.shape[1:]))
+    arrays: Arrays = {"n0_bar": nodes.n0_bar, "b_bar": nodes.b_bar[0], "phi": nodes.phi[0, 0]}
+    F = fourier_coefficients(*nodes)
+    for k, name in enumerate(COEFFICIENTS):
+        arrays[f"F_{name}"] = F[k].astype(np.float32)
+        arrays[f"ratio_{name}"] = separation[k, ::-1, 0].astype(np.float32)
+        arrays[f"slope_{name}"] = slip[k].astype(np.float32)
+    return arrays
+
+
+def decode(arrays: Arrays) -> tuple[FloatArray, FloatArray]:
+    """The reduced coefficients of the two charts: the inverse of `encode`, but for rounding."""
+    F, ratio, slope = (
+        np.stack([arrays[f"{kind}_{name}"] for name in COEFFICIENTS]) for kind in ("F", "ratio", "slope")
+    )
+    levels, b = ratio.shape[1], arrays["b_bar"][1:]
+    separation = np.empty((3, levels, *F.shape[2:]))
+    separation[:, :, 0] = ratio
+    np.multiply(F[:, :levels, 1:], (1.0 + b) / b, out=separation[:, :, 1:])
+    return separation[:, ::-1], slope.astype(np.float64)
+
+
+def write(path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: str) -> None:
+    """Write a table under a temporary name in the same folder, then rename it.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
     """
-    target = Path(path)
-    handle, name = tempfile.mkstemp(prefix=target.name + ".", suffix=".part", dir=target.parent)
-    os.close(handle)
-    try:
-        _write(name, separation, slip, error, history)
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(name).chmod(0o666 & ~umask)
-        Path(name).replace(target)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    target = Path(path).resolve()
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder", str(target.parent))
+    attributes = _attributes(arrays, error, history)
+    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
+        partial = Path(folder) / "table.nc"
+        try:
+            _write(partial, arrays, attributes)
+        except RuntimeError as reason:  # what netCDF makes of a full disk
+            raise OSError(errno.EIO, f"could not be written ({reason})", str(target)) from None
+        partial.replace(target)
 
 
-def _write(
-    name: str, separation: FloatArray, slip: FloatArray, error: dict[str, Any], history: str
-) -> None:
+def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str) -> dict[str, Any]:
+    attributes = {
+        "Conventions": "CF-1.8",
+        "title": TITLE,
+        "institution": "unknown",
+        "source": f"fcm {fcm.__version__}, closed form of the periodic solution",
+        "references": "Yang, Chu and Menq (1998), Journal of Sound and Vibration 210(4), 453-481",
+        "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {history}",
+        "comment": COMMENT,
+        "layout": np.int32(LAYOUT),
+        "resolution": np.array([*arrays["ratio_b"].shape[:1], *arrays["slope_b"].shape], dtype=np.int32),
+        "measured_error": json.dumps(error),
+    }
+    return {**attributes, "checksum": _checksum(arrays, attributes)}
+
+
+def _write(path: Path, arrays: Arrays, attributes: dict[str, Any]) -> None:
     import netCDF4
 
-    variables = _variables(separation, slip)
-    levels, nx, nz = variables["n0_bar"][1].shape
-    with netCDF4.Dataset(name, "w", format="NETCDF4") as file:
-        for dimension, size in (
-            ("level", levels),
-            ("variation", nx),
-            ("phase", nz),
-            ("level_open", separation.shape[1]),
-            ("level_slip", slip.shape[1]),
-        ):
-            file.createDimension(dimension, size)
-        for key, (dimensions, values, attributes) in variables.items():
-            variable = file.createVariable(key, values.dtype, dimensions, fill_value=False)
-            variable.setncatts(attributes)
-            variable[...] = values
-        file.setncatts(
-            {
-                "Conventions": "CF-1.8",
-                "title": TITLE,
-                "institution": "made by the user of fcm",
-                "source": f"fcm {fcm.__version__}, closed form of the periodic solution",
-                "references": "Yang, Chu and Menq (1998), Journal of Sound and Vibration 210(4), 453-481",
-                "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {history}",
-                "comment": COMMENT,
-                "layout": np.int32(LAYOUT),
-                "resolution": np.array(build.resolution_of(separation, slip), dtype=np.int32),
-                "measured_error": json.dumps(error),
-                "checksum": _checksum({key: values for key, (_, values, _) in variables.items()}),
-            }
-        )
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        for key, (dimensions, described) in VARIABLES.items():
+            for name, size in zip(dimensions, arrays[key].shape, strict=True):
+                if name not in file.dimensions:
+                    file.createDimension(name, size)
+            variable = file.createVariable(key, arrays[key].dtype, dimensions, fill_value=False)
+            variable.setncatts(described)
+            variable[...] = arrays[key]
+        file.setncatts(attributes)
 
 
-COMMENT = (
-    "Levels run from n0_bar = -b_bar (fully open) to the slip limit; the first level_open of them are those with "
-    "separation, the others slip without. phi + pi changes the sign of F_b alone. Between the nodes fcm interpolates "
-    "F (1 + b_bar) / b_bar in separation and the mean slopes in slip, by cubic splines. Absolute error: see "
-    "measured_error."
-)
-Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]
-
-
-def _variables(separation: FloatArray, slip: FloatArray) -> dict[str, Variable]:
-    nodes = build.nodes(build.resolution_of(separation, slip))
-    grid, node = ("level", "variation", "phase"), "n0_bar b_bar phi"
-    F = fourier_coefficients(*nodes)
-    found: dict[str, Variable] = {
-        "phi": (("phase",), nodes.phi[0, 0], {"long_name": "phase of normal before tangential motion", "units": "radian"}),
-        "b_bar": (grid[1:], nodes.b_bar[0], {"long_name": "normal load variation mu k_v b / (k_u a)", "units": "1"}),
-        "n0_bar": (grid, nodes.n0_bar, {"long_name": "preload mu n_0 / (k_u a)", "units": "1"}),
-    }
-    for k, name in enumerate(NAMES):
-        what = f"{KINDS[name]} coefficient of the friction force over k_u a"
-        found[f"F_{name}"] = (
-            grid, F[k].astype(np.float32), {"long_name": what, "units": "1", "coordinates": node}
-        )
-    for k, name in enumerate(NAMES):
-        what = f"limit of F_{name} / b_bar as b_bar vanishes, in separation"
-        found[f"ratio_{name}"] = (
-            ("level_open", "phase"), separation[k, ::-1, 0].astype(np.float32), {"long_name": what, "units": "1"}
-        )
-        what = f"mean slope of F_{name} by n0_bar from the slip limit back to the node, negative, in slip"
-        found[f"slope_{name}"] = (
-            ("level_slip", *grid[1:]), slip[k].astype(np.float32), {"long_name": what, "units": "1"}
-        )
-    return found
-
-
-def _checksum(arrays: dict[str, npt.NDArray[Any]]) -> str:
-    value = 0
+def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
+    """Of the shapes and bytes of all arrays, and of the attributes that say what they are worth."""
+    value = zlib.crc32(f"{attributes['measured_error']} {list(attributes['resolution'])}".encode())
     for key in sorted(arrays):
-        value = zlib.crc32(np.ascontiguousarray(arrays[key]).tobytes(), zlib.crc32(key.encode(), value))
+        array = np.ascontiguousarray(arrays[key])
+        value = zlib.crc32(
+            array.tobytes(), zlib.crc32(f"{key} {array.dtype.str} {array.shape}".encode(), value)
+        )
     return f"crc32:{value:08x}"
 
 
 def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[str, Any]]:
-    """The reduced coefficients of both charts and the recorded error.
+    """The reduced coefficients of the two charts, and the recorded error; path None is the shipped table.
 
     Raises
     ------
@@ -143,36 +163,47 @@ def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[s
     """
     name = Path(DEFAULT if path is None else path)
     attributes, arrays = _read(name)
-    if attributes.get("title") != TITLE:
-        raise TableError(f"{name}: a netCDF file, but not a table made by `fcm tabulate`")
-    if int(attributes.get("layout", -1)) != LAYOUT:
-        raise TableError(f"{name}: table of layout {attributes.get('layout')}, this version reads {LAYOUT}; make it anew")
-    missing = {"F_b", "F_s", "F_c", "b_bar"} - set(arrays)
-    if missing:
-        raise TableError(f"{name}: damaged, {', '.join(sorted(missing))} missing")
-    if any(not np.all(np.isfinite(values)) for values in arrays.values()):
-        raise TableError(f"{name}: damaged, it holds values that are not finite numbers")
-    if _checksum(arrays) != attributes.get("checksum"):
-        raise TableError(f"{name}: damaged, its checksum does not match its data; make it anew")
-    F, ratio, slip = (np.stack([arrays[f"{kind}_{k}"] for k in NAMES]) for kind in ("F", "ratio", "slope"))
-    b = arrays["b_bar"][1:]
-    separation = np.empty((*ratio.shape[:2], *F.shape[2:]))
-    separation[:, :, 0] = ratio
-    np.multiply(F[:, : ratio.shape[1], 1:], (1.0 + b) / b, out=separation[:, :, 1:])
-    return separation[:, ::-1], slip.astype(np.float64), json.loads(attributes["measured_error"])
+    if reason := _damage(attributes, arrays):
+        raise TableError(f"{name}: damaged, {reason}; make it anew with fcm tabulate")
+    return *decode(arrays), json.loads(attributes["measured_error"])
 
 
-def _read(name: Path) -> tuple[dict[str, Any], dict[str, npt.NDArray[Any]]]:
+def _read(path: Path) -> tuple[dict[str, Any], Arrays]:
     import netCDF4
 
-    if not name.is_file():
-        raise TableError(f"{name}: no such file")
     try:
-        with netCDF4.Dataset(name) as file:
+        with path.open("rb"):
+            pass
+        with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
             attributes = {key: file.getncattr(key) for key in file.ncattrs()}
-            if attributes.get("title") != TITLE or attributes.get("layout") != LAYOUT:
-                return attributes, {}
+            _check_kind(path, attributes)
             return attributes, {key: variable[...] for key, variable in file.variables.items()}
-    except (OSError, RuntimeError, AttributeError, UnicodeError) as reason:
-        raise TableError(f"{name}: not a sound netCDF file ({reason})") from None
+    except TableError:
+        raise
+    except FileNotFoundError:
+        raise TableError(f"{path}: no such file") from None
+    except Exception as reason:  # whatever the library makes of bytes that are not netCDF, or were once
+        raise TableError(f"{path}: cannot be read as netCDF ({reason})") from None
+
+
+def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
+    if not np.array_equal(attributes.get("title", ""), TITLE):
+        raise TableError(f"{path}: netCDF, but not a table made by fcm tabulate")
+    if not np.array_equal(attributes.get("layout", ""), LAYOUT):
+        found = f"a table of layout {attributes.get('layout')}, and this fcm reads layout {LAYOUT}"
+        raise TableError(f"{path}: {found}; make it anew with fcm tabulate")
+
+
+def _damage(attributes: Mapping[str, Any], arrays: Arrays) -> str:
+    """What is wrong with a file that says it is a table; empty if nothing is."""
+    if missing := sorted(set(VARIABLES) - set(arrays)):
+        return f"{', '.join(missing)} missing"
+    if missing := sorted({"measured_error", "resolution", "checksum"} - set(attributes)):
+        return f"attribute {', '.join(missing)} missing"
+    for key, array in arrays.items():
+        if array.dtype.kind != "f" or not np.isfinite(array.sum()):
+            return f"{key} holds values that are not finite numbers"
+    if _checksum(arrays, attributes) != attributes["checksum"]:
+        return "its data do not match its checksum"
+    return ""

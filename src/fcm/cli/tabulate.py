@@ -1,0 +1,174 @@
+"""``fcm tabulate``: build a table of the Fourier coefficients, or check one against the closed form."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.files import output_option
+from fcm.cli.guard import NOT_COMPLETED
+from fcm.cli.messages import Messages, pass_messages
+
+if TYPE_CHECKING:
+    from fcm.table.locate import Resolution
+
+DEFAULT_OUTPUT = "table.nc"
+
+
+@click.command()
+@output_option(
+    "-o", "--output", endings=(".nc",), default=DEFAULT_OUTPUT, show_default=True, help="The file to write."
+)
+@click.option(
+    "--preset", type=click.Choice(["default", "fast"]), default="default", show_default=True,
+    help="As the shipped tables: error below 2e-4 in 11 MB, or 2e-3 in 1 MB.",
+)  # fmt: skip
+@click.option(
+    "--nodes", type=int, nargs=4, metavar="U U X Z", callback=lambda _ctx, _param, value: _resolution(value),
+    help="Nodes of your own: along n0_bar in separation and in slip, b_bar, phi.  [default: the preset's]",
+)  # fmt: skip
+@click.option(
+    "--points", type=click.IntRange(10_000, 100_000_000), default=1_000_000, show_default=True,
+    help="At how many points the error is measured.",
+)  # fmt: skip
+@click.option(
+    "--verify", type=click.Path(path_type=Path), metavar="FILE",
+    help="Build nothing: measure the error of FILE anew and compare it with the one FILE records.",
+)  # fmt: skip
+@click.option("--json", "to_json", is_flag=True, help="Print the error as JSON instead of a table.")
+@click.pass_context
+@pass_messages
+def tabulate(
+    messages: Messages,
+    ctx: click.Context,
+    output: Path,
+    preset: str,
+    nodes: Resolution | None,
+    points: int,
+    verify: Path | None,
+    to_json: bool,
+) -> None:
+    """Build a table of the Fourier coefficients of friction from their closed form.
+
+    The table covers every preload, gap, load variation and phase. Its error is measured against the
+    closed form in all regimes and corners, recorded in the file and printed.
+    """
+    if verify is not None:
+        _refuse_beside_verify(ctx)
+        _verify(messages, verify, to_json)
+    else:
+        _build(messages, output, preset, nodes, points, to_json)
+
+
+def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
+    if value is None:
+        return None
+    from fcm.table.nodes import problem
+
+    if reason := problem(value):
+        raise click.BadParameter(f"{reason}.")
+    return value
+
+
+def _refuse_beside_verify(ctx: click.Context) -> None:
+    for name in ("output", "preset", "nodes", "points"):
+        if ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
+            raise click.UsageError(f"--{name} is of no use with --verify.")
+
+
+def _build(
+    messages: Messages, output: Path, preset: str, nodes: Resolution | None, points: int, to_json: bool
+) -> None:
+    from fcm.table import build_table
+    from fcm.table.nodes import PRESETS
+
+    resolution = PRESETS[preset] if nodes is None else nodes
+    began = time.perf_counter()
+    with _Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
+        options = " ".join(map(str, resolution))
+        table = build_table(output, resolution, points, progress, f"fcm tabulate --nodes {options}")
+    seconds = time.perf_counter() - began
+    size = output.stat().st_size
+    result = {
+        "file": str(output),
+        "bytes": size,
+        "resolution": list(resolution),
+        "seconds": seconds,
+        "error": table.error,
+    }
+    click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _as_table(table.error))
+    messages.info(f"wrote {output}: {size / 1e6:.1f} MB in {seconds:.1f} s; {_error_line(table.error)}")
+
+
+def _verify(messages: Messages, path: Path, to_json: bool) -> None:
+    from fcm.table import open_table
+    from fcm.table.measure import disagreement, measure
+
+    table = open_table(path)
+    began = time.perf_counter()
+    recorded = table.error
+    with _Interruptible(messages, "the table was not verified") as progress:
+        again = measure(
+            table, recorded["points"], recorded["seed"], lambda share: progress(share / 2, "same points")
+        )
+        fresh = measure(
+            table,
+            recorded["points"],
+            recorded["seed"] + 1,
+            lambda share: progress((1 + share) / 2, "new points"),
+        )
+    found = disagreement(recorded, again, fresh)
+    result = {
+        "file": str(path),
+        "true": not found,
+        "seconds": time.perf_counter() - began,
+        "recorded": recorded,
+        "measured": again,
+        "measured_at_new_points": fresh,
+    }
+    click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _as_table(fresh))
+    if found:
+        messages.error(f"error: {path}: the recorded error is not true: {found}")
+        click.get_current_context().exit(NOT_COMPLETED)
+    messages.info(f"{path}: as recorded, in {result['seconds']:.1f} s; {_error_line(fresh)}")
+
+
+class _Interruptible:
+    """Progress of a calculation; if it is interrupted, says how far it was and what remains."""
+
+    def __init__(self, messages: Messages, remains: str) -> None:
+        self.messages, self.remains, self.share = messages, remains, 0.0
+
+    def __enter__(self) -> Callable[[float, str], None]:
+        return self._progress
+
+    def _progress(self, share: float, what: str) -> None:
+        self.share = share
+        self.messages.progress(share, what)
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        self.messages.clear()
+        if kind is not None and issubclass(kind, KeyboardInterrupt):
+            self.messages.error(f"interrupted at {100 * self.share:.0f} %: {self.remains}")
+            click.get_current_context().exit(NOT_COMPLETED)
+
+
+def _as_table(error: dict[str, Any]) -> str:
+    """Error by regime and coefficient, with the point of the greatest."""
+    lines = [f"{'regime':<11}{'':<5}{'max':>8}{'99.9 %':>9}{'rms':>9}  worst at (n0_bar, b_bar, phi)"]
+    for regime, parts in error["regimes"].items():
+        for name in ("F_b", "F_s", "F_c"):
+            part = parts[name]
+            point = ", ".join(f"{value:.6g}" for value in part["worst"])
+            numbers = f"{part['max']:8.1e} {part['p999']:8.1e} {part['rms']:8.1e}"
+            lines.append(f"{regime:<11}{name:<5}{numbers}  ({point})")
+    return "\n".join(lines)
+
+
+def _error_line(error: dict[str, Any]) -> str:
+    return f"error at {error['points']} points {error['max']:.1e} at most, {error['rms']:.1e} rms"

@@ -1,0 +1,69 @@
+"""The nodes of the atlas: a grid in (u, x, z) on each chart, as points (n0_bar, b_bar, phi)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.table import atlas
+from fcm.table.atlas import FloatArray, Phase
+from fcm.table.locate import Resolution
+
+PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
+LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than anybody does
+MOST_NODES = 20_000_000  # of a table; 20 times the default, half a gigabyte
+
+LARGEST_SLIP_B = 1e4  # well beyond, the slip regime is thinner than rounding errors allow to resolve
+SMALLEST_PHI = 3e-6  # stands for the limit phi -> 0 of the slip regime where b > 1
+
+
+class Nodes(NamedTuple):
+    """Points, each array of shape (nu, nx, nz)."""
+
+    n0_bar: FloatArray
+    b_bar: FloatArray
+    phi: FloatArray
+
+
+def unit(count: int) -> FloatArray:
+    """Evenly spaced nodes from 0 to 1."""
+    return np.linspace(0.0, 1.0, count)
+
+
+def problem(resolution: Resolution) -> str:
+    """Why no table can be made of a resolution; empty if one can."""
+    nu_1, nu_2, nx, nz = resolution
+    if not all(LEAST <= count <= MOST for count in resolution):
+        return f"each axis has from {LEAST} to {MOST} nodes"
+    total = (nu_1 + nu_2) * nx * nz
+    return f"{total} nodes in all are more than {MOST_NODES}" if total > MOST_NODES else ""
+
+
+def separation_nodes(u: FloatArray, x: FloatArray, z: FloatArray) -> Nodes:
+    """Nodes of the separation chart; u = 0 is the onset of separation, u = 1 is fully open."""
+    U, X, Z = np.meshgrid(u, x, z, indexing="ij")
+    phi = atlas.phi_phase(Z)
+    b = atlas.b_variation(X, phi)
+    n0 = b * np.cos(atlas.delta_separation(U, b))
+    return Nodes(np.where(U == 1.0, -b, np.where(U == 0.0, b, n0)), b, phi)
+
+
+def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = False) -> Nodes:
+    """Nodes of the slip chart; if resolved, moved to where its width is above the rounding errors of b."""
+    U, X, Z = np.meshgrid(u, x, z, indexing="ij")
+    phi = atlas.phi_phase(Z)
+    b = atlas.b_variation(X, phi)
+    if resolved:
+        b = np.minimum(b, LARGEST_SLIP_B)
+        away = SMALLEST_PHI * np.maximum(b, 0.1)
+        phi = np.clip(phi, away, np.pi - away)
+    return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, Phase.of(phi)).width, b, phi)
+
+
+def all_nodes(resolution: Resolution) -> Nodes:
+    """The nodes of both charts one after the other, n0 rising from -b to the slip limit."""
+    nu_1, nu_2, nx, nz = resolution
+    x, z = unit(nx), unit(nz)
+    parts = separation_nodes(unit(nu_1)[::-1], x, z), slip_nodes(unit(nu_2), x, z)
+    return Nodes(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))
