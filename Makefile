@@ -30,7 +30,7 @@ check: $(VENV)/installed-dev  ## format, lint and types only
 
 tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
-	$(BIN)/fcm tabulate --fast -o tables/fast.nc
+	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
 
 clean:  ## remove what was made, but for the environment
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -30,7 +30,9 @@ def imported_by(*args):
     return set(json.loads(done.stdout.splitlines()[-1]))
 
 
-@pytest.mark.parametrize("args", [["--help"], ["--version"], ["plot", "--help"], ["respond", "--help"]])
+@pytest.mark.parametrize(
+    "args", [["--help"], ["--version"], ["plot", "--help"], ["respond", "--help"], ["tabulate", "--help"]]
+)
 def test_help_imports_no_numerics(args):
     assert not imported_by(*args) & HEAVY
 
