@@ -1,0 +1,83 @@
+"""A response file as the design describes it, written here by hand and read for drawing."""
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm.plot import PlotError, draw_response, read_response
+
+NAN = np.nan
+
+
+@pytest.fixture
+def path(tmp_path):
+    """Two curves of three and two points, the second padded; of the first the middle is unstable."""
+    path = tmp_path / "response.nc"
+    with netCDF4.Dataset(path, "w") as data:
+        data.frequency_unit = "Hz"
+        for name, size in {"curve": 2, "point": 3, "dof": 1, "contact": 1}.items():
+            data.createDimension(name, size)
+        variables = {
+            "dof": (("dof",), np.array(["tip"], object)),
+            "contact.a.n_0": (("curve",), np.array([5.0, -1.0])),
+            "complete": (("curve",), np.array([1.0, 0.0])),
+            "frequency": (("curve", "point"), np.array([[1.0, 2.0, 1.5], [1.0, 3.0, NAN]])),
+            "amplitude": (
+                ("curve", "point", "dof"),
+                np.array([[[7.0], [8.0], [9.0]], [[1.0], [2.0], [NAN]]]),
+            ),
+            "stable": (("curve", "point"), np.array([[1.0, 0.0, 1.0], [1.0, 1.0, NAN]])),
+            "regime": (
+                ("curve", "point", "contact"),
+                np.array([[["E"], ["EPEN"], ["E"]], [["S"], ["S"], [""]]], object),
+            ),
+        }
+        for name, (dims, values) in variables.items():
+            kind = str if values.dtype == object else float
+            data.createVariable(name, kind, dims)[...] = values
+        data["contact.a.n_0"].long_name = "swept value of contact.a.n_0"
+    return path
+
+
+def test_curves_come_without_their_padding(path):
+    response = read_response(path)
+    first, second = response.curves
+    assert response.dofs == ("tip",) and response.frequency_unit == "Hz"
+    assert first.parameters == {"contact.a.n_0": 5.0} and second.parameters == {"contact.a.n_0": -1.0}
+    assert first.frequency.tolist() == [1.0, 2.0, 1.5] and second.frequency.tolist() == [1.0, 3.0]
+    assert second.amplitude.tolist() == [[1.0], [2.0]]
+    assert first.stable.tolist() == [True, False, True] and second.stable.tolist() == [True, True]
+    assert first.regimes == {"E", "EPEN"} and second.regimes == {"S"}
+
+
+def test_its_unstable_part_is_drawn_dashed(path):
+    (axes,) = draw_response(read_response(path)).axes
+    assert [line.get_linestyle() for line in axes.lines] == ["-", "--", "-"]
+    assert axes.get_xlabel() == "Frequency $f$ (Hz)" and axes.get_ylabel() == "Amplitude of tip"
+
+
+def test_stability_that_is_nowhere_known_is_none(path):
+    with netCDF4.Dataset(path, "a") as data:
+        data["stable"][:] = NAN
+    assert [curve.stable for curve in read_response(path).curves] == [None, None]
+
+
+def test_a_file_without_stability_and_regimes_is_read(path):
+    with netCDF4.Dataset(path, "a") as data:
+        data.renameVariable("stable", "x")
+        data.renameVariable("regime", "y")
+    assert all(curve.stable is None and not curve.regimes for curve in read_response(path).curves)
+
+
+def test_a_curve_without_points_is_not_drawn(path):
+    with netCDF4.Dataset(path, "a") as data:
+        data["frequency"][1] = NAN
+        data["amplitude"][1] = NAN
+    assert len(draw_response(read_response(path)).axes[0].lines) == 2
+
+
+@pytest.mark.parametrize("cut", [0, 10, 1000, -100])
+def test_a_file_that_was_cut_off_is_said(path, cut):
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(PlotError, match=r"response\.nc: not a "):
+        read_response(path)
