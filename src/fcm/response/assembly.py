@@ -10,11 +10,13 @@ from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
 from fcm.response.balance import Balance
 from fcm.response.displacement import amplitude_growth, displacements
-from fcm.response.extrema import fold_rate, locate, peak_rate
+from fcm.response.extrema import locate, peak_rate
 from fcm.response.path import COMPLETE, REASONS, BoolArray
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.result import Curve
+from fcm.response.stability import stable_points
 from fcm.response.structure import IntArray
+from fcm.response.truncation import truncation_error
 from fcm.scene.model import Scene
 
 
@@ -28,10 +30,11 @@ class Assembly:
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
         arguments = at_points.law.arguments(z[:, :-1].reshape(z.shape[0], exact.group.contacts, 5))
         self.regime = sequences(*arguments)
+        self.truncation_error = truncation_error(at_points, z)
+        self.stable = stable_points(at_points, z)
         self.same = points.curve[1:] == points.curve[:-1]  # whether a point and the next are of one curve
 
     def curves(self, scenes: tuple[Scene, ...], dofs: tuple[str, ...]) -> list[Curve]:
-        folds, fold_curve = self._folds()
         bounds = np.searchsorted(self.points.curve, np.arange(len(scenes) + 1))
         peaks = self._peaks(bounds)
         results = []
@@ -50,8 +53,10 @@ class Assembly:
                     complete=status == COMPLETE,
                     reason=self._reason(i, status, bounds),
                     peaks={d: (float(peaks[i, j, 0]), float(peaks[i, j, 1])) for j, d in enumerate(dofs)},
-                    folds=[float(w) for w in folds[fold_curve == i]],
+                    folds=self.z[part, -1][self.points.fold[part]].tolist(),
                     seconds=0.0,
+                    truncation_error=self.truncation_error[part],
+                    stable=self.stable[part],
                 )
             )
         return results
@@ -61,14 +66,6 @@ class Assembly:
             return "no solution was found at the low end of the range; try another frequency to begin with"
         where = "" if status == COMPLETE else f"stopped at {self.z[bounds[curve + 1] - 1, -1]:.8g} rad/s: "
         return where + REASONS[status]
-
-    def _folds(self) -> tuple[FloatArray, IntArray]:
-        """Frequencies of the folds in order along the curves, and the curve of each."""
-        rate = self.points.direction[:, -1]
-        at = np.flatnonzero(self.same & (np.sign(rate[1:]) * np.sign(rate[:-1]) < 0.0))
-        segments = self.points.segments(at, self.exact)
-        z = locate(self.exact, segments, fold_rate, rate[at], rate[at + 1], at)
-        return z[:, -1], segments.curve
 
     def _peaks(self, bounds: IntArray) -> FloatArray:
         """(curve, dof, 2): amplitude and frequency of the greatest peak."""
@@ -80,7 +77,7 @@ class Assembly:
                 peaks[i] = np.column_stack((size[highest, np.arange(size.shape[1])], self.z[highest, -1]))
         at, which, before, after = self._summits(size, peaks[:, :, 0])
         segments = self.points.segments(at, self.exact)
-        z = locate(self.exact, segments, peak_rate, before, after, which)
+        z, _ = locate(self.exact, segments, peak_rate, before, after, which)
         X, _ = displacements(self.exact.take(segments.curve), z[:, :-1], z[:, -1])
         for point, curve, dof, value in zip(z, segments.curve, which, np.abs(X), strict=True):
             if value[dof] > peaks[curve, dof, 0]:

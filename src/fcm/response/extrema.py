@@ -32,12 +32,12 @@ def peak_rate(balance: Balance, z: FloatArray, direction: FloatArray, which: Int
 
 def locate(
     exact: Balance, segments: Segments, rate: Rate, at_start: FloatArray, at_end: FloatArray, which: IntArray
-) -> FloatArray:
-    """The point of each segment where the rate changes its sign, (segment, unknown + 1).
+) -> tuple[FloatArray, FloatArray]:
+    """The point of each segment where the rate changes its sign, and the curve's direction there.
 
-    at_start and at_end are the rates at the ends; which is passed on to the rate.
+    Both (segment, unknown + 1). at_start and at_end are the rates at the ends; which is passed to the rate.
     """
-    z = segments.start.copy()
+    z, direction = segments.start.copy(), segments.direction_start.copy()
     low, high = np.zeros(z.shape[0]), np.ones(z.shape[0])
     f_low, f_high = at_start.copy(), at_end.copy()
     missed = np.zeros(z.shape[0], dtype=bool)
@@ -48,13 +48,13 @@ def locate(
         narrow = (high - low) * segments.length <= WIDTH
         use = new.converged & ~narrow
         missed = ~new.converged
-        z[use] = new.z[use]
+        z[use], direction[use] = new.z[use], new.tangent[use]
         before = np.sign(f) == np.sign(at_start)
         low, f_low = np.where(use & before, share, low), np.where(use & before, f, f_low)
         high, f_high = np.where(use & ~before, share, high), np.where(use & ~before, f, f_high)
         if np.all(narrow | (use & (f == 0.0))):
             break
-    return z
+    return z, direction
 
 
 def _any_share(low: FloatArray, high: FloatArray, count: int) -> FloatArray:

@@ -17,6 +17,7 @@ from fcm.response.result import UNIT, Curve, Response
 if TYPE_CHECKING:
     import xarray
 
+LAST_COLUMNS = ("stable", "table_error", "truncation_error")
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 
 
@@ -75,6 +76,10 @@ def fields_of(response: Response) -> dict[str, Field]:
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
     points("table_error", lambda c: c.table_error, (), long_name=shift, units="1")
+    left = "response to harmonics 2 to 8 of the contact forces, relative to the fundamental"
+    points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
+    hill = "1 where small disturbances die out, by Hill's method on the balanced equations"
+    points("stable", lambda c: c.stable.astype(np.float64), (), long_name=hill, units="1")
     out |= _curve_fields(response, scale, cf_unit)
     return out
 
@@ -172,7 +177,7 @@ def write_csv(response: Response, path: str | Path) -> None:
     with Replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(
-            ["curve", *keys, f"frequency [{response.frequency_unit}]", *columns, *regimes, "table_error"]
+            ["curve", *keys, f"frequency [{response.frequency_unit}]", *columns, *regimes, *LAST_COLUMNS]
         )
         for number, c in enumerate(response.curves):
             values = np.stack((c.amplitude, c.phase, c.mean), axis=2).reshape(c.points, -1)
@@ -180,7 +185,8 @@ def write_csv(response: Response, path: str | Path) -> None:
                 writer.writerow(
                     [number, *c.parameters.values(), repr(float(c.frequency[k] / scale))]
                     + [repr(float(value)) for value in values[k]]
-                    + [*c.regime[k].tolist(), repr(float(c.table_error[k]))]
+                    + [*c.regime[k].tolist(), int(c.stable[k])]
+                    + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
                 )
 
 

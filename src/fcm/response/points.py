@@ -9,7 +9,8 @@ import numpy as np
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.displacement import displacement_rates, displacements
-from fcm.response.path import Trace, amplitudes, correct, scales
+from fcm.response.extrema import fold_rate, locate
+from fcm.response.path import BoolArray, Trace, amplitudes, correct, scales
 from fcm.response.segment import EXACT, ITERATIONS, Segments
 from fcm.response.structure import AnyArray, IntArray
 
@@ -29,6 +30,7 @@ class Points:
     z: FloatArray  # (point, unknown + 1), the frequency last
     direction: FloatArray  # (point, unknown + 1) along the curve
     shift: FloatArray  # (point,) relative, by the correction; NaN where it failed and the point stayed
+    fold: BoolArray  # (point,) where the frequency turns
 
     def segments(self, at: IntArray, exact: Balance) -> Segments:
         """The segments from points at (segment,) to the points that follow them."""
@@ -58,7 +60,8 @@ def corrected(exact: Balance, path: Trace) -> Points:
     z[ends, -1] = path.z[ends, -1]
     along = np.sign((new.tangent * path.direction / scale).sum(axis=1, keepdims=True))
     direction = np.where(kept, along * scale * new.tangent, path.direction)
-    return Points(path.curve, z, direction, np.where(new.converged, shift, np.nan))
+    shift = np.where(new.converged, shift, np.nan)
+    return Points(path.curve, z, direction, shift, np.zeros(shift.size, dtype=bool))
 
 
 def refined(exact: Balance, points: Points) -> Points:
@@ -102,17 +105,34 @@ def _subdivided(exact: Balance, points: Points, pieces: IntArray) -> Points:
     share = number / pieces[at]
     new = points.segments(at, exact).points(exact, share)
     ok = new.converged
-    order = np.argsort(np.concatenate((np.arange(points.curve.size), (at + share)[ok])))
+    return _inserted(points, (at + share)[ok], new.z[ok], new.tangent[ok], fold=False)
+
+
+def with_folds(exact: Balance, points: Points) -> Points:
+    """The folds as points of their own, so that each part between them is one branch."""
+    rate, same = points.direction[:, -1], points.curve[1:] == points.curve[:-1]
+    at = np.flatnonzero(same & (np.sign(rate[1:]) * np.sign(rate[:-1]) < 0.0))
+    segments = points.segments(at, exact)
+    z, direction = locate(exact, segments, fold_rate, rate[at], rate[at + 1], at)
+    return _inserted(points, at + np.float64(0.5), z, direction, fold=True)
+
+
+def _inserted(points: Points, place: FloatArray, z: FloatArray, direction: FloatArray, fold: bool) -> Points:
+    """Points between others: place k + share lies between the points k and k + 1."""
+    order = np.argsort(np.concatenate((np.arange(points.curve.size), place)))
+    at = place.astype(np.intp)
+    # these never saw the table; the error that their neighbours had
+    shift = np.maximum(points.shift[at], points.shift[at + 1])
 
     def merged(old: AnyArray, extra: AnyArray) -> AnyArray:
-        return np.concatenate((old, extra[ok]))[order]
+        return np.concatenate((old, extra))[order]
 
     return Points(
         merged(points.curve, points.curve[at]),
-        merged(points.z, new.z),
-        merged(points.direction, new.tangent),
-        # these never saw the table; the error that its neighbours would have had
-        merged(points.shift, np.maximum(points.shift[at], points.shift[at + 1])),
+        merged(points.z, z),
+        merged(points.direction, direction),
+        merged(points.shift, shift),
+        merged(points.fold, np.full(at.size, fold)),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.response.jumps import Jump, jumps
 
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
@@ -23,24 +24,36 @@ class Curve:
     phase: FloatArray  # (point, dof) [rad], of amplitude * sin(omega t + phase)
     mean: FloatArray  # (point, dof)
     regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
+    stable: npt.NDArray[np.bool_]  # (point,) by Hill's method on the balanced equations
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
+    truncation_error: FloatArray  # (point,) response to the loop's harmonics 2, 3, ... by that to its first
     complete: bool
     reason: str  # why it is not complete, else ''
     peaks: dict[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
-    truncation_error: FloatArray | None = None  # (point,)
-    stable: npt.NDArray[np.bool_] | None = None  # (point,)
 
     @property
     def points(self) -> int:
         """Number of points."""
         return int(self.frequency.size)
 
-    def worst(self, errors: FloatArray | None) -> float | None:
+    def worst(self, errors: FloatArray) -> float | None:
         """Largest error of the curve that is known."""
-        known = np.empty(0) if errors is None else errors[np.isfinite(errors)]
+        known = errors[np.isfinite(errors)]
         return float(known.max()) if known.size else None
+
+    def jumps(self) -> list[Jump]:
+        """Jumps of a slow upward and a slow downward sweep of the frequency."""
+        return jumps(self.frequency, self.amplitude, self.stable)
+
+    def _jump(self, jump: Jump, scale: float) -> dict[str, Any]:
+        return {
+            "sweep": jump.sweep,
+            "frequency": jump.frequency / scale,
+            "before": dict(zip(self.peaks, jump.before.tolist(), strict=True)),
+            "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
+        }
 
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
@@ -52,6 +65,8 @@ class Curve:
             **({} if self.complete else {"reason": self.reason}),
             "peak": {d: {"amplitude": a, "frequency": w / scale} for d, (a, w) in self.peaks.items()},
             "folds": [w / scale for w in self.folds],
+            "jumps": [self._jump(jump, scale) for jump in self.jumps()],
+            "stable": bool(self.stable.all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
             "seconds": self.seconds,

@@ -12,7 +12,7 @@ from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.path import STALLED, BoolArray, Trace, follow
-from fcm.response.points import corrected, refined
+from fcm.response.points import corrected, refined, with_folds
 from fcm.response.result import Response
 from fcm.response.start import starting_points
 from fcm.response.structure import group_of, with_contact
@@ -63,7 +63,7 @@ def trace(
     points = corrected(exact, path)
     if used is exact:
         points.shift[np.isfinite(points.shift)] = 0.0  # no table was used
-    points = refined(exact, points)
+    points = with_folds(exact, refined(exact, points))
     results = Assembly(exact, points, path.status, lost).curves(curves, scene.modal.dofs)
     response = Response(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,

@@ -1,0 +1,94 @@
+"""Stability of every point: Hill's method on the balanced equations, the mean included.
+
+A small disturbance of a solution, delta(t) = d_mean(t) + Im(d(t) exp(i omega t)) in modal coordinates, obeys
+the modal equations with the contact forces replaced by their tangent. With amplitudes that grow as
+exp(lambda t) this is an eigenvalue problem of first order in (d, d'). A real exponent is zero exactly where
+the Jacobian of the balance is singular, so stability changes at the folds, and elsewhere where a pair
+of exponents crosses the imaginary axis.
+
+Exponents are defined up to multiples of i omega, and of each family Hill's method gives several copies.
+Only the slow one counts, |Im lambda| <= omega / 2: a friction force is that of a steady cycle, and its
+tangent holds for amplitudes that change slowly against it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.balance import Balance
+from fcm.response.law import UNKNOWNS
+from fcm.response.path import BoolArray
+
+GROWTH = 1e-9  # a growth rate counts as positive above this fraction of the frequency
+ZONE = 0.5  # of the frequency: half the distance between copies of an exponent
+BLOCK = 4_000_000  # elements of the matrices that are held at a time
+
+
+def stable_points(balance: Balance, z: FloatArray) -> BoolArray:
+    """Whether small disturbances of each point do not grow; z (point, unknown + 1)."""
+    size = 6 * balance.group.frequency.shape[1]
+    step = max(BLOCK // size**2, 1)
+    parts = [np.arange(first, min(first + step, z.shape[0])) for first in range(0, z.shape[0], step)]
+    stable = [growth_rates(balance.take(part), z[part]) <= GROWTH * z[part, -1] for part in parts]
+    return np.concatenate(stable) if stable else np.empty(0, dtype=bool)
+
+
+def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
+    """Greatest real part of the exponents at each point, (point,) [1/s in the scene's units]."""
+    group, omega = balance.group, z[:, -1]
+    points, modes = z.shape[0], group.frequency.shape[1]
+    stiffness = _modal_tangent(balance, z).reshape(points, modes, 3, modes, 3)
+    damping = np.zeros((points, modes, 3, modes, 3))
+    i = np.arange(modes)
+    rate = 2.0 * group.damping * group.frequency  # 2 zeta w_i
+    for part in range(3):
+        damping[:, i, part, i, part] = rate
+        stiffness[:, i, part, i, part] += group.frequency**2 - (omega[:, None] ** 2 if part < 2 else 0.0)
+    # d/dt of Im(d exp(i omega t)) is Im((d' + i omega d) exp(i omega t)); i turns (Re, Im) by a right angle
+    for row, column, sign in ((0, 1, -1.0), (1, 0, 1.0)):
+        damping[:, i, row, i, column] = 2.0 * sign * omega[:, None]
+        stiffness[:, i, row, i, column] += sign * rate * omega[:, None]
+    size = 3 * modes
+    matrix = np.zeros((points, 2 * size, 2 * size))
+    # time in units of 1/omega, so that the matrix is as well scaled as the problem allows
+    w = omega[:, None, None]
+    matrix[:, :size, size:] = np.eye(size)
+    matrix[:, size:, :size] = -stiffness.reshape(points, size, size) / w**2
+    matrix[:, size:, size:] = -damping.reshape(points, size, size) / w
+    exponents = np.linalg.eigvals(matrix)
+    slow = np.abs(exponents.imag) <= ZONE
+    growth: FloatArray = np.where(slow, exponents.real, -np.inf).max(axis=1) * omega
+    return growth
+
+
+def _modal_tangent(balance: Balance, z: FloatArray) -> FloatArray:
+    """Tangent of the contact forces in modal coordinates over the modal mass, (point, 3 modes, 3 modes).
+
+    The three parts of a mode are the real and the imaginary part of its amplitude and its mean.
+    """
+    group = balance.group
+    points, contacts = z.shape[0], group.contacts
+    _, tangent = balance.law.forces(z[:, :-1].reshape(points, contacts, UNKNOWNS))
+    ports = group.ports.reshape(-1, group.ports.shape[1], contacts, 2)
+    outward = _parts(ports, (0, 2), (1, 3), 4, 6)  # (curve, mode, 3, contact, 6)
+    inward = _parts(ports, (0, 2), (1, 3), 4, 5)  # (curve, mode, 3, contact, 5)
+    modes = group.ports.shape[1]
+    left = outward / group.mass[:, :, None, None, None]
+    product = left.swapaxes(2, 3).swapaxes(1, 2).reshape(-1, contacts, 3 * modes, 6) @ tangent
+    right = inward.swapaxes(2, 3).swapaxes(1, 2).reshape(-1, contacts, 3 * modes, 5)
+    total: FloatArray = (product @ right.swapaxes(2, 3)).sum(axis=1)
+    return total
+
+
+def _parts(
+    ports: FloatArray, real: tuple[int, int], imaginary: tuple[int, int], mean: int, width: int
+) -> FloatArray:
+    """Modes on the unknowns (width 5) or forces (width 6) of each contact: real, imaginary and mean part."""
+    out = np.zeros((*ports.shape[:2], 3, ports.shape[2], width))
+    for direction in range(2):
+        out[:, :, 0, :, real[direction]] = ports[..., direction]
+        out[:, :, 1, :, imaginary[direction]] = ports[..., direction]
+        if width == 6 or direction == 1:  # the mean of u is no unknown: no force depends on it
+            out[:, :, 2, :, mean + direction if width == 6 else mean] = ports[..., direction]
+    return out

@@ -1,0 +1,83 @@
+"""Stability, jumps and the error that the single harmonic leaves."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.response import trace
+from fcm.response.balance import Balance
+from fcm.response.law import ClosedForm
+from fcm.response.stability import growth_rates
+from fcm.response.structure import group_of
+
+
+@pytest.fixture(scope="module")
+def curves():
+    response = trace(fcm.load_scene("yang1998"), "table")
+    return {curve.parameters["contact.shroud.n_0"]: curve for curve in response.curves}
+
+
+def test_stability_changes_at_the_folds_and_nowhere_else(curves):
+    for curve in curves.values():
+        changes = np.flatnonzero(np.diff(curve.stable.astype(int)))
+        assert len(changes) == len(curve.folds)
+        for k, fold in zip(changes, curve.folds, strict=True):
+            assert min(abs(curve.frequency[k : k + 2] - fold)) == 0.0
+
+
+def test_the_part_between_the_folds_is_unstable(curves):
+    curve = curves[5.0]
+    upper, lower = curve.folds
+    falling = np.concatenate((np.diff(curve.frequency) < 0.0, [False]))
+    assert np.all(~curve.stable[1:-1][falling[:-2] & falling[1:-1]])
+    assert curve.stable[curve.frequency > upper + 1e-6].all()
+    assert curve.stable[curve.frequency < lower - 1e-6].all()
+
+
+def test_a_linear_structure_decays_at_its_damping():
+    """With the contact open the slowest exponent is -zeta omega of the first mode."""
+    scene = fcm.load_scene("yang1998-n5")
+    scene = replace(scene, contacts=(replace(scene.contacts[0], n_0=-1e3),))
+    balance = Balance(group_of([scene]), ClosedForm())
+    omega = np.array([1.2])
+    x = balance.linear(omega, np.zeros((1, 1)))
+    rate = growth_rates(balance, np.column_stack((x, omega)))
+    assert rate == pytest.approx([-0.01], rel=1e-9)
+
+
+def test_real_exponent_and_jacobian_change_sign_together(curves):
+    """At a fold the determinant of the balance passes through zero."""
+    scene = fcm.load_scene("yang1998-n5")
+    balance = Balance(group_of([scene]), ClosedForm())
+    x = balance.linear(np.array([1.2]), np.ones((1, 1)))
+    at = balance.evaluate(x, np.array([1.2]))
+    stable = growth_rates(balance, np.column_stack((x, [1.2]))) < 0.0
+    assert stable[0] == (np.linalg.det(at.jacobian[0]) > 0.0)
+
+
+def test_jumps_of_a_slow_sweep(curves):
+    """Figure 14: upward the lower branch ends at the upper fold, downward the upper at the lower."""
+    up, down = curves[5.0].jumps()
+    assert (up.sweep, down.sweep) == ("up", "down")
+    assert up.frequency == pytest.approx(1.2388, abs=1e-4)
+    assert down.frequency == pytest.approx(1.1875, abs=1e-4)
+    assert up.after[0] > up.before[0]
+    assert down.after[0] < down.before[0]
+    assert curves[10.0].jumps() == []
+
+
+def test_the_truncation_error_vanishes_for_a_linear_response(curves):
+    linear = curves[-60.0]
+    assert set(linear.regime.ravel()) == {"S"}
+    assert np.all(linear.truncation_error == 0.0)
+
+
+def test_the_truncation_error_predicts_the_size_of_the_papers_discrepancy(curves):
+    """Time simulation gives 14.8 where single-harmonic balance gives 15.83 (figure 14)."""
+    curve = curves[5.0]
+    predicted = curve.truncation_error[curve.amplitude[:, 0].argmax()]
+    true = (15.83 - 14.8) / 14.8
+    assert true / 4.0 < predicted < 4.0 * true
+    assert curves[50.0].truncation_error.max() < 0.1 * predicted
