@@ -112,6 +112,8 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
     table = open_table(path)
     began = time.perf_counter()
     recorded = table.error
+    if "points" not in recorded:
+        raise click.UsageError(f"{path} records no error that could be verified.")
     with _Interruptible(messages, "the table was not verified") as progress:
         again = measure(
             table, recorded["points"], recorded["seed"], lambda share: progress(share / 2, "same points")

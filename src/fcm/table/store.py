@@ -13,6 +13,7 @@ import json
 import tempfile
 import zlib
 from collections.abc import Mapping
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -21,9 +22,10 @@ import numpy as np
 import numpy.typing as npt
 
 import fcm
+from fcm.table import seal
 from fcm.table.atlas import FloatArray
 
-LAYOUT = 1
+LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
 COMMENT = (
@@ -56,6 +58,9 @@ for _k, _what in COEFFICIENTS.items():
         ("level_slip", *GRID[1:]),
         {"long_name": f"F_{_k} less its value at the slip limit, over the width of slip", "units": "1"},
     )
+
+HDF5 = b"\x89HDF\r\n\x1a\n"  # begins every netCDF-4 file
+REMEDY = "make it anew with fcm tabulate"
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -109,6 +114,7 @@ def write(path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: s
             _write(partial, arrays, attributes)
         except RuntimeError as reason:  # what netCDF makes of a full disk
             raise OSError(errno.EIO, f"could not be written ({reason})", str(target)) from None
+        seal.attach(partial)
         partial.replace(target)
 
 
@@ -162,29 +168,39 @@ def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[s
         If the file is missing, is not a table, is of another layout, or is damaged.
     """
     name = Path(DEFAULT if path is None else path)
-    attributes, arrays = _read(name)
-    if reason := _damage(attributes, arrays):
-        raise TableError(f"{name}: damaged, {reason}; make it anew with fcm tabulate")
-    return *decode(arrays), json.loads(attributes["measured_error"])
-
-
-def _read(path: Path) -> tuple[dict[str, Any], Arrays]:
-    import netCDF4
-
     try:
-        with path.open("rb"):
-            pass
-        with netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
-            attributes = {key: file.getncattr(key) for key in file.ncattrs()}
-            _check_kind(path, attributes)
-            return attributes, {key: variable[...] for key, variable in file.variables.items()}
+        content = seal.check(name)
+        attributes, arrays = _read(name, content)
     except TableError:
         raise
     except FileNotFoundError:
-        raise TableError(f"{path}: no such file") from None
+        raise TableError(f"{name}: no such file") from None
+    except seal.BrokenSealError as reason:
+        raise TableError(f"{name}: damaged, {reason}; {REMEDY}") from None
     except Exception as reason:  # whatever the library makes of bytes that are not netCDF, or were once
-        raise TableError(f"{path}: cannot be read as netCDF ({reason})") from None
+        raise TableError(f"{name}: {_what_instead(name)} ({reason})") from None
+    if damage := _damage(attributes, arrays, content is not None):
+        raise TableError(f"{name}: damaged, {damage}; {REMEDY}")
+    return *decode(arrays), json.loads(attributes["measured_error"])
+
+
+def _what_instead(path: Path) -> str:
+    """What a file is that cannot be read."""
+    with suppress(OSError, ValueError), path.open("rb") as file:
+        if file.read(len(HDF5)) == HDF5:
+            return "damaged or cut off, it cannot be read as netCDF"
+    return "not a netCDF file"
+
+
+def _read(path: Path, content: bytes | None) -> tuple[dict[str, Any], Arrays]:
+    """Attributes and arrays of a table, from its content or else from the file."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, memory=content) if content else netCDF4.Dataset(path) as file:
+        file.set_auto_mask(False)
+        attributes = {key: file.getncattr(key) for key in file.ncattrs()}
+        _check_kind(path, attributes)
+        return attributes, {key: variable[...] for key, variable in file.variables.items()}
 
 
 def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
@@ -192,10 +208,10 @@ def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
         raise TableError(f"{path}: netCDF, but not a table made by fcm tabulate")
     if not np.array_equal(attributes.get("layout", ""), LAYOUT):
         found = f"a table of layout {attributes.get('layout')}, and this fcm reads layout {LAYOUT}"
-        raise TableError(f"{path}: {found}; make it anew with fcm tabulate")
+        raise TableError(f"{path}: {found}; {REMEDY}")
 
 
-def _damage(attributes: Mapping[str, Any], arrays: Arrays) -> str:
+def _damage(attributes: Mapping[str, Any], arrays: Arrays, sealed: bool) -> str:
     """What is wrong with a file that says it is a table; empty if nothing is."""
     if missing := sorted(set(VARIABLES) - set(arrays)):
         return f"{', '.join(missing)} missing"
@@ -204,6 +220,8 @@ def _damage(attributes: Mapping[str, Any], arrays: Arrays) -> str:
     for key, array in arrays.items():
         if array.dtype.kind != "f" or not np.isfinite(array.sum()):
             return f"{key} holds values that are not finite numbers"
+    if sealed:
+        return ""
     if _checksum(arrays, attributes) != attributes["checksum"]:
         return "its data do not match its checksum"
-    return ""
+    return "it was changed or cut off after it was written"
