@@ -107,7 +107,9 @@ def _slip(
     """Rows of points with n0 - b = excess >= 0: F = F_edge + E G below the slip limit, F_edge above."""
     width = shape.width
     inside = excess < width
-    t = np.minimum(np.maximum(excess / np.maximum(width, 1e-300), atlas.NEAR), 1.0 - atlas.NEAR)
+    t = np.minimum(
+        np.maximum(np.minimum(excess, width) / np.maximum(width, 1e-300), atlas.NEAR), 1.0 - atlas.NEAR
+    )
     u, u_t = atlas.u_slip(t)
     scale = width * inside
     mean = _mean_force(excess, shape)

@@ -12,7 +12,7 @@ from fcm.table.atlas import FloatArray
 from fcm.table.locate import Resolution, locate
 
 BLOCK = 4096  # points at a time, so that the intermediate arrays stay in the processor's cache
-FARTHEST = 1e300  # stands for an infinite preload or gap
+LARGEST, FARTHEST = 1e300, 2e300  # of b_bar, of n0_bar: an infinite preload or gap is as this one
 
 
 class Table:
@@ -79,8 +79,10 @@ class Table:
         shape = n0.shape
         if np.count_nonzero(b < 0.0):
             raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
-        n0, b, ph = np.minimum(np.maximum(n0, -FARTHEST), FARTHEST).reshape(-1), b.reshape(-1), ph.reshape(-1)
-        known = np.isfinite(1e-10 * n0 + 1e-10 * b + ph)
+        n0 = np.minimum(np.maximum(n0, -FARTHEST), FARTHEST).reshape(-1)
+        b, ph = b.reshape(-1), ph.reshape(-1)
+        known = np.isfinite(b) & np.isfinite(n0 + ph)
+        b = np.minimum(b, LARGEST)
         if np.count_nonzero(known) == known.size:
             return self._blocks(n0, b, ph, kinds).reshape(3, kinds, *shape)
         values = np.full((3, kinds, n0.size), np.nan)

@@ -15,7 +15,7 @@ LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than an
 MOST_NODES = 20_000_000  # of a table; 20 times the default, half a gigabyte
 
 LARGEST_SLIP_B = 1e4  # well beyond, the slip regime is thinner than rounding errors allow to resolve
-SMALLEST_PHI = 3e-6  # stands for the limit phi -> 0 of the slip regime where b > 1
+SMALLEST_PHI = 3e-6  # stands for the limit phi -> 0 of the slip regime where b >= 1
 
 
 class Nodes(NamedTuple):
@@ -56,7 +56,7 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
     b = atlas.b_variation(X, phi)
     if resolved:
         b = np.minimum(b, LARGEST_SLIP_B)
-        away = SMALLEST_PHI * np.maximum(b, 0.1)
+        away = np.where(b < 1.0 - 1e-10, 0.0, SMALLEST_PHI * b)
         phi = np.clip(phi, away, np.pi - away)
     return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, Phase.of(phi)).width, b, phi)
 

@@ -1,0 +1,127 @@
+"""Nodes, limits and splines that a table is built of."""
+
+import numpy as np
+import pytest
+
+from fcm import fourier_coefficients
+from fcm.table import atlas, build_table, open_table, spline
+from fcm.table.nodes import PRESETS, all_nodes
+from fcm.table.vanishing import vanishing_variation
+
+
+def test_coordinates_invert():
+    b = np.array([0.0, 1e-9, 0.3, 0.9999, 1.0, 1.0001, 7.0, 1e5, 1e7])
+    phi = np.linspace(0.0, np.pi, 7)
+    B, P = np.meshgrid(b, phi, indexing="ij")
+    phase = atlas.Phase.of(P)
+    assert np.allclose(atlas.phi_phase(atlas.z_phase(P)[0]), P, atol=1e-14)
+    assert np.allclose(atlas.b_variation(atlas.x_variation(B, phase)[0], P), B, rtol=1e-9, atol=1e-15)
+    delta = np.linspace(1e-9, np.pi, 50)[:, None]
+    assert np.allclose(atlas.delta_separation(atlas.u_separation(delta, b)[0], b), delta, rtol=1e-9)
+    t = np.linspace(1e-12, 1.0 - 1e-12, 50)
+    assert np.allclose(atlas.t_slip(atlas.u_slip(t)[0]), t, rtol=1e-12)
+
+
+def test_slopes_of_the_coordinates():
+    h = 1e-6
+    b, phi, delta = (
+        np.array([0.2, 0.97, 1.4, 30.0]),
+        np.array([0.3, 0.1, 2.9, 1.5]),
+        np.array([0.01, 0.4, 2.0, 3.0]),
+    )
+
+    def x(b, phi):
+        return atlas.x_variation(b, atlas.Phase.of(phi))
+
+    assert np.allclose((x(b + h, phi)[0] - x(b - h, phi)[0]) / (2 * h), x(b, phi)[1] / np.sqrt(b), rtol=1e-6)
+    assert np.allclose((x(b, phi + h)[0] - x(b, phi - h)[0]) / (2 * h), x(b, phi)[2], rtol=1e-6, atol=1e-9)
+    u = atlas.u_separation
+    assert np.allclose((u(delta + h, b)[0] - u(delta - h, b)[0]) / (2 * h), u(delta, b)[1], rtol=1e-6)
+    assert np.allclose(
+        (u(delta, b + h)[0] - u(delta, b - h)[0]) / (2 * h), u(delta, b)[2], rtol=1e-5, atol=1e-9
+    )
+
+
+def test_width_of_slip_keeps_its_relative_accuracy():
+    from mpmath import mp, mpf
+
+    with mp.workdps(60):
+        for b, phi in ((1e6, 0.7), (3.0, 1e-5), (0.999, 1e-6), (1.0, 1e-8), (1e-9, 2.0)):
+            exact = (
+                mp.sqrt(1 - 2 * mpf(b) * mp.cos(mpf(phi)) + mpf(b) ** 2)
+                + mp.sqrt(1 + 2 * mpf(b) * mp.cos(mpf(phi)) + mpf(b) ** 2)
+            ) / 2 - mpf(b)
+            found = atlas.geometry(np.array([b]), atlas.Phase.of(np.array([phi]))).width[0]
+            assert found == pytest.approx(float(exact), rel=1e-12)
+
+
+@pytest.mark.parametrize("b", [1e-4, 1e-6, 1e-8])
+def test_vanishing_variation_is_the_limit_of_the_closed_form(b):
+    delta, phi = np.meshgrid(np.linspace(0, np.pi, 15), np.linspace(0, np.pi, 13))
+    found = np.stack(fourier_coefficients(b * np.cos(delta), b, phi)) / b
+    assert np.abs(found - vanishing_variation(delta, phi)).max() < 3.0 * np.sqrt(b)
+
+
+def test_nodes_rise_from_open_to_the_slip_limit():
+    n0, b, phi = all_nodes(PRESETS["fast"])
+    assert np.all(np.diff(n0, axis=0) >= -1e-15 * b[1:])
+    assert np.array_equal(n0[0], -b[0])
+    assert np.all(np.diff(b[0], axis=0) > 0) and np.all(np.diff(phi[0, 0]) > 0)
+    assert (phi[0, 0, 0], phi[0, 0, -1]) == (0.0, np.pi)
+
+
+def test_spline_returns_its_nodes_and_reproduces_cubics():
+    axes = np.meshgrid(*(np.arange(n, dtype=float) for n in (6, 7, 8)), indexing="ij")
+    ends = ((spline.FREE, spline.FREE),) * 3
+
+    def function(i, j, k):
+        return np.stack((i**3 - 2 * i * j * k, j**3 + k, k**3 * j - i**2))
+
+    coefficients = spline.stack(spline.interpolate(function(*axes), ends))
+    steps, neighbours = spline.strides((9, 10))
+    q = np.random.default_rng(0).uniform(0, 1, (3, 700)) * np.array([[5.0], [6.0], [7.0]])
+    q[:, :2] = [[0.0, 5.0], [0.0, 6.0], [0.0, 7.0]]
+    values = spline.evaluate(coefficients, q, steps, neighbours, 4)
+    i, j, k = q
+    assert np.allclose(values[:, 0], function(i, j, k), atol=1e-9)
+    assert np.allclose(values[0, 1:], (3 * i**2 - 2 * j * k, -2 * i * k, -2 * i * j), atol=1e-9)
+    assert np.array_equal(spline.evaluate(coefficients, q, steps, neighbours, 1), values[:, :1])
+
+
+def test_flat_ends_have_no_slope():
+    values = np.random.default_rng(0).normal(size=(3, 6, 6, 6))
+    flat = (spline.FLAT, spline.FLAT)
+    coefficients = spline.stack(spline.interpolate(values, (flat, flat, flat)))
+    steps, neighbours = spline.strides((8, 8))
+    slopes = spline.evaluate(coefficients, np.array([[0.0, 5.0]] * 3), steps, neighbours, 4)[:, 1:]
+    assert np.abs(slopes).max() < 1e-12
+
+
+def test_table_passes_through_its_nodes(tiny_file):
+    table = open_table(tiny_file)
+    n0, b, phi = (field[1:, 1:-1, 1:-1] for field in all_nodes(table.resolution))
+    error = np.abs(np.stack(table(n0, b, phi)) - np.stack(fourier_coefficients(n0, b, phi)))
+    assert error[:, b < 100.0].max() < 1e-6
+
+
+def test_build_is_reproducible(tiny_file, tmp_path):
+    again = build_table(tmp_path / "again.nc", open_table(tiny_file).resolution, points=10_000)
+    first = open_table(tiny_file)
+    assert again.error == first.error
+    n0, b, phi = np.random.default_rng(0).uniform(0, 2, (3, 500))
+    assert np.array_equal(again(n0, b, phi), first(n0, b, phi))
+
+
+@pytest.mark.parametrize("resolution", [(4, 9, 9, 9), (9, 9, 9, 3000), (900, 900, 900, 900)])
+def test_resolution_that_cannot_be_built_is_refused(tmp_path, resolution):
+    with pytest.raises(ValueError, match="resolution"):
+        build_table(tmp_path / "table.nc", resolution)
+    assert not list(tmp_path.iterdir())
+
+
+def test_progress_rises_to_the_end(tmp_path):
+    shares = []
+    build_table(
+        tmp_path / "t.nc", (5, 5, 5, 5), points=10_000, progress=lambda share, what: shares.append(share)
+    )
+    assert shares == sorted(shares) and shares[0] >= 0.0 and shares[-1] <= 1.0

@@ -1,0 +1,103 @@
+"""`fcm tabulate` as a user calls it."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from fcm.cli import main
+from fcm.table import build, open_table, store
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+    def call(*args):
+        done = CliRunner().invoke(main, ["tabulate", *map(str, args)])
+        assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+        assert "Traceback" not in done.output
+        return done
+
+    return call
+
+
+SMALL = ("--nodes", 7, 5, 9, 7, "--points", 10_000)
+
+
+def test_builds_a_table_and_says_what_it_cost_and_how_wrong_it_is(run, tmp_path):
+    done = run(*SMALL)
+    assert done.exit_code == 0
+    assert open_table(tmp_path / "table.nc").resolution == (7, 5, 9, 7)
+    last = done.stderr.strip().splitlines()[-1]
+    assert all(word in last for word in ("wrote table.nc", "MB", " s;", "at most", "rms"))
+    assert "separation F_b" in done.stdout and "worst at" in done.stdout
+    assert [path.name for path in tmp_path.iterdir()] == ["table.nc"]
+
+
+def test_json_is_the_same_that_the_file_records(run, tmp_path):
+    done = run(*SMALL, "-o", "mine.nc", "--json")
+    result = json.loads(done.stdout)
+    assert result["resolution"] == [7, 5, 9, 7]
+    assert result["bytes"] == (tmp_path / "mine.nc").stat().st_size
+    assert result["error"] == open_table("mine.nc").error
+
+
+def test_verify_agrees(run):
+    run(*SMALL)
+    done = run("--verify", "table.nc", "--json")
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)["true"] is True
+    assert "as recorded" in done.stderr
+
+
+def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
+    separation, slip, error = store.load(tiny_file)
+    better = {**error, "max": 0.5 * error["max"]}
+    store.write("lie.nc", store.encode(separation, slip), better, "test")
+    done = run("--verify", "lie.nc")
+    assert done.exit_code == 3
+    assert "the recorded error is not true: max" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--nodes", 3, 9, 9, 9), "from 5 to"),
+        (("--nodes", 1000, 1000, 1000, 1000), "more than"),
+        (("--nodes", "a", 9, 9, 9), "not a valid integer"),
+        (("--nodes", 9, 9), "requires 4 arguments"),
+        (("--points", 3), "10000"),
+        (("--preset", "none"), "none"),
+        (("-o", "none/table.nc"), "no folder"),
+        (("-o", "table.txt"), "has to end in .nc"),
+        (("--verify", "none.nc"), "no such file"),
+        (("--verify", "table.nc", "--preset", "fast"), "of no use with --verify"),
+    ],
+)
+def test_wrong_input_is_one_clear_message(run, tmp_path, options, message):
+    done = run(*options)
+    assert done.exit_code == 2
+    assert message in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_damaged_file_is_not_verified(run, tmp_path):
+    (tmp_path / "bad.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + b"\0" * 100)
+    done = run("--verify", "bad.nc")
+    assert done.exit_code == 2
+    assert "damaged" in done.stderr
+
+
+def test_interruption_leaves_the_old_file_and_says_what_remains(run, tmp_path, monkeypatch):
+    (tmp_path / "table.nc").write_bytes(b"old")
+
+    def interrupt(*args, **kwargs):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(build, "measure", interrupt)
+    done = run(*SMALL)
+    assert done.exit_code == 3
+    assert "interrupted at" in done.stderr and "nothing was written, table.nc is as it was" in done.stderr
+    assert (tmp_path / "table.nc").read_bytes() == b"old"
+    assert len(list(tmp_path.iterdir())) == 1
