@@ -1,0 +1,27 @@
+"""Exact motion in time: simulation without a time step, schedules, periodic solutions."""
+
+from fcm.simulate.cycle import Cycle
+from fcm.simulate.energy import Energy, energy
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.measure import Measure
+from fcm.simulate.motion import History, Motion, Transition
+from fcm.simulate.periodic import Orbit, periodic
+from fcm.simulate.run import simulate, simulate_phases, simulate_schedule
+from fcm.simulate.state import State
+
+__all__ = [
+    "Cycle",
+    "Energy",
+    "History",
+    "Measure",
+    "Motion",
+    "Orbit",
+    "SimulationError",
+    "State",
+    "Transition",
+    "energy",
+    "periodic",
+    "simulate",
+    "simulate_phases",
+    "simulate_schedule",
+]

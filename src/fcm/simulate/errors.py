@@ -1,0 +1,7 @@
+"""The one exception of the time simulation."""
+
+from __future__ import annotations
+
+
+class SimulationError(ValueError):
+    """The motion cannot be computed as asked; the message says why and what to try."""

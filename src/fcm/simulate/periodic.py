@@ -1,0 +1,178 @@
+"""Periodic solutions by shooting: the fixed points of the motion over one period, and their stability."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Scene
+from fcm.simulate.cycle import Cycle
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.floquet import period_derivative
+from fcm.simulate.march import Segment, march
+from fcm.simulate.measure import Measure, measure
+from fcm.simulate.motion import Motion, dof_rows
+from fcm.simulate.run import simulate
+from fcm.simulate.state import State, entry
+from fcm.simulate.system import System
+
+TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
+MOST_ITERATIONS = 25
+RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
+STABLE = 1e-7  # by which a multiplier may exceed 1
+FREE_CYCLES = (10, 20, 40, 80, 160, 320)  # run before each attempt when there is no guess
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic solution, one period from the instant at which the forces' angle is 0."""
+
+    scene: Scene
+    frequency: float  # [rad/s]
+    state: State  # at its start
+    cycle: Cycle
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which it fails to close, relative to its size
+    iterations: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out, or at least do not grow."""
+        return bool(np.abs(self.multipliers).max(initial=0.0) <= 1.0 + STABLE)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """For each contact the sequence of its states over the period, such as 'EPEN'."""
+        return self.cycle.states
+
+    @cached_property
+    def measure(self) -> Measure:
+        """Amplitudes (half the peak-to-peak, and the fundamental), phase and mean."""
+        return measure(self.cycle, dof_rows(self.cycle.system))
+
+    @property
+    def motion(self) -> Motion:
+        """The period as a motion."""
+        return Motion(self.scene, (self.cycle,), self.state)
+
+
+class Shot:
+    """The motion over one period from x = (q, q', f), with its derivative when it is asked for."""
+
+    def __init__(self, system: System, x: FloatArray) -> None:
+        m = system.modes
+        self.system, self.state = system, State(x[:m], x[m : 2 * m], x[2 * m :])
+        y, states = entry(system, self.state)
+        self.segments, end, _ = march(system, y, states, system.period)
+        self.x = self.segments[0].y[: system.n.start].copy()  # as the contacts' states allow it
+        self.gap = end[: system.n.start] - self.x
+        self.scale = _scale(system, self.segments)
+        self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
+
+    @cached_property
+    def derivative(self) -> FloatArray:
+        """Of the state after the period by x."""
+        return period_derivative(self.system, self.segments)
+
+    def step(self) -> FloatArray:
+        """Newton's step; along directions in which nothing changes, none."""
+        identity = np.eye(self.x.size)
+        matrix = (self.derivative - identity) * self.scale / self.scale[:, None]
+        solution = np.linalg.lstsq(matrix, -self.gap / self.scale, rcond=RANK)[0]
+        step: FloatArray = solution * self.scale
+        return step
+
+    def orbit(self, iterations: int) -> Orbit:
+        """The orbit, once it closes."""
+        system = self.system
+        values = np.linalg.eigvals(self.derivative * self.scale / self.scale[:, None]).astype(np.complex128)
+        order = np.argsort(-np.abs(values), kind="stable")
+        cycle = Cycle(system, 0.0, system.period, 0.0, self.segments)
+        return Orbit(system.scene, system.omega, self.state, cycle, values[order], self.residual, iterations)
+
+
+def _scale(system: System, segments: list[Segment]) -> FloatArray:
+    """The size of the displacements, velocities and friction forces."""
+    y = np.abs(np.array([segment.y for segment in segments])).max(axis=0)
+    length = max(y[system.q].max(), y[system.p].max() / system.omega, 1e-300)
+    limit = np.array([contact.mu for contact in system.contacts]) * y[system.n]
+    stiff = np.array([contact.k_u for contact in system.contacts]) * length
+    force = np.maximum(np.maximum(y[system.f], np.minimum(limit, stiff)), 1e-300)
+    modes = np.full(system.modes, length)
+    return np.concatenate((modes, modes * system.omega, force))
+
+
+def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbit:
+    """A periodic solution of a scene, stable or not, at one frequency.
+
+    Newton's method on the closure of one period of the exact motion (shooting), with the exact derivative.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`.
+    frequency : float
+        Of the external forces [rad/s].
+    guess : State, optional
+        At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
+        `harmonic_state`. By default the solution is the one that a simulation from rest approaches.
+
+    Raises
+    ------
+    SimulationError
+        If no periodic solution is found from there.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> orbit = periodic(fcm.load_scene("yang1998-n5"), 1.3)
+    >>> orbit.stable, orbit.states
+    (True, ('SPEN',))
+    """
+    system = System(scene, frequency)
+    if guess is not None:
+        orbit = shoot(system, guess)
+        if orbit is None:
+            raise SimulationError(
+                f"no periodic solution is found at {frequency:g} rad/s from this state; simulate some cycles "
+                "and start from their end, or from a solution at a frequency nearby"
+            )
+        return orbit
+    state: State | None = None
+    for cycles in FREE_CYCLES:
+        state = simulate(scene, frequency, cycles, state).end
+        orbit = shoot(system, state)
+        if orbit is not None and orbit.stable:
+            return orbit
+    raise SimulationError(
+        f"the motion from rest at {frequency:g} rad/s has not become periodic in {sum(FREE_CYCLES)} cycles; "
+        "it may grow without end, repeat only after several periods, or need a guess"
+    )
+
+
+def shoot(system: System, guess: State) -> Orbit | None:
+    """Newton's method from a state at the forces' angle 0; None when it does not converge."""
+    shot = Shot(system, np.concatenate((guess.q, guess.velocity, guess.friction)))
+    for iteration in range(MOST_ITERATIONS):
+        if shot.residual <= TOLERANCE:
+            return shot.orbit(iteration)
+        better = _improved(shot)
+        if better is None:
+            return shot.orbit(iteration) if shot.residual <= 100.0 * TOLERANCE else None
+        shot = better
+    return None
+
+
+def _improved(shot: Shot) -> Shot | None:
+    """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
+    step, size = shot.step(), 1.0
+    while size > 1e-3:
+        new = Shot(shot.system, shot.x + size * step)
+        # across corners of the map the residual may grow for one step
+        if new.residual < shot.residual * (1.0 if size < 1.0 else 2.0 if shot.residual > 1e-6 else 1.0):
+            return new
+        size *= 0.5
+    return None

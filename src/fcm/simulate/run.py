@@ -1,0 +1,103 @@
+"""Simulation from a state: at one frequency, or through the phases of the scene's schedule."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from fcm.scene.model import Phase, Scene
+from fcm.simulate.cycle import Cycle
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.march import march
+from fcm.simulate.motion import Motion
+from fcm.simulate.state import State, entry, leave, set_angle
+from fcm.simulate.system import System
+
+Progress = Callable[[float, str], None]
+
+
+def simulate(scene: Scene, frequency: float, cycles: float, state: State | None = None) -> Motion:
+    """The exact motion of a scene at one frequency.
+
+    Between transitions of its contacts (stick, positive and negative slip, separation; sections 3.1 and
+    3.2) the structure is linear and its motion known in closed form; the transitions (9)-(16) are roots
+    of that motion, found to rounding. There is no time step.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`; its own contacts, not those of its sweep.
+    frequency : float
+        Of the external forces [rad/s].
+    cycles : float
+        Periods of the force to simulate; need not be whole.
+    state : State, optional
+        Where to start from: rest by default.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    SimulationError
+        If the frequency, the cycles or the state do not fit, or the contacts chatter without end.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> motion = simulate(fcm.load_scene("yang1998-n5"), 1.3, 100)
+    >>> motion.cycles[-1].states
+    ('SPEN',)
+    >>> motion.measures()[-1].amplitude.round(6)  # u, v: half the peak-to-peak
+    array([7.168126, 7.166346])
+    """
+    return simulate_phases(scene, [Phase(frequency, cycles)], state)
+
+
+def simulate_schedule(scene: Scene, state: State | None = None, progress: Progress | None = None) -> Motion:
+    """The exact motion of a scene through its schedule, each phase continuing the last.
+
+    The state continues, and so does the phase angle of the forces: it does not jump when the frequency
+    does.
+
+    Raises
+    ------
+    SimulationError
+        As for `simulate`, and if the scene has no schedule.
+    """
+    if not scene.schedule:
+        raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
+    return simulate_phases(scene, scene.schedule, state, progress)
+
+
+def simulate_phases(
+    scene: Scene, phases: Sequence[Phase], state: State | None = None, progress: Progress | None = None
+) -> Motion:
+    """The exact motion through phases, each continuing the last; see `simulate_schedule`."""
+    state = State.rest(scene) if state is None else state
+    total = sum(phase.cycles for phase in phases)
+    done: list[Cycle] = []
+    for phase in phases:
+        if not (np.isfinite(phase.cycles) and phase.cycles > 0.0):
+            raise SimulationError(f"a phase has {phase.cycles:g} cycles; it needs more than none")
+        state = _run(System(scene, phase.frequency), phase.cycles, state, done, progress, total)
+    return Motion(scene, tuple(done), state)
+
+
+def _run(
+    system: System, cycles: float, state: State, done: list[Cycle], progress: Progress | None, total: float
+) -> State:
+    """Append the cycles of one phase; the state at its end."""
+    y, states = entry(system, state)
+    start = done[-1].start + done[-1].duration if done else 0.0
+    for k in range(int(np.ceil(cycles))):
+        part = min(1.0, cycles - k)
+        set_angle(y, state.angle)
+        segments, y, states = march(system, y, states, part * system.period)
+        done.append(Cycle(system, start + k * system.period, part * system.period, state.angle, segments))
+        if progress is not None:
+            progress(len(done) / total, f"cycle {len(done)}")
+    set_angle(y, state.angle + 2.0 * np.pi * part)
+    return leave(system, y)

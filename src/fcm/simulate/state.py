@@ -1,0 +1,83 @@
+"""The state of a scene at an instant: what a simulation starts from and ends with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.scene.model import FloatArray, Scene
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.march import set_friction
+from fcm.simulate.system import NEGATIVE, OPEN, POSITIVE, STICK, System, has_friction
+
+
+@dataclass(frozen=True)
+class State:
+    """Everything that the motion from an instant on depends on.
+
+    The slip motion of each contact is w = u - friction / k_u (2); its normal load follows from the
+    displacements. A friction force beyond the limit mu n is brought back to it.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> State.rest(fcm.load_scene("yang1998-n5"))
+    State(q=array([0., 0.]), velocity=array([0., 0.]), friction=array([0.]), angle=0.0)
+    """
+
+    q: FloatArray  # (mode,) modal displacements
+    velocity: FloatArray  # (mode,) modal velocities [1/s]
+    friction: FloatArray  # (contact,) friction forces
+    angle: float = 0.0  # omega t of the external forces [rad]
+
+    @staticmethod
+    def rest(scene: Scene) -> State:
+        """The structure at rest in equilibrium with its preloads, its contacts unstressed."""
+        modes = scene.modal.mass.size
+        return State(np.zeros(modes), np.zeros(modes), np.zeros(len(scene.contacts)))
+
+
+def entry(system: System, state: State) -> tuple[FloatArray, str]:
+    """The state vector of a state, and a combination of contact states for `settle` to begin with."""
+    y = np.zeros(system.size)
+    try:
+        y[system.q], y[system.p], y[system.f] = state.q, state.velocity, state.friction
+    except ValueError:
+        raise SimulationError(
+            f"a state of this scene has {system.modes} modes and {len(system.contacts)} contacts"
+        ) from None
+    set_angle(y, state.angle)
+    if not np.isfinite(y).all():
+        raise SimulationError("the state to start from has numbers that are not finite")
+    preload = np.array([contact.n_0 for contact in system.contacts])
+    y[system.n] = preload + np.array([contact.k_v for contact in system.contacts]) * (
+        system.normal @ y[system.q]
+    )
+    states = "".join(_initial(system, y, j) for j in range(len(system.contacts)))
+    for j, letter in enumerate(states):
+        set_friction(system, y, j, letter)
+    return y, states
+
+
+def _initial(system: System, y: FloatArray, j: int) -> str:
+    contact, load, force = system.contacts[j], y[system.n][j], y[system.f][j]
+    if load < 0.0 or (load == 0.0 and contact.k_v == 0.0):
+        return OPEN
+    if not has_friction(contact):
+        y[system.f.start + j] = 0.0
+        return STICK
+    if force > contact.mu * load:
+        return POSITIVE
+    return NEGATIVE if force < -contact.mu * load else STICK
+
+
+def leave(system: System, y: FloatArray) -> State:
+    """The state of a state vector."""
+    angle = float(np.arctan2(y[-3], y[-2]) % (2.0 * np.pi))
+    return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
+
+
+def set_angle(y: FloatArray, angle: float) -> None:
+    """Set the phase angle of the forces, and the constant."""
+    y[-3:] = np.sin(angle), np.cos(angle), 1.0
