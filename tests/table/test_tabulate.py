@@ -73,6 +73,8 @@ def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
         (("-o", "table.txt"), "has to end in .nc"),
         (("--verify", "none.nc"), "no such file"),
         (("--verify", "table.nc", "--preset", "fast"), "of no use with --verify"),
+        (("--study", "study.csv", "--points", 20000), "of no use with --study"),
+        (("--study", "study.txt"), "has to end in .csv"),
     ],
 )
 def test_wrong_input_is_one_clear_message(run, tmp_path, options, message):
@@ -101,3 +103,21 @@ def test_interruption_leaves_the_old_file_and_says_what_remains(run, tmp_path, m
     assert "interrupted at" in done.stderr and "nothing was written, table.nc is as it was" in done.stderr
     assert (tmp_path / "table.nc").read_bytes() == b"old"
     assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_study_compares_layouts(run, tmp_path, monkeypatch):
+    from fcm.table import study
+
+    monkeypatch.setattr(study, "SHARES", (0.2, 0.3))
+    monkeypatch.setattr(study, "POINTS", 3000)
+    done = run("--study", "study.csv", "--json")
+    assert done.exit_code == 0
+    rows = json.loads(done.stdout)
+    assert len(rows) == 9
+    assert len((tmp_path / "study.csv").read_text().splitlines()) == 10
+    assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")
+    rms = {(row["layout"], row["interpolation"]): row["rms"] for row in rows}
+    assert rms["regimes", "cubic"] < 0.2 * rms["rectilinear", "cubic"]
+    assert rms["regimes", "linear"] < rms["rectilinear", "linear"]
+    assert rms["closed form", ""] == 0.0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["study.csv", "study.png"]

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import output_option
+from fcm.cli.files import output_option, replacing
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
     from fcm.table.locate import Resolution
+    from fcm.table.study import Row
 
 DEFAULT_OUTPUT = "table.nc"
 
@@ -40,6 +41,12 @@ DEFAULT_OUTPUT = "table.nc"
     "--verify", type=click.Path(path_type=Path), metavar="FILE",
     help="Build nothing: measure the error of FILE anew and compare it with the one FILE records.",
 )  # fmt: skip
+@output_option(
+    "--study",
+    endings=(".csv",),
+    help="Build nothing: measure error against size and time for tables of several layouts, write them "
+    "to this .csv and draw them in a .png beside it.",
+)
 @click.option("--json", "to_json", is_flag=True, help="Print the error as JSON instead of a table.")
 @click.pass_context
 @pass_messages
@@ -51,6 +58,7 @@ def tabulate(
     nodes: Resolution | None,
     points: int,
     verify: Path | None,
+    study: Path | None,
     to_json: bool,
 ) -> None:
     """Build a table of the Fourier coefficients of friction from their closed form.
@@ -59,8 +67,11 @@ def tabulate(
     closed form in all regimes and corners, recorded in the file and printed.
     """
     if verify is not None:
-        _refuse_beside_verify(ctx)
+        _alone(ctx, "verify")
         _verify(messages, verify, to_json)
+    elif study is not None:
+        _alone(ctx, "study")
+        _study(messages, study, to_json)
     else:
         _build(messages, output, preset, nodes, points, to_json)
 
@@ -75,10 +86,11 @@ def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int,
     return value
 
 
-def _refuse_beside_verify(ctx: click.Context) -> None:
-    for name in ("output", "preset", "nodes", "points"):
+def _alone(ctx: click.Context, option: str) -> None:
+    """An option that builds nothing has no use for those that say what to build, nor for another such."""
+    for name in {"output", "preset", "nodes", "points", "verify", "study"} - {option}:
         if ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
-            raise click.UsageError(f"--{name} is of no use with --verify.")
+            raise click.UsageError(f"--{name} is of no use with --{option}.")
 
 
 def _build(
@@ -138,6 +150,57 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
         messages.error(f"error: {path}: the recorded error is not true: {found}")
         click.get_current_context().exit(NOT_COMPLETED)
     messages.info(f"{path}: as recorded, in {result['seconds']:.1f} s; {_error_line(fresh)}")
+
+
+def _study(messages: Messages, path: Path, to_json: bool) -> None:
+    from fcm.table.study import Row, study
+
+    began = time.perf_counter()
+    with _Interruptible(messages, "nothing was written") as progress:
+        rows = study(progress)
+    lines = [",".join(Row._fields)] + [",".join(map(_cell, row)) for row in rows]
+    with replacing(path) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    picture = path.with_suffix(".png")
+    with replacing(picture) as partial:
+        _draw(rows, partial)
+    if to_json:
+        click.echo(json.dumps([row._asdict() for row in rows], indent=2))
+    else:
+        columns = list(zip(*(line.split(",") for line in lines), strict=True))
+        widths = [max(map(len, column)) + 2 for column in columns]
+        for cells in zip(*columns, strict=True):
+            click.echo("".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+    best = min((row for row in rows if row.nodes), key=lambda row: row.rms)
+    messages.info(
+        f"wrote {path} and {picture} in {time.perf_counter() - began:.1f} s; "
+        f"least error {best.max:.1e} at most, {best.rms:.1e} rms: {best.layout}, {best.interpolation}"
+    )
+
+
+def _cell(value: object) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def _draw(rows: list[Row], path: Path) -> None:
+    """Error against size, and against the time of a look-up of ten points: a line for each layout."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 4.2), layout="constrained")
+    by_size, by_time = figure.subplots(1, 2, sharey=True)
+    for layout, mark in (("rectilinear", "s"), ("regimes", "o")):
+        for interpolation, style in (("linear", "--"), ("cubic", "-")):
+            some = [row for row in rows if (row.layout, row.interpolation) == (layout, interpolation)]
+            label, colour = f"{layout}, {interpolation}", "C0" if layout == "regimes" else "C1"
+            for axes, field in ((by_size, "bytes"), (by_time, "us_of_group")):
+                at = [getattr(row, field) / (1e6 if field == "bytes" else 1.0) for row in some]
+                axes.loglog(at, [row.rms for row in some], style, marker=mark, color=colour, label=label)
+                axes.loglog(at, [row.max for row in some], style, marker=mark, color=colour, alpha=0.3)
+    by_time.axvline(rows[-1].us_of_group, color="black", linestyle=":", label="closed form, exact")
+    by_size.set(xlabel="size [MB]", ylabel="absolute error: rms (strong), greatest (pale) [-]")
+    by_time.set(xlabel="time for ten points [µs]")
+    by_time.legend(fontsize="small")
+    figure.savefig(path, dpi=150)
 
 
 class _Interruptible:

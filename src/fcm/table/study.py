@@ -1,0 +1,181 @@
+"""Layouts against each other: the error of a table, by its size and the time of a look-up.
+
+*rectilinear*: a grid of F on a box in n0_bar, b_bar, phi, as everybody would make it; *regimes*: the atlas.
+Each with linear interpolation (scipy's) and cubic splines (ours), beside the closed form. All are measured at
+the same points, those of `fcm.table.measure.sample` that lie in the box.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact import fourier_coefficients
+from fcm.table import spline
+from fcm.table.atlas import FloatArray, fold
+from fcm.table.build import charts
+from fcm.table.locate import NODES_BETWEEN, Resolution, locate
+from fcm.table.lookup import Table
+from fcm.table.measure import sample
+from fcm.table.nodes import PRESETS
+
+BOX = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is in [0, pi]
+SHARES = (0.25, 0.35, 0.5, 0.7, 1.0)  # of the nodes of the default table, along each axis
+POINTS = 200_000  # sampled; about half of them lie in the box
+GROUP = 10  # points of the small look-up that is timed, as a solver makes it
+REPEATS = 5
+
+Coefficients = Callable[[FloatArray, FloatArray, FloatArray], Any]
+Progress = Callable[[float, str], None]
+
+
+class Row(NamedTuple):
+    """One layout at one resolution: error at most, 99.9 %, rms [-]; time [us] a look-up and a point."""
+
+    layout: str
+    interpolation: str
+    nodes: int
+    bytes: int
+    max: float
+    p999: float
+    rms: float
+    us_of_group: float
+    us_per_point: float
+
+
+def study(progress: Progress | None = None) -> list[Row]:
+    """Measure every layout at every resolution; half a minute."""
+    n0, b, phi = sample(POINTS, seed=2024)
+    inside = (np.abs(n0) <= BOX) & (b <= BOX)
+    points = n0[inside], b[inside], phi[inside]
+    exact = np.stack(fourier_coefficients(*points))
+    rows: list[Row] = []
+    count = 4 * len(SHARES) + 1
+    for layout, interpolation, nodes, coefficients in _candidates():
+        if progress is not None:
+            progress(len(rows) / count, f"{layout} {interpolation}")
+        error = np.abs(np.stack(coefficients(*points)) - exact)
+        rms = float(np.sqrt(np.mean(error * error)))
+        rows.append(
+            Row(
+                layout, interpolation, nodes, 12 * nodes,
+                float(error.max()), float(np.quantile(error, 0.999)), rms,
+                _seconds(coefficients, points, GROUP, 100) * 1e6,
+                _seconds(coefficients, points, points[0].size, 1) / points[0].size * 1e6,
+            )
+        )  # fmt: skip
+    return rows
+
+
+def _seconds(coefficients: Coefficients, points: tuple[FloatArray, ...], count: int, calls: int) -> float:
+    """Least time of a look-up of this many points."""
+    some = [x[:count] for x in points]
+    best = np.inf
+    for _ in range(REPEATS):
+        began = time.perf_counter()
+        for _ in range(calls):
+            coefficients(*some)
+        best = min(best, (time.perf_counter() - began) / calls)
+    return float(best)
+
+
+def _candidates() -> Iterator[tuple[str, str, int, Coefficients]]:
+    """Layout, interpolation, nodes, and how to look up; a resolution at a time."""
+    for share in SHARES:
+        resolution = _scaled(PRESETS["default"], share)
+        nodes = (resolution[0] + resolution[1]) * resolution[2] * resolution[3]
+        shape = _box_shape(nodes)
+        values = _box_values(shape)
+        yield "rectilinear", "linear", values[0].size, _box_linear(values)
+        yield "rectilinear", "cubic", values[0].size, _box_cubic(values)
+        parts = charts(resolution)
+        yield "regimes", "linear", nodes, _regimes_linear(resolution, *parts)
+        yield "regimes", "cubic", nodes, Table(*parts)
+    yield "closed form", "", 0, fourier_coefficients
+
+
+def _scaled(resolution: Resolution, share: float) -> Resolution:
+    first, second, third, fourth = (max(5, 2 * round(share * (n - 1) / 2) + 1) for n in resolution)
+    return first, second, third, fourth
+
+
+def _box_shape(nodes: int) -> tuple[int, int, int]:
+    """Odd numbers of nodes, in the ratio of 4 to 2 to 1, of which there are about so many."""
+    side = (nodes / 8.0) ** (1.0 / 3.0)
+    first, second, third = (2 * round(factor * side / 2) + 1 for factor in (4, 2, 1))
+    return first, second, third
+
+
+def _box_axes(shape: tuple[int, ...]) -> list[FloatArray]:
+    limits = ((-BOX, BOX), (0.0, BOX), (0.0, np.pi))
+    return [np.linspace(*limit, count) for limit, count in zip(limits, shape, strict=True)]
+
+
+def _box_values(shape: tuple[int, int, int]) -> FloatArray:
+    return np.stack(fourier_coefficients(*np.meshgrid(*_box_axes(shape), indexing="ij")))
+
+
+def _linear(axes: list[FloatArray], values: FloatArray) -> Callable[[FloatArray], FloatArray]:
+    from scipy.interpolate import RegularGridInterpolator
+
+    inner = RegularGridInterpolator(axes, np.ascontiguousarray(np.moveaxis(values, 0, -1)))
+
+    def at(points: FloatArray) -> FloatArray:
+        return np.asarray(inner(points.T)).T
+
+    return at
+
+
+def _signed(F: FloatArray, sign: FloatArray) -> FloatArray:
+    F[0] *= sign
+    return F
+
+
+def _box_linear(values: FloatArray) -> Coefficients:
+    at = _linear(_box_axes(values.shape[1:]), values)
+
+    def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
+        folded, sign = fold(phi)
+        return _signed(at(np.array((n0, b, np.clip(folded, 0.0, np.pi)))), sign)
+
+    return coefficients
+
+
+def _box_cubic(values: FloatArray) -> Coefficients:
+    shape = values.shape[1:]
+    stacked = spline.stack(spline.interpolate(values, ((spline.FREE, spline.FREE),) * 3))
+    steps, neighbours = spline.strides((shape[1] + 2, shape[2] + 2))
+    ends = [(axis[0], (axis.size - 1) / (axis[-1] - axis[0])) for axis in _box_axes(shape)]
+
+    def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
+        folded, sign = fold(phi)
+        q = np.array([(x - start) * per for x, (start, per) in zip((n0, b, folded), ends, strict=True)])
+        return _signed(spline.evaluate(stacked, np.maximum(q, 0.0), steps, neighbours, 1)[:, 0], sign)
+
+    return coefficients
+
+
+def _regimes_linear(resolution: Resolution, separation: FloatArray, slip: FloatArray) -> Coefficients:
+    """The charts one behind the other along u, with a gap between them that nothing falls into."""
+    gap = np.zeros_like(separation[:, : NODES_BETWEEN - 1])
+    values = np.concatenate((separation, gap, slip), axis=1)
+    at = _linear([np.arange(float(count)) for count in values.shape[1:]], values)
+    last = np.array(values.shape[1:])[:, None] - 1.0
+
+    def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
+        place = locate(n0, b, phi, resolution, derivatives=False)
+        G = at(np.clip(place.q, 0.0, last))
+        return _signed(G * place.scale + place.base, place.sign)
+
+    return coefficients
+
+
+def order(rows: list[Row], layout: str, interpolation: str) -> float:
+    """Power of the number of nodes along an axis with which the rms error falls."""
+    chosen = [row for row in rows if (row.layout, row.interpolation) == (layout, interpolation)]
+    nodes: npt.NDArray[np.float64] = np.log([row.nodes for row in chosen]) / 3.0
+    return float(-np.polyfit(nodes, np.log([row.rms for row in chosen]), 1)[0])
