@@ -9,13 +9,14 @@ import numpy as np
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
 from fcm.response.balance import Balance
+from fcm.response.branches import Branches, hang_together, outcome
 from fcm.response.displacement import amplitude_growth, displacements
 from fcm.response.extrema import locate, peak_rate
-from fcm.response.path import COMPLETE, REASONS, BoolArray
+from fcm.response.path import REASONS
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.result import Curve
 from fcm.response.stability import stable_points
-from fcm.response.structure import IntArray
+from fcm.response.structure import AnyArray, IntArray
 from fcm.response.truncation import truncation_error
 from fcm.scene.model import Scene
 
@@ -23,8 +24,8 @@ from fcm.scene.model import Scene
 class Assembly:
     """Corrected points of all curves, made into results."""
 
-    def __init__(self, exact: Balance, points: Points, status: IntArray, lost: BoolArray) -> None:
-        self.exact, self.points, self.status, self.lost = exact, points, status, lost
+    def __init__(self, exact: Balance, points: Points, branches: Branches) -> None:
+        self.exact, self.points, self.branches = exact, points, branches
         self.z = z = points.z
         at_points = exact.take(points.curve)
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
@@ -32,40 +33,46 @@ class Assembly:
         self.regime = sequences(*arguments)
         self.truncation_error = truncation_error(at_points, z)
         self.stable = stable_points(at_points, z)
-        self.same = points.curve[1:] == points.curve[:-1]  # whether a point and the next are of one curve
+        self.same = hang_together(points.branch)
 
     def curves(self, scenes: tuple[Scene, ...], dofs: tuple[str, ...]) -> list[Curve]:
         bounds = np.searchsorted(self.points.curve, np.arange(len(scenes) + 1))
         peaks = self._peaks(bounds)
         results = []
         for i, scene in enumerate(scenes):
-            part = slice(bounds[i], bounds[i + 1])
-            status = int(self.status[i])
+            part = self._with_gaps(bounds[i], bounds[i + 1])
+            complete, status = outcome(self.branches, i)
             results.append(
                 Curve(
                     parameters=dict(scene.parameters),
-                    frequency=self.z[part, -1],
-                    amplitude=np.abs(self.X[part]),
-                    phase=np.angle(self.X[part]),
-                    mean=self.mean[part],
-                    regime=self.regime[part, : len(scene.contacts)],
-                    table_error=self.points.shift[part],
-                    complete=status == COMPLETE,
-                    reason=self._reason(i, status, bounds),
+                    frequency=_pick(self.z[:, -1], part),
+                    amplitude=_pick(np.abs(self.X), part),
+                    phase=_pick(np.angle(self.X), part),
+                    mean=_pick(self.mean, part),
+                    regime=_pick(self.regime[:, : len(scene.contacts)], part),
+                    stable=_pick(self.stable, part),
+                    table_error=_pick(self.points.shift, part),
+                    truncation_error=_pick(self.truncation_error, part),
+                    complete=complete,
+                    reason="" if complete else self._reason(i, status),
                     peaks={d: (float(peaks[i, j, 0]), float(peaks[i, j, 1])) for j, d in enumerate(dofs)},
-                    folds=self.z[part, -1][self.points.fold[part]].tolist(),
+                    folds=self.z[part[self.points.fold[part] & (part >= 0)], -1].tolist(),
                     seconds=0.0,
-                    truncation_error=self.truncation_error[part],
-                    stable=self.stable[part],
                 )
             )
         return results
 
-    def _reason(self, curve: int, status: int, bounds: IntArray) -> str:
-        if self.lost[curve]:
-            return "no solution was found at the low end of the range; try another frequency to begin with"
-        where = "" if status == COMPLETE else f"stopped at {self.z[bounds[curve + 1] - 1, -1]:.8g} rad/s: "
-        return where + REASONS[status]
+    def _with_gaps(self, first: int, last: int) -> IntArray:
+        """Points of a curve, with -1 between its branches."""
+        part = np.arange(first, last)
+        return np.insert(part, np.flatnonzero(~self.same[first : max(last - 1, first)]) + 1, -1)
+
+    def _reason(self, curve: int, status: int) -> str:
+        branch = np.flatnonzero((self.branches.curve == curve) & (self.branches.status == status))
+        if branch.size == 0:
+            return "no solution was found at either end of the range; try another range"
+        last = self.branches.trace.z[self.branches.trace.curve == branch[0], -1][-1]
+        return f"stopped at {last:.8g} rad/s: {REASONS[status]}"
 
     def _peaks(self, bounds: IntArray) -> FloatArray:
         """(curve, dof, 2): amplitude and frequency of the greatest peak."""
@@ -97,3 +104,10 @@ class Assembly:
         near = np.maximum(size[:-1], size[1:]) > NEARLY_HIGHEST * highest[curve[:-1]]
         at, dof = np.nonzero(rises & near)
         return at, dof, growth[at, dof], growth[at + 1, dof]
+
+
+def _pick(values: AnyArray, part: IntArray) -> AnyArray:
+    """Rows of a curve; where part is -1, a gap: NaN, '' or False."""
+    rows = values[part]
+    rows[part < 0] = {"f": np.nan, "U": "", "b": False}[values.dtype.kind]
+    return rows

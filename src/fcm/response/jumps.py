@@ -28,30 +28,56 @@ def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> li
     >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found]
     [('up', 3.0, [5.0]), ('down', 2.0, [2.0])]
     """
-    up = _sweep(frequency, amplitude, stable, "up")
-    return up + _sweep(frequency[::-1], amplitude[::-1], stable[::-1], "down")
+    known = np.flatnonzero(np.isfinite(frequency))
+    if known.size == 0:
+        return []
+    first, last = known[frequency[known].argmin()], known[frequency[known].argmax()]
+    return _sweep(frequency, amplitude, stable, int(first), "up") + _sweep(
+        frequency, amplitude, stable, int(last), "down"
+    )
 
 
-def _sweep(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray, sweep: str) -> list[Jump]:
-    ahead = np.diff(frequency) * (1.0 if sweep == "up" else -1.0) > 0.0
-    goes_on = ahead & stable[:-1] & stable[1:]  # the segments along which the sweep can move
+def _sweep(
+    frequency: FloatArray, amplitude: FloatArray, stable: BoolArray, at: int, sweep: str
+) -> list[Jump]:
+    """Walk from a point along stable segments in the direction of the sweep, and jump where they end."""
+    rises = np.diff(frequency) * (1.0 if sweep == "up" else -1.0)
+    usable = stable[:-1] & stable[1:] & (rises != 0.0) & np.isfinite(rises)
     found: list[Jump] = []
-    at = 0
+    visited: set[int] = set()
+    while at not in visited:
+        at = _end_of_branch(at, rises, usable, visited)
+        here, before = float(frequency[at]), amplitude[at]
+        if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
+            return found
+        onto = _landing(frequency, usable, at)
+        if onto is None:
+            return [*found, Jump(sweep, here, before, np.full_like(before, np.nan))]
+        share = (here - frequency[onto]) / (frequency[onto + 1] - frequency[onto])
+        after = amplitude[onto] + share * (amplitude[onto + 1] - amplitude[onto])
+        found.append(Jump(sweep, here, before, after))
+        at = onto + 1 if rises[onto] > 0.0 else onto
+    return found
+
+
+def _end_of_branch(at: int, rises: FloatArray, usable: BoolArray, visited: set[int]) -> int:
     while True:
-        ends = np.flatnonzero(~goes_on[at:])
-        if ends.size == 0:
-            return found
-        at += int(ends[0])
-        start, end = frequency[at + 1 : -1], frequency[at + 2 :]
-        holds = (frequency[at] - start) * (frequency[at] - end) <= 0.0
-        landing = np.flatnonzero(holds & goes_on[at + 1 :])
-        if landing.size == 0:
-            found.append(
-                Jump(sweep, float(frequency[at]), amplitude[at], np.full_like(amplitude[at], np.nan))
-            )
-            return found
-        k = at + 1 + int(landing[0])
-        share = (frequency[at] - frequency[k]) / (frequency[k + 1] - frequency[k])
-        after = amplitude[k] + share * (amplitude[k + 1] - amplitude[k])
-        found.append(Jump(sweep, float(frequency[at]), amplitude[at], after))
-        at = k + 1
+        visited.add(at)
+        if at < rises.size and usable[at] and rises[at] > 0.0:
+            at += 1
+        elif at > 0 and usable[at - 1] and rises[at - 1] < 0.0:
+            at -= 1
+        else:
+            return at
+
+
+def _landing(frequency: FloatArray, usable: BoolArray, at: int) -> int | None:
+    """Another stable segment at the same frequency: the next along the curve, else any."""
+    start, end = frequency[:-1], frequency[1:]
+    holds = usable & ((frequency[at] - start) * (frequency[at] - end) <= 0.0)
+    holds[max(at - 1, 0) : at + 1] = False
+    candidates = np.flatnonzero(holds)
+    if candidates.size == 0:
+        return None
+    later = candidates[candidates > at]
+    return int(later[0] if later.size else candidates[-1])

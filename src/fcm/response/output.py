@@ -79,7 +79,9 @@ def fields_of(response: Response) -> dict[str, Field]:
     left = "response to harmonics 2 to 8 of the contact forces, relative to the fundamental"
     points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
     hill = "1 where small disturbances die out, by Hill's method on the balanced equations"
-    points("stable", lambda c: c.stable.astype(np.float64), (), long_name=hill, units="1")
+    points(
+        "stable", lambda c: np.where(np.isnan(c.frequency), np.nan, c.stable), (), long_name=hill, units="1"
+    )
     out |= _curve_fields(response, scale, cf_unit)
     return out
 
@@ -177,13 +179,21 @@ def write_csv(response: Response, path: str | Path) -> None:
     with Replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(
-            ["curve", *keys, f"frequency [{response.frequency_unit}]", *columns, *regimes, *LAST_COLUMNS]
+            [
+                "curve",
+                "branch",
+                *keys,
+                f"frequency [{response.frequency_unit}]",
+                *columns,
+                *regimes,
+                *LAST_COLUMNS,
+            ]
         )
         for number, c in enumerate(response.curves):
-            values = np.stack((c.amplitude, c.phase, c.mean), axis=2).reshape(c.points, -1)
-            for k in range(c.points):
+            values = np.stack((c.amplitude, c.phase, c.mean), axis=2).reshape(c.frequency.size, -1)
+            for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
-                    [number, *c.parameters.values(), repr(float(c.frequency[k] / scale))]
+                    [number, c.branch[k], *c.parameters.values(), repr(float(c.frequency[k] / scale))]
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), int(c.stable[k])]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]

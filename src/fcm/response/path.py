@@ -23,6 +23,7 @@ from fcm.contact.limits import FloatArray
 from fcm.response.structure import IntArray
 
 BoolArray = npt.NDArray[np.bool_]
+Progress = Callable[[float, str], None]  # finished fraction and a text
 
 MAX_ITERATIONS = 7  # Newton steps before a predictor is judged too far away
 CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every point is corrected later
@@ -36,12 +37,12 @@ FIRST_STEP = 1e-3
 LONGEST_PATH = 20000  # steps
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
-BOUNDLESS = 1e12  # times the amplitude at the start: an undamped resonance
+BOUNDLESS = 1e9  # times the amplitude at the start: an undamped resonance
 
 RUNNING, COMPLETE, RETURNED, STALLED, TOO_LONG, UNBOUNDED = range(6)
 REASONS = {
     COMPLETE: "",
-    RETURNED: "the curve came back to the frequency where it began; other branches may lie beyond",
+    RETURNED: "the curve came back to the frequency where it began, and none was found from the other end",
     STALLED: "no further point could be found; try a smaller --max-step or another range",
     UNBOUNDED: "the amplitude grows without limit, at a resonance that nothing damps; add damping",
     TOO_LONG: f"the curve did not leave the range within {LONGEST_PATH} steps; try a larger --max-step",
@@ -77,8 +78,7 @@ class Trace:
     z: FloatArray  # (point, unknown + 1), the parameter last
     direction: FloatArray  # (point, unknown + 1) along the curve, any length
     status: IntArray  # (curve,)
-    last_step: FloatArray  # (curve,)
-    ticks: int  # steps of the group
+    ticks: int = 0  # steps of the group
 
 
 @dataclass
@@ -198,9 +198,9 @@ def follow(
     low: FloatArray,
     high: FloatArray,
     max_step: FloatArray | float,
-    progress: Callable[[float, str], None] | None = None,
+    progress: Progress | None = None,
 ) -> Trace:
-    """Trace every curve from z, where the parameter is low, until the parameter reaches high."""
+    """Trace every curve from z, where the parameter is low or high, until it leaves the range."""
     return _Follower(equations, z, low, high, max_step, progress).run()
 
 
@@ -212,15 +212,15 @@ class _Follower:
         low: FloatArray,
         high: FloatArray,
         max_step: FloatArray | float,
-        progress: Callable[[float, str], None] | None,
+        progress: Progress | None,
     ) -> None:
         curves = z.shape[0]
         self.all_equations, self.progress = equations, progress
         self.low, self.high = np.broadcast_to(low, (curves,)), np.broadcast_to(high, (curves,))
         self.max_step = np.broadcast_to(max_step, (curves,))
         self.status = np.full(curves, RUNNING)
-        self.last_step = np.zeros(curves)
-        self.furthest = z[:, -1].copy()
+        self.start = z[:, -1].copy()  # low or high
+        self.furthest = np.zeros(curves)  # fraction of the range that has been covered
         self.at_start = amplitudes(z[:, :-1]).max(axis=1, initial=0.0)
         self.points: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self.ticks = 0
@@ -230,15 +230,15 @@ class _Follower:
         curves = z.shape[0]
         largest = amplitudes(z[:, :-1])
         scale = scales(z[:, :-1], largest, self.high - self.low)
-        upward = np.zeros_like(z)
-        upward[:, -1] = 1.0
-        first = correct(self.all_equations, z, scale, upward)
+        inward = np.zeros_like(z)
+        inward[:, -1] = np.where(self.start == self.low, 1.0, -1.0)
+        first = correct(self.all_equations, z, scale, inward)
         self.front = _Front(
             np.arange(curves), first.z, scale, largest, first.tangent, np.zeros_like(z),
             first.determinant, np.minimum(FIRST_STEP, self.max_step),
         )  # fmt: skip
         self.equations = self.all_equations
-        self.front.z[:, -1] = self.low
+        self.front.z[:, -1] = self.start
         self._record(first.converged)
         self._retire(np.where(first.converged, RUNNING, STALLED))
 
@@ -252,7 +252,7 @@ class _Follower:
         self._retire(np.full(self.front.curve.size, TOO_LONG))
         curve, z, direction = (np.concatenate(part) for part in zip(*self.points, strict=True))
         order = np.argsort(curve, kind="stable")
-        return Trace(curve[order], z[order], direction[order], self.status, self.last_step, self.ticks)
+        return Trace(curve[order], z[order], direction[order], self.status, self.ticks)
 
     def _tick(self) -> None:
         """One step of every running curve."""
@@ -279,8 +279,8 @@ class _Follower:
         turned = self._turn_corners(stuck) if stuck.any() else stuck
         self._record(accepted | landed | turned)
         status = np.full(front.curve.size, RUNNING)
-        at_top = front.z[:, -1] >= self.high[front.curve]
-        status[landed] = np.where(at_top[landed], COMPLETE, RETURNED)
+        back = front.z[:, -1] == self.start[front.curve]
+        status[landed] = np.where(back[landed], RETURNED, COMPLETE)
         status[stuck & ~turned] = STALLED
         status[front.largest.max(axis=1, initial=0.0) > BOUNDLESS * self.at_start[front.curve]] = UNBOUNDED
         self._retire(status)
@@ -379,8 +379,8 @@ class _Follower:
         """Take the finished curves out of the group."""
         front = self.front
         self.status[front.curve] = status
-        self.last_step[front.curve] = front.step
-        self.furthest[front.curve] = np.maximum(self.furthest[front.curve], front.z[:, -1])
+        covered = np.abs(front.z[:, -1] - self.start[front.curve]) / (self.high - self.low)[front.curve]
+        self.furthest[front.curve] = np.maximum(self.furthest[front.curve], covered)
         keep = status == RUNNING
         if not keep.all():
             self.front = front.take(keep)
@@ -388,7 +388,7 @@ class _Follower:
 
     def _report(self) -> None:
         assert self.progress is not None
-        share = np.where(self.status == RUNNING, (self.furthest - self.low) / (self.high - self.low), 1.0)
+        share = np.where(self.status == RUNNING, self.furthest, 1.0)
         left = self.front.curve.size
         self.progress(float(share.mean()), f"{left} curve{'s' if left != 1 else ''} running")
 

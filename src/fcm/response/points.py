@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
+from fcm.response.branches import Branches, hang_together
 from fcm.response.displacement import displacement_rates, displacements
 from fcm.response.extrema import fold_rate, locate
-from fcm.response.path import BoolArray, Trace, amplitudes, correct, scales
+from fcm.response.path import BoolArray, amplitudes, correct, scales
 from fcm.response.segment import EXACT, ITERATIONS, Segments
 from fcm.response.structure import AnyArray, IntArray
 
@@ -27,10 +28,15 @@ class Points:
     """Points of all curves in order along each."""
 
     curve: IntArray  # (point,)
+    branch: IntArray  # (point,) several of a curve if they do not hang together
     z: FloatArray  # (point, unknown + 1), the frequency last
     direction: FloatArray  # (point, unknown + 1) along the curve
-    shift: FloatArray  # (point,) relative, by the correction; NaN where it failed and the point stayed
+    shift: FloatArray  # (point,) relative, by the correction
     fold: BoolArray  # (point,) where the frequency turns
+
+    def take(self, which: BoolArray) -> Points:
+        """Some of the points."""
+        return Points(*(getattr(self, f.name)[which] for f in fields(self)))
 
     def segments(self, at: IntArray, exact: Balance) -> Segments:
         """The segments from points at (segment,) to the points that follow them."""
@@ -38,30 +44,33 @@ class Points:
         return Segments(curve, z[at], z[at + 1], d[at], d[at + 1], extent(exact, curve))
 
 
-def corrected(exact: Balance, path: Trace) -> Points:
-    """Every point corrected with the closed form along the normal of its curve."""
+def corrected(exact: Balance, branches: Branches) -> Points:
+    """Every point corrected with the closed form along the normal of its curve.
+
+    A point for which that fails is none: the neighbours stand for the curve there.
+    """
+    path = branches.trace
+    curve = branches.curve[path.curve]
     x = path.z[:, :-1]
-    scale = scales(x, amplitudes(x), extent(exact, path.curve))
+    scale = scales(x, amplitudes(x), extent(exact, curve))
     row = path.direction / scale
-    low, high = (
-        np.broadcast_to(f, path.status.shape)[path.curve] for f in (exact.group.low, exact.group.high)
-    )
-    ends = (path.z[:, -1] == low) | (path.z[:, -1] == high)
+    omega = path.z[:, -1]
+    ends = (omega == _of(exact.group.low, curve)) | (omega == _of(exact.group.high, curve))
     row[ends] = np.eye(path.z.shape[1])[-1]  # the ends of the range stay where they are
     row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
-    balance = exact.take(path.curve)
+    balance = exact.take(curve)
     new = correct(balance, path.z, scale, row, EXACT, ITERATIONS)
-    kept = new.converged[:, None]
-    z = np.where(kept, new.z, path.z)
+    z = np.where(new.converged[:, None], new.z, path.z)
+    z[ends, -1] = path.z[ends, -1]
     before, _ = displacements(balance, path.z[:, :-1], path.z[:, -1])
     after, _ = displacements(balance, z[:, :-1], z[:, -1])
     size = np.abs(after).max(axis=1, initial=0.0)
     shift = np.abs(after - before).max(axis=1, initial=0.0) / np.where(size > 0.0, size, 1.0)
-    z[ends, -1] = path.z[ends, -1]
     along = np.sign((new.tangent * path.direction / scale).sum(axis=1, keepdims=True))
-    direction = np.where(kept, along * scale * new.tangent, path.direction)
-    shift = np.where(new.converged, shift, np.nan)
-    return Points(path.curve, z, direction, shift, np.zeros(shift.size, dtype=bool))
+    points = Points(
+        curve, path.curve, z, along * scale * new.tangent, shift, np.zeros(shift.size, dtype=bool)
+    )
+    return points.take(new.converged)
 
 
 def refined(exact: Balance, points: Points) -> Points:
@@ -94,7 +103,7 @@ def _pieces(exact: Balance, points: Points) -> IntArray:
     change = np.maximum(jump, arc * np.maximum(rate[1:], rate[:-1]))
     high = np.any(size > NEARLY_HIGHEST * highest, axis=1)
     finer = np.maximum(change / CHANGE, np.where(high[1:] | high[:-1], arc / FINE, 0.0))
-    finer = np.where((points.curve[1:] == points.curve[:-1]) & (arc > SHORTEST), finer, 1.0)
+    finer = np.where(hang_together(points.branch) & (arc > SHORTEST), finer, 1.0)
     pieces: IntArray = np.ceil(np.clip(finer, 1.0, MOST_PIECES)).astype(np.intp)
     return pieces
 
@@ -110,7 +119,7 @@ def _subdivided(exact: Balance, points: Points, pieces: IntArray) -> Points:
 
 def with_folds(exact: Balance, points: Points) -> Points:
     """The folds as points of their own, so that each part between them is one branch."""
-    rate, same = points.direction[:, -1], points.curve[1:] == points.curve[:-1]
+    rate, same = points.direction[:, -1], hang_together(points.branch)
     at = np.flatnonzero(same & (np.sign(rate[1:]) * np.sign(rate[:-1]) < 0.0))
     segments = points.segments(at, exact)
     z, direction = locate(exact, segments, fold_rate, rate[at], rate[at + 1], at)
@@ -129,6 +138,7 @@ def _inserted(points: Points, place: FloatArray, z: FloatArray, direction: Float
 
     return Points(
         merged(points.curve, points.curve[at]),
+        merged(points.branch, points.branch[at]),
         merged(points.z, z),
         merged(points.direction, direction),
         merged(points.shift, shift),
@@ -138,5 +148,9 @@ def _inserted(points: Points, place: FloatArray, z: FloatArray, direction: Float
 
 def extent(exact: Balance, curve: IntArray) -> FloatArray:
     """Length of the frequency range of each of the curves."""
-    length = exact.group.high - exact.group.low
-    return np.broadcast_to(length, curve.shape) if length.size == 1 else length[curve]
+    return _of(exact.group.high - exact.group.low, curve)
+
+
+def _of(value: FloatArray, curve: IntArray) -> FloatArray:
+    """A value of each curve, or one that all share, at some of the curves."""
+    return np.broadcast_to(value, curve.shape) if value.size == 1 else value[curve]

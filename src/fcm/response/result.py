@@ -16,7 +16,10 @@ UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
 @dataclass
 class Curve:
-    """One response curve; frequencies in rad/s."""
+    """One response curve; frequencies in rad/s.
+
+    Branches that do not hang together follow one another, with a point of NaN between them.
+    """
 
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) [rad/s]
@@ -36,7 +39,12 @@ class Curve:
     @property
     def points(self) -> int:
         """Number of points."""
-        return int(self.frequency.size)
+        return int(np.isfinite(self.frequency).sum())
+
+    @property
+    def branch(self) -> npt.NDArray[np.intp]:
+        """Number of the branch of each point, (point,); a row of NaN stands between branches."""
+        return np.cumsum(np.isnan(self.frequency))
 
     def worst(self, errors: FloatArray) -> float | None:
         """Largest error of the curve that is known."""
@@ -66,7 +74,7 @@ class Curve:
             "peak": {d: {"amplitude": a, "frequency": w / scale} for d, (a, w) in self.peaks.items()},
             "folds": [w / scale for w in self.folds],
             "jumps": [self._jump(jump, scale) for jump in self.jumps()],
-            "stable": bool(self.stable.all()),
+            "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
             "seconds": self.seconds,

@@ -55,5 +55,7 @@ class Segments:
         guess = self.start + s * s * (3.0 - 2.0 * s) * self.chord
         guess += s * (1.0 - s) * ((1.0 - s) * first - s * last)
         new = correct(exact.take(self.curve), guess, self.scale, self.row, EXACT, ITERATIONS)
+        away = np.sqrt((((new.z - guess) / self.scale) ** 2).sum(axis=1))
+        new.converged &= away < self.length  # a solution further off is of another part of the curve
         new.tangent = self.scale * new.tangent
         return new

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,14 +44,23 @@ def starting_points(balance: Balance, omega: FloatArray) -> tuple[FloatArray, Bo
     for stuck in (preloaded, np.ones_like(preloaded), np.zeros_like(preloaded)):
         left = np.flatnonzero(~found)
         if left.size:
-            some = balance.take(left)
-            guess = some.linear(omega[left], stuck[left].astype(np.float64))
-            x[left], found[left] = _at_level(some, guess, omega[left])
+            x[left], found[left] = _from_linear(balance.take(left), omega[left], stuck[left])
     for weak in WEAK:
         left = np.flatnonzero(~found)
         if left.size:
             x[left], found[left] = _raise_load(balance.take(left), omega[left], preloaded[left], weak)
     return x, found
+
+
+def linear_starts(balance: Balance, omega: FloatArray) -> Iterator[tuple[FloatArray, BoolArray]]:
+    """Solutions at omega that Newton's method finds with all contacts stuck, then with all of them open."""
+    shape = (omega.size, balance.group.contacts)
+    for stuck in (np.ones(shape, dtype=bool), np.zeros(shape, dtype=bool)):
+        yield _from_linear(balance, omega, stuck)
+
+
+def _from_linear(balance: Balance, omega: FloatArray, stuck: BoolArray) -> tuple[FloatArray, BoolArray]:
+    return _at_level(balance, balance.linear(omega, stuck.astype(np.float64)), omega)
 
 
 def _at_level(

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 
 import numpy as np
 
-from fcm.contact.limits import FloatArray
 from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
+from fcm.response.branches import all_branches
 from fcm.response.law import ClosedForm, Coefficients
-from fcm.response.path import STALLED, BoolArray, Trace, follow
+from fcm.response.path import Progress
 from fcm.response.points import corrected, refined, with_folds
 from fcm.response.result import Response
-from fcm.response.start import starting_points
 from fcm.response.structure import group_of, with_contact
 from fcm.scene.model import Scene
 
 METHODS = ("table", "closed-form")
-Progress = Callable[[float, str], None]
 
 
 class ResponseError(ValueError):
@@ -59,16 +56,19 @@ def trace(
     group = group_of([with_contact(curve) for curve in curves])
     exact = Balance(group, ClosedForm())
     used = exact if method == "closed-form" else Balance(group, table or _default_table())
-    path, lost = _follow(used, np.array([c.max_step for c in curves]), progress)
-    points = corrected(exact, path)
+    branches = all_branches(used, np.array([c.max_step for c in curves]), progress)
+    points = corrected(exact, branches)
+    dropped = branches.trace.curve.size - points.curve.size
     if used is exact:
-        points.shift[np.isfinite(points.shift)] = 0.0  # no table was used
+        points.shift[:] = 0.0  # no table was used
     points = with_folds(exact, refined(exact, points))
-    results = Assembly(exact, points, path.status, lost).curves(curves, scene.modal.dofs)
+    results = Assembly(exact, points, branches).curves(curves, scene.modal.dofs)
     response = Response(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
         scene.frequency_unit,
     )  # fmt: skip
+    if dropped:
+        response.left_out.append(f"{dropped} points that could not be corrected with the closed form")
     response.seconds = time.perf_counter() - begin
     share = response.seconds / max(sum(c.points for c in results), 1)
     for curve in results:  # curves advance together: each is charged by its points
@@ -91,19 +91,3 @@ def _default_table() -> Coefficients:
     from fcm.table import open_table
 
     return open_table()
-
-
-def _follow(balance: Balance, max_step: FloatArray, progress: Progress | None) -> tuple[Trace, BoolArray]:
-    """Trace all curves; those without a starting point are lost and have no points."""
-    low, high = (np.broadcast_to(x, max_step.shape).copy() for x in (balance.group.low, balance.group.high))
-    x, found = starting_points(balance, low)
-    some = np.flatnonzero(found)
-    unknowns = x.shape[1] + 1
-    status = np.full(max_step.size, STALLED)
-    if some.size == 0:
-        nothing = np.empty((0, unknowns))
-        return Trace(np.empty(0, dtype=np.intp), nothing, nothing, status, max_step, 0), ~found
-    z = np.column_stack((x[some], low[some]))
-    path = follow(balance.take(some), z, low[some], high[some], max_step[some], progress)
-    status[some] = path.status
-    return Trace(some[path.curve], path.z, path.direction, status, path.last_step, path.ticks), ~found

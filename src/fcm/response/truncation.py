@@ -48,6 +48,8 @@ def _port_forces(balance: Balance, x: FloatArray) -> ComplexArray:
     N = normal_harmonics(n0_star.ravel(), ORDERS)
     k = ORDERS[:, None, None]
     out = np.empty((ORDERS.size, points, contacts, 2), dtype=np.complex128)
-    out[..., 0] = F.reshape(-1, points, contacts) * np.exp(1j * k * np.angle(u)) * (law.k_u * np.abs(u))
-    out[..., 1] = N.reshape(-1, points, contacts) * np.exp(1j * k * np.angle(v)) * variation
+    out[..., 0] = (
+        F.reshape(ORDERS.size, points, contacts) * np.exp(1j * k * np.angle(u)) * (law.k_u * np.abs(u))
+    )
+    out[..., 1] = N.reshape(ORDERS.size, points, contacts) * np.exp(1j * k * np.angle(v)) * variation
     return out.reshape(ORDERS.size, points, 2 * contacts)

@@ -1,0 +1,156 @@
+"""What a scene does not need and is not computed, with a sentence on each: what, why, and its effect.
+
+Without any effect are left out: modes that neither a force nor a contact moves, and contacts that carry
+nothing. Modes far above the range are replaced by few (`static_modes`) where that pays; what this changes
+is measured afterwards with all modes, and if it is more than the tolerance they are put back.
+
+Contacts that happen to stay open or stuck are kept: without them, branches on which they do not stay so
+would never be found.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.contact.limits import BoolArray, FloatArray
+from fcm.response.law import ClosedForm, Coefficients
+from fcm.response.static_modes import with_static_modes
+from fcm.scene.model import Contact, Modal, Scene
+
+TOLERANCE = 1e-5  # of the response, for modes that are replaced
+ROUNDING = 1e-14  # relative: a sum of products this small is zero
+
+
+@dataclass(frozen=True)
+class Lighter:
+    """The scenes of a sweep without what they do not need."""
+
+    full: tuple[Scene, ...]
+    curves: tuple[Scene, ...]  # what is traced
+    contacts: tuple[int, ...]  # which of the contacts are traced
+    sentences: tuple[str, ...]  # what was left out without any effect, and why
+    above: float | None = None  # [rad/s] modes above are replaced by few
+
+    @property
+    def idle_table(self) -> bool:
+        """Whether no contact needs friction coefficients."""
+        return not any(c.mu > 0.0 and c.k_u > 0.0 for s in self.curves for c in s.contacts)
+
+
+def keep_all(curves: tuple[Scene, ...]) -> Lighter:
+    """The scenes as they are."""
+    return Lighter(curves, curves, tuple(range(len(curves[0].contacts))), ())
+
+
+def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighter:
+    """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect."""
+    needed = tuple(i for i in range(len(curves[0].contacts)) if any(_carries(s, i) for s in curves))
+    lighter = tuple(_with_contacts(s, needed) for s in curves)
+    sentences = _idle_contacts(curves[0], needed)
+    moved = np.logical_or.reduce([_moved(s) for s in _different(lighter)])
+    if not moved.all():
+        lighter = _with_modals(lighter, {id(s.modal): _some_modes(s.modal, moved) for s in lighter})
+        what = f"{_counted(int((~moved).sum()), 'mode')} of {moved.size}"
+        sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
+    result = Lighter(curves, lighter, needed, tuple(sentences))
+    if result.idle_table and lighter[0].contacts:
+        result = replace(result, sentences=(*sentences, "the table: no contact has friction (no effect)"))
+    return _static(result, tolerance)
+
+
+def table_for(lighter: Lighter, method: str, table: Coefficients | None) -> Coefficients | None:
+    """The table to trace with; none is opened where no contact has friction."""
+    return ClosedForm() if method == "table" and table is None and lighter.idle_table else table
+
+
+def sentence_on_modes(lighter: Lighter, shift: float) -> str:
+    """What was replaced, with the bound that the check gives."""
+    modal, fewer, unit = lighter.full[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
+    above = (lighter.above or 0.0) / (2.0 * np.pi if unit == "Hz" else 1.0)
+    high = int((modal.frequency > (lighter.above or 0.0)).sum())
+    few = int((fewer.frequency > (lighter.above or 0.0)).sum())
+    return (
+        f"{_counted(high, 'mode')} of {modal.frequency.size} above {above:.4g} {unit}: far above the range, "
+        f"replaced by {few} with the same flexibility (changes the response by less than {2.0 * shift:.1e})"
+    )
+
+
+def _static(lighter: Lighter, tolerance: float) -> Lighter:
+    """Modes far above the range replaced, where every curve has the same structure."""
+    curves = lighter.curves
+    if len(_different(curves)) > 1:
+        return lighter
+    found = with_static_modes(_stiffest(curves), tolerance)
+    if found is None:
+        return lighter
+    modal, above = found
+    return replace(lighter, curves=tuple(replace(s, modal=modal) for s in curves), above=above)
+
+
+def _stiffest(curves: tuple[Scene, ...]) -> Scene:
+    """The first scene with the greatest stiffness that each contact has in any."""
+    contacts = []
+    for of_one in zip(*(s.contacts for s in curves), strict=True):
+        k_u, k_v = max(c.k_u for c in of_one), max(c.k_v for c in of_one)
+        contacts.append(replace(of_one[0], k_u=k_u, k_v=k_v))
+    return replace(curves[0], contacts=tuple(contacts))
+
+
+def _different(curves: tuple[Scene, ...]) -> list[Scene]:
+    """One scene for each structure with directions of its contacts and forces."""
+
+    def key(s: Scene) -> tuple[int | bytes, ...]:
+        along = [d.tobytes() for c in s.contacts for d in (c.tangential, c.normal)]
+        return (id(s.modal), *along, *(force.direction.tobytes() for force in s.forces))
+
+    return list({key(s): s for s in curves}.values())
+
+
+def _reaches(modal: Modal, direction: FloatArray) -> BoolArray:
+    """Whether each mode moves along a direction, beyond rounding."""
+    size = np.abs(modal.shapes) @ np.abs(direction)
+    reaches: BoolArray = np.abs(modal.shapes @ direction) > ROUNDING * size
+    return reaches
+
+
+def _carries(scene: Scene, number: int) -> bool:
+    """Whether a contact can exert any force."""
+    contact: Contact = scene.contacts[number]
+    normal = contact.k_v > 0.0 and bool(_reaches(scene.modal, contact.normal).any())
+    friction = contact.mu > 0.0 and contact.k_u > 0.0 and (normal or contact.n_0 > 0.0)
+    return normal or (friction and bool(_reaches(scene.modal, contact.tangential).any()))
+
+
+def _moved(scene: Scene) -> BoolArray:
+    """Which modes a force or a contact moves."""
+    along = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    along += [force.direction for force in scene.forces]
+    return np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
+
+
+def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:
+    if len(needed) == len(scene.contacts):
+        return scene
+    return replace(scene, contacts=tuple(scene.contacts[i] for i in needed))
+
+
+def _with_modals(curves: tuple[Scene, ...], modals: dict[int, Modal]) -> tuple[Scene, ...]:
+    return tuple(replace(s, modal=modals[id(s.modal)]) for s in curves)
+
+
+def _some_modes(modal: Modal, which: BoolArray) -> Modal:
+    return Modal(
+        modal.dofs, modal.mass[which], modal.frequency[which], modal.damping[which], modal.shapes[which]
+    )
+
+
+def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
+    why = "without friction or stiffness, or nothing moves it: it carries nothing (no effect)"
+    idle = [i for i in range(len(scene.contacts)) if i not in needed]
+    return [f"contact {scene.contacts[i].name or i}: {why}" for i in idle]
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

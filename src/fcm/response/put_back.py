@@ -1,0 +1,99 @@
+"""What was left out of a calculation put back into its results, and its effect on them measured."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.contact.loop import sequences
+from fcm.response.balance import Balance
+from fcm.response.displacement import displacements
+from fcm.response.law import UNKNOWNS, ClosedForm
+from fcm.response.leave_out import Lighter
+from fcm.response.path import amplitudes, correct, scales
+from fcm.response.points import extent
+from fcm.response.result import Curve, Response
+from fcm.response.segment import EXACT, ITERATIONS
+from fcm.response.structure import IntArray, group_of
+from fcm.scene.model import Scene
+
+MOST_CHECKED = 200  # points at which the response is compared with that of all modes
+EACH_CHECKED = 8  # points of one curve, besides its peaks
+
+
+def restored(response: Response, lighter: Lighter) -> Response:
+    """The response with all contacts in it."""
+    full = lighter.full
+    if len(lighter.contacts) < len(full[0].contacts):
+        response.contacts = tuple(c.name for c in full[0].contacts)
+        for curve, scene in zip(response.curves, full, strict=True):
+            curve.regime = _all_regimes(curve, scene, lighter.contacts)
+    return response
+
+
+def checked(response: Response, lighter: Lighter) -> float:
+    """Shift of the response, relative, when points of the curves are corrected with all modes."""
+    per_curve = max(min(EACH_CHECKED, MOST_CHECKED // len(response.curves)), 1)
+    shifts = []
+    for number in _spread(len(response.curves), MOST_CHECKED):
+        curve, scene = response.curves[number], lighter.full[number]
+        at = _sample(curve, per_curve)
+        if at.size and scene.contacts:
+            shifts.append(_shift(curve, scene, at))
+    return max(shifts, default=0.0)
+
+
+def _all_regimes(curve: Curve, scene: Scene, traced: tuple[int, ...]) -> npt.NDArray[np.str_]:
+    """The regimes with those of the contacts that were not traced."""
+    at = np.flatnonzero(np.isfinite(curve.frequency))
+    law = Balance(group_of([scene]), ClosedForm()).law
+    regime = np.full((curve.frequency.size, len(scene.contacts)), "", dtype=curve.regime.dtype)
+    regime[at] = sequences(*law.arguments(_unknowns(curve, scene, at)))
+    regime[:, list(traced)] = curve.regime
+    return regime
+
+
+def _unknowns(curve: Curve, scene: Scene, at: IntArray) -> FloatArray:
+    """Unknowns of all contacts at points of a curve, from its displacements, (point, contact, 5)."""
+    X = curve.amplitude[at] * np.exp(1j * curve.phase[at])
+    x = np.empty((at.size, len(scene.contacts), UNKNOWNS))
+    for i, contact in enumerate(scene.contacts):
+        u, v = X @ contact.tangential, X @ contact.normal
+        x[:, i, :4] = np.column_stack((u.real, u.imag, v.real, v.imag))
+        x[:, i, 4] = curve.mean[at] @ contact.normal
+    return x
+
+
+def _sample(curve: Curve, count: int) -> IntArray:
+    """Points of a curve: those of the greatest amplitudes, and others spread evenly."""
+    there = np.flatnonzero(np.isfinite(curve.frequency))
+    if there.size == 0:
+        return there
+    highest = there[curve.amplitude[there].argmax(axis=0)]
+    highest = highest[_spread(highest.size, count)]
+    return np.union1d(highest, there[_spread(there.size, count)]).astype(np.intp)
+
+
+def _spread(count: int, most: int) -> IntArray:
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
+
+
+def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
+    """Greatest relative shift of points by a correction with all modes, along the normal of the curve."""
+    balance = Balance(group_of([scene]), ClosedForm())
+    x = _unknowns(curve, scene, at).reshape(at.size, -1)
+    z = np.column_stack((x, curve.frequency[at]))
+    scale = scales(x, amplitudes(x), extent(balance, np.zeros(at.size, dtype=np.intp)))
+    row = np.zeros_like(z)
+    row[:, -1] = 1.0
+    row = correct(balance, z, scale, row, iterations=1).tangent  # the tangent, to first order
+    usable = np.isfinite(row).all(axis=1)  # not so in a fold itself
+    row[~usable] = np.eye(z.shape[1])[-1]
+    new = correct(balance, z, scale, row, EXACT, ITERATIONS)
+    X, _ = displacements(balance, new.z[:, :-1], new.z[:, -1])
+    before = curve.amplitude[at] * np.exp(1j * curve.phase[at])
+    # what the correction moved along the frequency counts as well, relative to the range
+    moved = np.abs(new.z - z)[:, -1] / scale[:, -1]
+    shift = np.abs(X - before).max(axis=1) / np.abs(X).max(axis=1) + moved
+    return float(np.where(new.converged, shift, np.inf)[usable].max(initial=0.0))

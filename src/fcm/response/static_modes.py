@@ -1,0 +1,116 @@
+"""Modes far above the range, replaced by a few that have their flexibility.
+
+Seen from p directions (of contacts and forces), many modes of high frequency are no more than p springs
+with some mass. Kept is the subspace of their static response to those directions, and of the static
+response to the inertia of that (Ritz, Galerkin): 2 p modes whose flexibility errs by the order
+(omega / omega_high)^4 at every degree of freedom. Their damping is right one by one, and not between them:
+an error of the order 2 zeta omega / omega_high times the small share that the flexibility varies by.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.response.structure import Group, group_of, modal_compliance, receptance, to_ports
+from fcm.scene.model import Modal, Scene
+
+ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
+PAYS = 0.6  # of the modes may remain; otherwise nothing is gained
+FEWEST = 30  # modes of a structure for which it is worth trying
+INDEPENDENT = 1e-10  # relative size below which a static response is a combination of the others
+MARGIN = 0.5  # of the tolerance, for the estimate that decides
+SPREAD = 24  # frequencies of the range at which linear responses are compared, besides resonances
+
+
+def with_static_modes(scene: Scene, tolerance: float) -> tuple[Modal, float] | None:
+    """Fewer modes for the scene, and the frequency above which they are replaced; None if it does not pay.
+
+    The error is estimated on the structure with all contacts open, and with all of them stuck.
+    """
+    modal = scene.modal
+    if modal.frequency.size < FEWEST or tolerance <= 0.0 or not scene.contacts:
+        return None
+    directions = _directions(scene)
+    for factor in ABOVE:
+        limit = factor * scene.frequency_range[1]
+        fewer = condensed(modal, directions, modal.frequency > limit)
+        if fewer.frequency.size > PAYS * modal.frequency.size:
+            return None
+        if _linear_error(scene, replace(scene, modal=fewer)) < MARGIN * tolerance:
+            return fewer, limit
+    return None
+
+
+def condensed(modal: Modal, directions: FloatArray, high: FloatArray) -> Modal:
+    """The modes with those marked high replaced by their static response to directions (dof, direction)."""
+    shapes = modal.shapes[high] / np.sqrt(modal.mass[high])[:, None]  # of modal mass 1
+    w, damping = modal.frequency[high], modal.damping[high]
+    # static responses, in coordinates whose sum of squares is the energy
+    static = (shapes @ directions) / w[:, None]
+    static = np.concatenate((_unit(static), _unit(_unit(static) / w[:, None] ** 2)), axis=1)
+    left, singular, _ = np.linalg.svd(static, full_matrices=False)
+    basis = left[:, singular > INDEPENDENT * singular.max(initial=0.0)] / w[:, None]
+    # in this basis the stiffness is 1: the eigenvalues of the mass are 1 / frequency^2
+    value, vector = np.linalg.eigh(basis.T @ basis)
+    frequency = 1.0 / np.sqrt(value)
+    ritz = (basis @ vector) * frequency
+    new_damping = (ritz**2 * (damping * w)[:, None]).sum(axis=0) / frequency
+    low = ~high
+    return Modal(
+        dofs=modal.dofs,
+        mass=np.concatenate((modal.mass[low], np.ones(frequency.size))),
+        frequency=np.concatenate((modal.frequency[low], frequency)),
+        damping=np.concatenate((modal.damping[low], new_damping)),
+        shapes=np.concatenate((modal.shapes[low], ritz.T @ shapes)),
+    )
+
+
+def _unit(columns: FloatArray) -> FloatArray:
+    """Columns of length 1; those of length 0 left out."""
+    size = np.sqrt((columns * columns).sum(axis=0))
+    unit: FloatArray = columns[:, size > 0.0] / size[size > 0.0]
+    return unit
+
+
+def _directions(scene: Scene) -> FloatArray:
+    """Directions of all contacts and forces as columns, (dof, direction)."""
+    of_contacts = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    return np.array([*of_contacts, *(force.direction for force in scene.forces)]).T
+
+
+def _linear_error(full: Scene, fewer: Scene) -> float:
+    """Greatest relative difference of the two linear responses, contacts all open and all stuck."""
+    low, high = full.frequency_range
+    worst = 0.0
+    for stuck in (0.0, 1.0):
+        at = _resonances(fewer, stuck)
+        omega = np.concatenate((np.linspace(low, high, SPREAD), at[(at > low) & (at < high)]))
+        one, other = (_linear_response(group_of([s]), omega, stuck) for s in (full, fewer))
+        size = np.abs(one).max(axis=1)
+        difference = np.abs(one - other).max(axis=1)
+        worst = max(worst, float((difference / np.where(size > 0.0, size, 1.0)).max()))
+    return worst
+
+
+def _resonances(scene: Scene, stuck: float) -> FloatArray:
+    """Natural frequencies with springs for contacts."""
+    group, modal = group_of([scene]), scene.modal
+    springs = stuck * np.stack((group.k_u[0], group.k_v[0]), axis=-1).ravel()
+    ports = group.ports[0] / np.sqrt(modal.mass)[:, None]
+    square = np.linalg.eigvalsh(np.diag(modal.frequency**2) + (ports * springs) @ ports.T)
+    return np.asarray(np.sqrt(np.maximum(square, 0.0)), dtype=np.float64)
+
+
+def _linear_response(group: Group, omega: FloatArray, stuck: float) -> FloatArray:
+    """Complex amplitudes (frequency, dof) with springs for contacts."""
+    compliance, _ = modal_compliance(group, omega)
+    springs = stuck * np.stack((group.k_u, group.k_v), axis=-1).reshape(1, -1)
+    matrix = np.eye(springs.size) + receptance(group, compliance) * springs[:, None, :]
+    external = to_ports(group, compliance * group.force)
+    ports = np.linalg.solve(matrix, external[..., None])[..., 0]
+    load = group.force - (springs * ports) @ group.ports[0].T
+    response: FloatArray = (compliance * load) @ group.shapes[0]
+    return response
