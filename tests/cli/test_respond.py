@@ -23,7 +23,7 @@ def refuse(*_args, **_more):
 
 def test_the_table_has_a_line_for_each_curve(fcm):
     done = fcm("respond", "yang1998")
-    header, *lines = done.out.splitlines()
+    header, *lines = done.out.partition("\n\n")[0].splitlines()
     assert done.code == 0
     assert header.split()[:3] == ["n_0", "peak", "u"] and "at rad/s" in header and "folds" in header
     rows = {line.split()[0]: line.split() for line in lines}
@@ -31,6 +31,23 @@ def test_the_table_has_a_line_for_each_curve(fcm):
     assert float(rows["10"][1]) == pytest.approx(6.236, abs=2e-3)  # the paper's optimum
     assert [float(fold) for fold in rows["5"][-2:]] == pytest.approx([1.2388, 1.1875], abs=2e-4)
     assert rows["10"][-1] == "none"
+
+
+def test_a_second_table_has_the_jumps_of_a_slow_sweep(fcm):
+    header, *lines = fcm("respond", "yang1998-n5").out.partition("\n\n")[2].splitlines()
+    assert header.replace("  ", " ") == "jump at rad/s u before u after v before v after sweep"
+    (up, *_, to_up, way_up), (down, from_down, *_, way_down) = ([*map(_cell, line.split())] for line in lines)
+    assert (way_up, way_down) == ("up", "down")
+    assert (up, down) == pytest.approx((1.2388, 1.1875), abs=2e-4)
+    assert to_up > 10 and from_down > 10
+
+
+def _cell(text):
+    return text if text.isalpha() else float(text)
+
+
+def test_without_jumps_there_is_one_table(fcm, scene):
+    assert "\n\n" not in fcm("respond", scene).out
 
 
 def test_the_last_lines_say_what_it_cost_and_how_wrong_it_is(fcm, scene):

@@ -1,52 +1,74 @@
-"""What a response run says to a reader: a table of its curves, and a line or two of cost and error."""
+"""What a response run says to a reader: tables of its curves and jumps, a line or two of cost and error."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+Curve = Mapping[str, Any]  # one of the summary's "curves"
+
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
-    """One line a curve: what was swept, the peaks, the folds, the points, whether it is whole, its time."""
+    """One line a curve; then one for each jump of a slow sweep, if there are any."""
     from fcm.plot.labels import short_names
 
     curves = summary["curves"]
     if not curves:
         return "no curve"
-    parameters = list(curves[0]["parameters"])
+    names = list(short_names(curves[0]["parameters"]).values())
     dofs = list(curves[0]["peak"])[:_MOST_DOFS]
-    header = list(short_names(parameters).values())
-    header += [text for dof in dofs for text in (f"peak {dof}", f"at {unit}")]
-    header += ["points", "time [s]", f"folds at {unit}", ""]
-    return "\n".join(_aligned([header, *(_row(curve, parameters, dofs) for curve in curves)]))
+    parts = [_curves(curves, names, dofs, unit)]
+    if any(curve.get("jumps") for curve in curves):
+        parts.append(_jumps(curves, names, dofs, unit))
+    return "\n\n".join(parts)
 
 
-def _row(curve: Mapping[str, Any], parameters: Sequence[str], dofs: Sequence[str]) -> list[str]:
-    cells = [f"{curve['parameters'][name]:.6g}" for name in parameters]
+def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str) -> str:
+    """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
+    peaks = [text for dof in dofs for text in (f"peak {dof}", f"at {unit}")]
+    header = [*names, *peaks, "points", "time [s]", f"folds at {unit}", ""]
+    return _aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)
+
+
+def _curve_row(curve: Curve, dofs: list[str]) -> list[str]:
+    cells = _swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
         cells += [_number(peak.get("amplitude")), _number(peak.get("frequency"))]
     folds = "  ".join(_number(fold) for fold in curve["folds"]) or "none"
-    return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, _state(curve)]
+    state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
+    return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
 
 
-def _state(curve: Mapping[str, Any]) -> str:
-    return "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
+def _jumps(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str) -> str:
+    """Where a slow sweep of the frequency leaves a curve's stable part, and to which amplitudes."""
+    moves = [text for dof in dofs for text in (f"{dof} before", f"{dof} after")]
+    rows = [[*names, f"jump at {unit}", *moves, "sweep"]]
+    for curve in curves:
+        for jump in curve.get("jumps", ()):
+            moves = [_number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
+            rows.append([*_swept(curve), _number(jump["frequency"]), *moves, jump["sweep"]])
+    return _aligned(rows, left=1)
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Columns of equal width: numbers to the right, the last two to the left."""
+def _swept(curve: Curve) -> list[str]:
+    return [f"{value:.6g}" for value in curve["parameters"].values()]
+
+
+def _aligned(rows: Sequence[Sequence[str]], left: int) -> str:
+    """Columns of equal width: numbers to the right, the last ``left`` to the left."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    left = len(widths) - 2
-    return [
+    right = len(widths) - left
+    lines = (
         "  ".join(
-            cell.rjust(width) if i < left else cell.ljust(width)
+            cell.rjust(width) if i < right else cell.ljust(width)
             for i, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
+        )
         for row in rows
-    ]
+    )
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:
@@ -54,19 +76,16 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     curves = summary["curves"]
     points = sum(curve["points"] for curve in curves)
     count = f"{len(curves)} curve{'' if len(curves) == 1 else 's'}"
-    lines = [f"{count}, {points} points in {summary['seconds']:.2f} s"]
     table, harmonic = (_worst(curves, key) for key in ("table_error", "truncation_error"))
     errors = []
     if summary.get("method") != "closed-form" and table is not None:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:
         errors.append(f"{harmonic:.1e} by leaving out higher harmonics")
-    lines.append("largest relative error: " + ("; ".join(errors) or "not known"))
-    return "\n".join(lines)
-
-
-def _worst(curves: Sequence[Mapping[str, Any]], key: str) -> float | None:
-    return max((curve[key] for curve in curves if curve.get(key) is not None), default=None)
+    return (
+        f"{count}, {points} points in {summary['seconds']:.2f} s\n"
+        f"largest relative error: {'; '.join(errors) or 'not known'}"
+    )
 
 
 def incomplete(summary: Mapping[str, Any]) -> str:
@@ -74,6 +93,10 @@ def incomplete(summary: Mapping[str, Any]) -> str:
     curves = summary["curves"]
     stopped = sum(not curve["complete"] for curve in curves)
     return f"{stopped} of {len(curves)} curves not complete" if stopped else ""
+
+
+def _worst(curves: Sequence[Curve], key: str) -> float | None:
+    return max((curve[key] for curve in curves if curve.get(key) is not None), default=None)
 
 
 def _number(value: float | None) -> str:
