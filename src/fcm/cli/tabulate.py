@@ -102,8 +102,8 @@ def _build(
     resolution = PRESETS[preset] if nodes is None else nodes
     began = time.perf_counter()
     with _Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
-        options = " ".join(map(str, resolution))
-        table = build_table(output, resolution, points, progress, f"fcm tabulate --nodes {options}")
+        made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
+        table = build_table(output, resolution, points, progress, made_by)
     seconds = time.perf_counter() - began
     size = output.stat().st_size
     result = {
@@ -196,6 +196,8 @@ def _draw(rows: list[Row], path: Path) -> None:
                 at = [getattr(row, field) / (1e6 if field == "bytes" else 1.0) for row in some]
                 axes.loglog(at, [row.rms for row in some], style, marker=mark, color=colour, label=label)
                 axes.loglog(at, [row.max for row in some], style, marker=mark, color=colour, alpha=0.3)
+    by_time.set_xscale("linear")
+    by_time.set_xlim(0.0, 1.05 * max(row.us_of_group for row in rows))
     by_time.axvline(rows[-1].us_of_group, color="black", linestyle=":", label="closed form, exact")
     by_size.set(xlabel="size [MB]", ylabel="absolute error: rms (strong), greatest (pale) [-]")
     by_time.set(xlabel="time for ten points [µs]")
