@@ -91,27 +91,25 @@ class _Contact:
         lower = [self.limit(-1, c) for c in self.cuts]
         upper = [self.limit(+1, c) for c in self.cuts]
         w = min(max(mpf(0), lower[0]), upper[0]) if closed[0] else mpf(0)
-        for _ in range(3):
-            total = [mpf(0)] * 3
-            for i, is_closed in enumerate(closed):
-                begin, end = self.cuts[i : i + 2]
-                before = w
-                if not is_closed:
-                    w = mp.sin(end)
-                    continue
-                w = min(max(w, lower[i + 1]), upper[i + 1])
-                side = mp.sign(before - w)  # -1: the lower limit u - n pushes w up, so f = n
-                middle = self._slip_begins(side, before, begin, end) if side else end
-                total = [
-                    t + s + p
-                    for t, s, p in zip(
-                        total,
-                        self._stick(before, begin, middle),
-                        self._slip(-side, middle, end),
-                        strict=True,
-                    )
-                ]
+        path = [w]
+        for piece in 3 * list(range(len(closed))):
+            end = piece + 1
+            w = min(max(w, lower[end]), upper[end]) if closed[piece] else mp.sin(self.cuts[end])
+            path.append(w)
+        settled = path[-len(closed) - 1 :]
+        total = [mpf(0)] * 3
+        for piece in range(len(closed)):
+            if closed[piece]:
+                part = self._piece(*self.cuts[piece : piece + 2], *settled[piece : piece + 2])
+                total = [t + p for t, p in zip(total, part, strict=True)]
         return [t / mp.pi for t in total]
+
+    def _piece(self, begin, end, before, after):
+        """Integrals of the force over a closed piece in which w goes from before to after."""
+        side = mp.sign(before - after)  # -1: the lower limit u - n pushes w up, so f = n
+        middle = self._slip_begins(side, before, begin, end) if side else end
+        stick, slip = self._stick(before, begin, middle), self._slip(-side, middle, end)
+        return [p + q for p, q in zip(stick, slip, strict=True)]
 
     def _slip_begins(self, side, w, begin, end):
         """Where the limit that pushes, monotone from begin to end, is met."""

@@ -9,16 +9,16 @@ from . import reference
 from .cases import all_boundaries, points
 
 CLASSES = {
-    "linear": 600,
-    "logarithmic": 600,
-    "turned_often": 200,
-    "near_boundaries": 1000,
-    "near_degenerate": 800,
-    "faint": 300,
-    "between_sequences": 800,
-    "between_sequences_at_large_b": 500,
-    "large": 500,
-    "largest": 150,
+    "linear": 300,
+    "logarithmic": 300,
+    "turned_often": 100,
+    "near_boundaries": 700,
+    "near_degenerate": 500,
+    "faint": 200,
+    "between_sequences": 500,
+    "between_sequences_at_large_b": 300,
+    "large": 300,
+    "largest": 100,
 }
 
 

@@ -22,11 +22,11 @@ def test_friction_harmonics(seed):
     b = rng.uniform(0.0, 3.0)
     n0, phi = rng.uniform(-b, b + 0.8), rng.uniform(-np.pi, np.pi)
     loop = hysteresis_loop(n0, b, phi)
-    F = friction_harmonics(np.array([n0]), np.array([b]), np.array([phi]), ORDERS)[:, 0]
-    assert F == pytest.approx(transformed(loop.force(THETA)), abs=2e-7)
+    force = friction_harmonics(np.array([n0]), np.array([b]), np.array([phi]), ORDERS)[:, 0]
+    assert force == pytest.approx(transformed(loop.force(THETA)), abs=2e-7)
 
 
 @pytest.mark.parametrize("n0_star", [-3.0, -1.0, -0.7, 0.0, 0.4, 0.999, 1.0, 5.0])
 def test_normal_harmonics(n0_star):
-    N = normal_harmonics(np.array([n0_star]), ORDERS)[:, 0]
-    assert N == pytest.approx(transformed(np.maximum(n0_star + np.sin(THETA), 0.0)), abs=2e-7)
+    load = normal_harmonics(np.array([n0_star]), ORDERS)[:, 0]
+    assert load == pytest.approx(transformed(np.maximum(n0_star + np.sin(THETA), 0.0)), abs=2e-7)
