@@ -37,7 +37,7 @@ FIRST_STEP = 1e-3
 LONGEST_PATH = 20000  # steps
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
-BOUNDLESS = 1e9  # times the amplitude at the start: an undamped resonance
+BOUNDLESS = 1e9  # amplitude, in units of that at the start, that only an undamped resonance reaches
 
 RUNNING, COMPLETE, RETURNED, STALLED, TOO_LONG, UNBOUNDED = range(6)
 REASONS = {
@@ -199,9 +199,10 @@ def follow(
     high: FloatArray,
     max_step: FloatArray | float,
     progress: Progress | None = None,
+    boundless: float = BOUNDLESS,
 ) -> Trace:
     """Trace every curve from z, where the parameter is low or high, until it leaves the range."""
-    return _Follower(equations, z, low, high, max_step, progress).run()
+    return _Follower(equations, z, low, high, max_step, progress, boundless).run()
 
 
 class _Follower:
@@ -213,6 +214,7 @@ class _Follower:
         high: FloatArray,
         max_step: FloatArray | float,
         progress: Progress | None,
+        boundless: float,
     ) -> None:
         curves = z.shape[0]
         self.all_equations, self.progress = equations, progress
@@ -221,7 +223,7 @@ class _Follower:
         self.status = np.full(curves, RUNNING)
         self.start = z[:, -1].copy()  # low or high
         self.furthest = np.zeros(curves)  # fraction of the range that has been covered
-        self.at_start = amplitudes(z[:, :-1]).max(axis=1, initial=0.0)
+        self.too_large = boundless * amplitudes(z[:, :-1]).max(axis=1, initial=0.0)
         self.points: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self.ticks = 0
         self._begin(z)
@@ -282,7 +284,7 @@ class _Follower:
         back = front.z[:, -1] == self.start[front.curve]
         status[landed] = np.where(back[landed], RETURNED, COMPLETE)
         status[stuck & ~turned] = STALLED
-        status[front.largest.max(axis=1, initial=0.0) > BOUNDLESS * self.at_start[front.curve]] = UNBOUNDED
+        status[front.largest.max(axis=1, initial=0.0) > self.too_large[front.curve]] = UNBOUNDED
         self._retire(status)
 
     def _advance(self, accepted: BoolArray, new: Newton, turn: FloatArray, missed: FloatArray) -> None:

@@ -86,7 +86,8 @@ def _raise_load(
     found = np.zeros(omega.size, dtype=bool)
     if some.size:
         z = np.column_stack((x[some], weak[some]))
-        trace = follow(equations.take(some), z, weak[some], np.ones(some.size), LOAD_STEP)
+        full = np.ones(some.size)
+        trace = follow(equations.take(some), z, weak[some], full, LOAD_STEP, boundless=np.inf)
         last = np.searchsorted(trace.curve, np.arange(some.size), side="right") - 1
         x[some] = trace.z[last, :-1]
         found[some] = trace.status == COMPLETE
