@@ -92,7 +92,7 @@ def integrate(scene, omega, cycles, times, rtol=1e-12, atol=1e-13):
             functions.append(event)
         sol = solve_ivp(
             lambda time, state, s=tuple(states): law.rhs(time, state, s),
-            (t, end), y, "DOP853", events=functions, rtol=rtol, atol=atol, dense_output=True, max_step=0.1,
+            (t, end), y, "DOP853", events=functions, rtol=rtol, atol=atol, dense_output=True, max_step=0.3,
         )  # fmt: skip
         inside = (times >= t) & (times <= sol.t[-1])
         if inside.any():

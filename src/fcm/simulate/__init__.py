@@ -3,6 +3,7 @@
 from fcm.simulate.cycle import Cycle
 from fcm.simulate.energy import Energy, energy
 from fcm.simulate.errors import SimulationError
+from fcm.simulate.harmonic import harmonic_state
 from fcm.simulate.measure import Measure
 from fcm.simulate.motion import History, Motion, Transition
 from fcm.simulate.periodic import Orbit, periodic
@@ -20,6 +21,7 @@ __all__ = [
     "State",
     "Transition",
     "energy",
+    "harmonic_state",
     "periodic",
     "simulate",
     "simulate_phases",

@@ -102,7 +102,7 @@ def _stored(system: System, y: FloatArray) -> float:
     modal = system.scene.modal
     q, p = y[system.q], y[system.p]
     total = 0.5 * float(modal.mass @ (p * p + (modal.frequency * q) ** 2))
-    for j, (contact, f, n) in enumerate(zip(system.contacts, y[system.f], y[system.n], strict=True)):
+    for j, (contact, f, n) in enumerate(zip(system.contacts, y[system.f], system.loads(y), strict=True)):
         total += 0.5 * f * f / contact.k_u if contact.k_u > 0.0 else 0.0
         total += _normal_energy(contact, float(system.normal[j] @ q), float(n))
     return float(total)

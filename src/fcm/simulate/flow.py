@@ -40,6 +40,7 @@ class Flow:
         self.series = _series(matrix * self.step)  # (ORDER + 1, d, d), term j belongs to position**j
         self.exits = rows @ self.series  # (ORDER + 1, exit, d)
         self.rounding = np.abs(self.exits)
+        self._sizes = np.abs(self.series[:3]).sum(axis=0)
         self._powers = [self.series[::-1].sum(axis=0)]  # exp(A h) to the power 2**j
         watched = (self.exits[0], self.exits[1], 24.0 * self.exits[4])  # g, g' h, g'''' h**4
         self._table = np.stack(watched).reshape(1, 3 * len(owners), matrix.shape[0])
@@ -78,6 +79,11 @@ class Flow:
         """The state, or states as columns, at any position >= 0."""
         whole = int(position)
         return self.within(self.advance(y, whole), position - whole)
+
+    def terms(self, y: FloatArray) -> FloatArray:
+        """The size of the terms from which each component of y is summed over a step."""
+        size: FloatArray = self._sizes @ np.abs(y)
+        return size
 
     def grid(self, y: FloatArray, steps: int) -> FloatArray:
         """The states at positions 0, 1, ..., steps - 1: (steps, d)."""

@@ -18,7 +18,7 @@ from fcm.simulate.errors import SimulationError
 from fcm.simulate.flow import LONGEST, SHORTEST, Flow
 from fcm.simulate.system import NEGATIVE, OPEN, POSITIVE, STICK, System
 
-ROUNDING = 3e-14  # a derivative this small, relative to its terms and to those that follow, is zero
+ROUNDING = 3e-14  # of a state vector after a step, relative to its terms; a derivative below it is zero
 DEPTH = 1e-13  # an exit that is passed by less than this, relative to its size, is not passed
 LEADING = 8  # derivatives that are looked at
 MOST_TRANSITIONS = 200_000  # in one cycle
@@ -44,7 +44,8 @@ def march(
     segments: list[Segment] = []
     time, forced = 0.0, -1
     while True:
-        y, states, powers = settle(system, y, states, forced)
+        noise = ROUNDING * system.flow(states).terms(y)
+        y, states, powers = settle(system, y, states, noise, forced)
         flow = system.flow(states)
         left = (duration - time) / flow.step
         position, y_end, forced = next_exit(flow, y, powers, left)
@@ -69,7 +70,7 @@ def _check_steps(system: System, states: str, duration: float) -> None:
 
 
 def settle(
-    system: System, y: FloatArray, states: str, forced: int = -1
+    system: System, y: FloatArray, states: str, noise: FloatArray, forced: int = -1
 ) -> tuple[FloatArray, str, FloatArray]:
     """The combination of states that lasts from y on.
 
@@ -77,6 +78,8 @@ def settle(
     ----------
     states : str
         The states until now; `forced` is the exit that they have just passed, or -1.
+    noise : (d,)
+        Rounding error of y.
 
     Returns
     -------
@@ -87,7 +90,7 @@ def settle(
     for _ in range(4 * len(states) + 4):
         flow = system.flow(states)
         powers = flow.exits @ y
-        failed = _failing(flow, y, powers)
+        failed = _failing(flow, powers, noise)
         if forced >= 0 and forced not in failed:
             failed.append(forced)
         forced = -1
@@ -97,12 +100,11 @@ def settle(
     return y, states, powers
 
 
-def _failing(flow: Flow, y: FloatArray, powers: FloatArray) -> list[int]:
+def _failing(flow: Flow, powers: FloatArray, noise: FloatArray) -> list[int]:
     """Exits whose first coefficient beyond rounding is negative; the ones before it are set to zero."""
     if not flow.owners:
         return []
-    terms = np.maximum.accumulate((flow.rounding[:LEADING] @ np.abs(y))[::-1])[::-1]
-    zero = np.abs(powers[:LEADING]) <= ROUNDING * terms
+    zero = np.abs(powers[:LEADING]) <= flow.rounding[:LEADING] @ noise
     failing = []
     for i in range(powers.shape[1]):
         lead = 0
@@ -132,7 +134,7 @@ def _switched(
 
 def set_friction(system: System, y: FloatArray, contact: int, state: str) -> None:
     """Put the friction force of a contact where its state wants it."""
-    f, load = system.f.start + contact, system.contacts[contact].mu * y[system.n.start + contact]
+    f, load = system.f.start + contact, system.contacts[contact].mu * system.loads(y)[contact]
     if state != STICK:
         y[f] = {POSITIVE: load, NEGATIVE: -load, OPEN: 0.0}[state]
 
@@ -141,7 +143,7 @@ def next_exit(flow: Flow, y: FloatArray, powers: FloatArray, left: float) -> tup
     """Position, state and row of the first exit within `left` steps; the end and -1 if there is none."""
     base, steps = 0, SHORTEST
     if flow.owners:
-        floors = DEPTH * np.maximum(flow.rounding[0] @ np.abs(y), np.abs(powers[:5]).max(axis=0))
+        floors = DEPTH * (flow.rounding[:3] @ np.abs(y)).max(axis=0)
         found = _exit_of(powers, range(len(flow.owners)), floors)
         if found is not None and found[0] <= left:
             return found[0], flow.within(y, found[0]), found[1]

@@ -84,9 +84,13 @@ class Motion:
         out[order] = np.concatenate(parts)
         return out
 
-    def measures(self) -> list[Measure]:
-        """Amplitudes and means of each cycle; one that ends a phase early is measured as far as it goes."""
-        return [measure(cycle, dof_rows(cycle.system)) for cycle in self.cycles]
+    def measures(self, last: int | None = None) -> list[Measure]:
+        """Amplitudes and means of each cycle, or of the last ones.
+
+        A cycle that ends a phase early is measured as far as it goes.
+        """
+        chosen = self.cycles if last is None else self.cycles[-last:]
+        return [measure(cycle, dof_rows(cycle.system)) for cycle in chosen]
 
     def history(self, samples: int = 64) -> History:
         """Displacements and contact states at `samples` instants a cycle, the end included."""

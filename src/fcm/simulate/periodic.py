@@ -96,9 +96,10 @@ class Shot:
 
 def _scale(system: System, segments: list[Segment]) -> FloatArray:
     """The size of the displacements, velocities and friction forces."""
-    y = np.abs(np.array([segment.y for segment in segments])).max(axis=0)
+    points = np.array([segment.y for segment in segments])
+    y = np.abs(points).max(axis=0)
     length = max(y[system.q].max(), y[system.p].max() / system.omega, 1e-300)
-    limit = np.array([contact.mu for contact in system.contacts]) * y[system.n]
+    limit = np.array([contact.mu for contact in system.contacts]) * (np.abs(system.preload) + y[system.n])
     stiff = np.array([contact.k_u for contact in system.contacts]) * length
     force = np.maximum(np.maximum(y[system.f], np.minimum(limit, stiff)), 1e-300)
     modes = np.full(system.modes, length)

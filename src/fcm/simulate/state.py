@@ -50,10 +50,8 @@ def entry(system: System, state: State) -> tuple[FloatArray, str]:
     set_angle(y, state.angle)
     if not np.isfinite(y).all():
         raise SimulationError("the state to start from has numbers that are not finite")
-    preload = np.array([contact.n_0 for contact in system.contacts])
-    y[system.n] = preload + np.array([contact.k_v for contact in system.contacts]) * (
-        system.normal @ y[system.q]
-    )
+    stiffness = np.array([contact.k_v for contact in system.contacts])
+    y[system.n] = stiffness * (system.normal @ y[system.q])
     states = "".join(_initial(system, y, j) for j in range(len(system.contacts)))
     for j, letter in enumerate(states):
         set_friction(system, y, j, letter)
@@ -61,7 +59,7 @@ def entry(system: System, state: State) -> tuple[FloatArray, str]:
 
 
 def _initial(system: System, y: FloatArray, j: int) -> str:
-    contact, load, force = system.contacts[j], y[system.n][j], y[system.f][j]
+    contact, load, force = system.contacts[j], system.loads(y)[j], y[system.f][j]
     if load < 0.0 or (load == 0.0 and contact.k_v == 0.0):
         return OPEN
     if not has_friction(contact):
@@ -72,9 +70,8 @@ def _initial(system: System, y: FloatArray, j: int) -> str:
     return NEGATIVE if force < -contact.mu * load else STICK
 
 
-def leave(system: System, y: FloatArray) -> State:
-    """The state of a state vector."""
-    angle = float(np.arctan2(y[-3], y[-2]) % (2.0 * np.pi))
+def leave(system: System, y: FloatArray, angle: float) -> State:
+    """The state of a state vector, at an angle of the forces."""
     return State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), angle)
 
 

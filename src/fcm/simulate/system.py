@@ -4,11 +4,11 @@ The state vector is
 
     y = (q, q', f, n, sin(theta), cos(theta), 1),    d = 2 modes + 2 contacts + 3 numbers,
 
-with the modal displacements and velocities q, q', the friction forces f, the normal loads n (negative by
-the gap's stiffness while a contact is open) and the phase angle theta = omega t of the forces. Then
-y' = A y in every combination of states, forcing and preload included. The forces of the contacts are
-states of their own: k_u (u - w) of a stiff contact, computed from displacements, would lose as many digits
-as it is stiffer than the structure.
+with the modal displacements and velocities q, q', the friction forces f, the changes n = k_v v of the
+normal loads from their preloads, and the phase angle theta = omega t of the forces. Then y' = A y in every
+combination of states, forcing and preload included. The forces of the contacts are states of their own:
+k_u (u - w) of a stiff contact, computed from displacements, would lose as many digits as it is stiffer than
+the structure.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ class System:
         self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
         self.tangential = np.array([modal.shapes @ k.tangential for k in scene.contacts]).reshape(c, m)
         self.normal = np.array([modal.shapes @ k.normal for k in scene.contacts]).reshape(c, m)
+        self.preload = np.array([contact.n_0 for contact in scene.contacts])
         self.sine, self.cosine = _modal_force(scene)
         self._flows: dict[str, Flow] = {}
 
@@ -44,6 +45,10 @@ class System:
     def period(self) -> float:
         """Period of the force [s]."""
         return 2.0 * np.pi / self.omega
+
+    def loads(self, y: FloatArray) -> FloatArray:
+        """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
+        return self.preload + y[self.n]
 
     def flow(self, states: str) -> Flow:
         """The exact motion in a combination of states, one letter of EPNS for each contact."""
@@ -70,10 +75,11 @@ class System:
     def _add_contact(self, a: FloatArray, j: int, contact: Contact, state: str) -> None:
         f, n = self.f.start + j, self.n.start + j
         push_u, push_v = self.tangential[j] / self.scene.modal.mass, self.normal[j] / self.scene.modal.mass
-        a[self.p, -1] += push_v * max(contact.n_0, 0.0)
         a[n, self.p] = contact.k_v * self.normal[j]
         if state == OPEN:
+            a[self.p, -1] += push_v * max(contact.n_0, 0.0)  # the preload that is missing
             return
+        a[self.p, -1] -= push_v * min(contact.n_0, 0.0)  # a gap is not pressed
         a[self.p, f], a[self.p, n] = -push_u, -push_v
         if state == STICK:
             a[f, self.p] = contact.k_u * self.tangential[j] if has_friction(contact) else 0.0
@@ -124,7 +130,7 @@ class System:
         self, j: int, f: float = 0.0, n: float = 0.0, u_rate: float = 0.0, v_rate: float = 0.0
     ) -> FloatArray:
         row = np.zeros(self.size)
-        row[self.f.start + j], row[self.n.start + j] = f, n
+        row[self.f.start + j], row[self.n.start + j], row[-1] = f, n, n * self.contacts[j].n_0
         row[self.p] = u_rate * self.tangential[j] + v_rate * self.normal[j]
         return row
 
