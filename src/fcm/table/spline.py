@@ -26,16 +26,34 @@ FACTORS = np.stack(
     [np.concatenate([SLOPES if k == axis else WEIGHTS for k in (-1, 0, 1, 2)]) for axis in range(3)]
 )
 
+UNTHREADED = 200_000  # multiplications of a matrix product that OpenBLAS does in one thread
 PART = 256  # points at a time, so that their 64 weights and coefficients stay in the processor's cache
 
 
 def interpolate(values: FloatArray, ends: tuple[tuple[str, str], ...]) -> FloatArray:
     """Coefficients, shape (3, n0+2, n1+2, n2+2), of the splines through values, shape (3, n0, n1, n2)."""
-    first, second, third = (_inverse(n, end) for n, end in zip(values.shape[1:], ends, strict=True))
-    solved = second @ (values @ third.T)
-    flat = solved.reshape(*solved.shape[:2], -1)
-    coefficients: FloatArray = (first @ flat).reshape(3, -1, *solved.shape[2:])
-    return coefficients
+    for axis, end in enumerate(ends, start=1):
+        values = _along(axis, _inverse(values.shape[axis], end), values)
+    return values
+
+
+def _along(axis: int, matrix: FloatArray, values: FloatArray) -> FloatArray:
+    """Product of a matrix with one axis of values, in parts too small for BLAS to start threads.
+
+    Where several programs share the processor, threads that wait for each other take ten times as long.
+    """
+    before, after = values.shape[:axis], values.shape[axis + 1 :]
+    width = max(1, UNTHREADED // matrix.size)
+    if not after:
+        rows = values.reshape(-1, values.shape[axis])
+        parts = [rows[first : first + width] @ matrix.T for first in range(0, rows.shape[0], width)]
+        return np.concatenate(parts).reshape(*before, -1)
+    planes = values.reshape(-1, values.shape[axis], int(np.prod(after)))
+    product = np.empty((planes.shape[0], matrix.shape[0], planes.shape[2]))
+    for first in range(0, planes.shape[2], width):
+        part = slice(first, first + width)
+        np.matmul(matrix, planes[:, :, part], out=product[:, :, part])
+    return product.reshape(*before, -1, *after)
 
 
 def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
