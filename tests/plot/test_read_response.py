@@ -56,6 +56,20 @@ def test_its_unstable_part_is_drawn_dashed(path):
     assert axes.get_xlabel() == "Frequency $f$ (Hz)" and axes.get_ylabel() == "Amplitude of tip"
 
 
+def test_branches_are_not_joined(path):
+    with netCDF4.Dataset(path, "a") as data:
+        data["frequency"][0, 1] = NAN
+        data["amplitude"][0, 1] = NAN
+        data["stable"][0, 1] = NAN
+        data["regime"][0, 1] = np.array([""], object)
+    response = read_response(path)
+    assert response.curves[0].regimes == {"E"}
+    line, *others = draw_response(response).axes[0].lines
+    np.testing.assert_array_equal(line.get_xdata(), [1.0, NAN, 1.5])
+    np.testing.assert_array_equal(line.get_ydata(), [7.0, NAN, 9.0])
+    assert len(others) == 1
+
+
 def test_stability_that_is_nowhere_known_is_none(path):
     with netCDF4.Dataset(path, "a") as data:
         data["stable"][:] = NAN

@@ -20,7 +20,10 @@ _NEEDED = ("frequency", "amplitude", "dof")
 
 @dataclass(frozen=True)
 class DrawnCurve:
-    """One curve without its padding; ``stable`` is None where the file does not know."""
+    """One curve without its padding; ``stable`` is None where the file does not know.
+
+    Branches that do not hang together follow one another, with a point of NaN between them.
+    """
 
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) in the file's unit
@@ -85,15 +88,16 @@ def _curve(
     stable: FloatArray | None,
     regime: Any,
 ) -> DrawnCurve:
-    """Take the padding away."""
-    there = np.isfinite(frequency)
-    known = stable is not None and bool(np.isfinite(stable[there]).any())
+    """Take the padding away; points of NaN between branches stay, so that no line joins them."""
+    known = np.flatnonzero(np.isfinite(frequency))
+    there = slice(0, known[-1] + 1 if known.size else 0)
+    judged = stable is not None and bool(np.isfinite(stable[there]).any())
     return DrawnCurve(
         parameters,
         frequency[there],
         amplitude[there],
-        stable[there] != 0 if stable is not None and known else None,  # unknown points count as stable
-        frozenset() if regime is None else frozenset(map(str, np.unique(regime[there]))),
+        stable[there] != 0 if stable is not None and judged else None,  # unknown points count as stable
+        frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
     )
 
 

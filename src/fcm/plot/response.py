@@ -26,7 +26,7 @@ _MOST_NAMES = 20  # of more curves than this, only the first and the last are na
 def draw_response(response: DrawnResponse, dof: str | None = None, log: bool | None = None) -> Figure:
     """The figure of one degree of freedom (the first by default); unstable parts are dashed."""
     column = _column(response, dof)
-    curves = [curve for curve in response.curves if len(curve.frequency)]
+    curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
     if not curves:
         raise PlotError("the file holds no point of any curve")
     with house_style():
