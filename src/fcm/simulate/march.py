@@ -20,6 +20,7 @@ from fcm.simulate.system import NEGATIVE, OPEN, POSITIVE, STICK, System
 
 ROUNDING = 3e-14  # of a state vector after a step, relative to its terms; a derivative below it is zero
 DEPTH = 1e-13  # an exit that is passed by less than this, relative to its size, is not passed
+MOST_PASSES = 100  # until a combination of states agrees with itself
 LEADING = 8  # derivatives that are looked at
 MOST_TRANSITIONS = 200_000  # in one cycle
 MOST_STEPS = 2e8  # in one cycle
@@ -42,13 +43,12 @@ def march(
     """The segments of the motion over a duration [s], the state at its end and the contacts' states."""
     _check_steps(system, states, duration)
     segments: list[Segment] = []
-    time, forced = 0.0, -1
+    time, forced, terms = 0.0, -1, system.flow(states).terms(y)
     while True:
-        noise = ROUNDING * system.flow(states).terms(y)
-        y, states, powers = settle(system, y, states, noise, forced)
+        y, states, powers = settle(system, y, states, ROUNDING * terms, forced)
         flow = system.flow(states)
         left = (duration - time) / flow.step
-        position, y_end, forced = next_exit(flow, y, powers, left)
+        position, y_end, forced, terms = next_exit(flow, y, powers, left)
         segments.append(Segment(flow, states, time, y, position, forced))
         if forced < 0:
             return segments, y_end, states
@@ -87,7 +87,7 @@ def settle(
         The state with the friction forces of the new states, and the exits' Taylor coefficients from
         there, (ORDER + 1, exit), cleaned of leading rounding.
     """
-    for _ in range(4 * len(states) + 4):
+    for _ in range(MOST_PASSES):
         flow = system.flow(states)
         powers = flow.exits @ y
         failed = _failing(flow, powers, noise)
@@ -95,9 +95,13 @@ def settle(
             failed.append(forced)
         forced = -1
         if not failed:
-            break
+            return y, states, powers
         y, states = _switched(system, y, states, [flow.owners[i] for i in failed])
-    return y, states, powers
+        noise = 2.0 * noise  # states that take turns differ by rounding that was underrated
+    raise SimulationError(
+        f"the contacts' states cannot be told apart at {system.omega:g} rad/s, now {states!r}; "
+        "change a parameter of the contacts slightly"
+    )
 
 
 def _failing(flow: Flow, powers: FloatArray, noise: FloatArray) -> list[int]:
@@ -139,16 +143,25 @@ def set_friction(system: System, y: FloatArray, contact: int, state: str) -> Non
         y[f] = {POSITIVE: load, NEGATIVE: -load, OPEN: 0.0}[state]
 
 
-def next_exit(flow: Flow, y: FloatArray, powers: FloatArray, left: float) -> tuple[float, FloatArray, int]:
-    """Position, state and row of the first exit within `left` steps; the end and -1 if there is none."""
+class Exit(NamedTuple):
+    """The end of a segment."""
+
+    position: float  # in steps
+    y: FloatArray  # (d,)
+    row: int  # of the exit that is passed, -1 at the end of the cycle
+    terms: FloatArray  # (d,) of which y is the sum: its rounding error is in proportion
+
+
+def next_exit(flow: Flow, y: FloatArray, powers: FloatArray, left: float) -> Exit:
+    """The first exit within `left` steps, or else the end; powers are those of the exits at y."""
+    if not flow.owners:
+        return Exit(left, flow.at(y, left), -1, np.abs(y))
+    floors = DEPTH * (flow.rounding[:3] @ np.abs(y)).max(axis=0)
     base, steps = 0, SHORTEST
-    if flow.owners:
-        floors = DEPTH * (flow.rounding[:3] @ np.abs(y)).max(axis=0)
-        found = _exit_of(powers, range(len(flow.owners)), floors)
-        if found is not None and found[0] <= left:
-            return found[0], flow.within(y, found[0]), found[1]
-    start = y
-    while base < left and flow.owners:
+    found = _exit_of(powers, range(len(flow.owners)), floors)
+    if found is not None and found[0] <= left:
+        return Exit(found[0], flow.within(y, found[0]), found[1], flow.terms(y))
+    while True:
         seen = flow.watch(y, steps)
         floors = np.maximum(floors, DEPTH * np.abs(seen[:, 0]).max(axis=0))
         for k, rows in _suspects(seen, floors, first=1 if base == 0 else 0):
@@ -157,19 +170,18 @@ def next_exit(flow: Flow, y: FloatArray, powers: FloatArray, left: float) -> tup
             here = flow.advance(y, k)
             found = _exit_of(flow.exits @ here, rows, floors)
             if found is not None and base + k + found[0] <= left:
-                return base + k + found[0], flow.within(here, found[0]), found[1]
+                return Exit(base + k + found[0], flow.within(here, found[0]), found[1], flow.terms(here))
         if base + steps >= left:
-            return left, flow.at(y, left - base), -1
+            return Exit(left, flow.at(y, left - base), -1, flow.terms(y))
         base, y, steps = base + steps, flow.advance(y, steps), min(2 * steps, LONGEST)
-    return left, flow.at(start, left), -1
 
 
 def _suspects(seen: FloatArray, floors: FloatArray, first: int) -> Iterator[tuple[int, list[int]]]:
     """Steps, in order, in which an exit may be passed, with its rows.
 
     The least of the Bernstein coefficients of the cubic through g and g' at both ends bounds g from below
-    but for h**4 max|g| / 384. A step is at most a radian of the fastest motion: g inside it is no
-    more than twice the greater of its ends'.
+    but for h**4 / 384 times the greatest fourth derivative. A step is at most a radian of the fastest
+    motion: inside it that derivative is no more than twice the greater of its ends'.
     """
     g, slope, fourth = seen[:, 0], seen[:, 1] / 3.0, np.abs(seen[:, 2])
     low = np.minimum(np.minimum(g[:-1], g[1:]), np.minimum(g[:-1] + slope[:-1], g[1:] - slope[1:]))
