@@ -45,6 +45,16 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "--max-step", type=float, metavar="X", callback=_a_step,
     help="Longest step along a curve, relative to its extent.  [default: the scene's]",
 )  # fmt: skip
+@click.option(
+    "--jobs", type=click.IntRange(min=0), default=0, metavar="N",
+    help="Processes for sweeps of many curves; 0 for one on each core.  [default: 0]",
+)  # fmt: skip
+@click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE.")
+@click.option(
+    "--leave-out-tolerance", "tolerance", type=click.FloatRange(min=0.0), default=1e-5, show_default=True,
+    metavar="X", help="Greatest relative change of the response by what is left out.",
+)  # fmt: skip
+@click.option("--keep-all", is_flag=True, help="Leave nothing out.")
 @pass_messages
 def respond(
     messages: Messages,
@@ -55,6 +65,10 @@ def respond(
     method: str,
     table: str | None,
     max_step: float | None,
+    jobs: int,
+    resume: bool,
+    tolerance: float,
+    keep_all: bool,
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
 
@@ -62,20 +76,32 @@ def respond(
     """
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
+    if resume and output is None:
+        raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     from fcm.response.output import summary
+    from fcm.response.sweep import interrupted
 
-    response = _traced(messages, scene, method, table, max_step)
+    keep = None if output is None else output.with_name(f"{output.name}.unfinished")
+    options = {"jobs": jobs, "tolerance": None if keep_all else tolerance, "keep": keep, "resume": resume}
+    response = _traced(messages, scene, method, table, max_step, options)
     result = summary(response)
     unit = response.frequency_unit
     try:
         _write(messages, response, output, csv)
     finally:  # a full disk does not take the result away
         click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_table(result, unit))
+    if keep is not None and interrupted(response):
+        messages.warning(f"interrupted; what is finished is kept in {keep}: continue with --resume")
     _close(messages, result)
 
 
 def _traced(
-    messages: Messages, scene: str, method: str, table: str | None, max_step: float | None
+    messages: Messages,
+    scene: str,
+    method: str,
+    table: str | None,
+    max_step: float | None,
+    options: dict[str, Any],
 ) -> Response:
     from fcm.response import trace
     from fcm.scene import load_scene
@@ -84,7 +110,7 @@ def _traced(
     if max_step is not None:
         loaded = _with_step(loaded, max_step)
     messages.detail(f"{loaded.title or scene}: curves to trace: {len(loaded.each_curve())}, method: {method}")
-    response = trace(loaded, method=method, table=_opened(table), progress=messages.progress)
+    response = trace(loaded, method=method, table=_opened(table), progress=messages.progress, **options)
     messages.clear()
     return response
 

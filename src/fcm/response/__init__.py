@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fcm.response.result import Curve, Response
-from fcm.response.trace import METHODS, ResponseError, trace
+from fcm.response.sweep import trace
+from fcm.response.trace import METHODS, ResponseError
 from fcm.scene.model import Scene
 
 if TYPE_CHECKING:

@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
-from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.static_modes import with_static_modes
 from fcm.scene.model import Contact, Modal, Scene
 
@@ -58,11 +57,6 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighte
     if result.idle_table and lighter[0].contacts:
         result = replace(result, sentences=(*sentences, "the table: no contact has friction (no effect)"))
     return _static(result, tolerance)
-
-
-def table_for(lighter: Lighter, method: str, table: Coefficients | None) -> Coefficients | None:
-    """The table to trace with; none is opened where no contact has friction."""
-    return ClosedForm() if method == "table" and table is None and lighter.idle_table else table
 
 
 def sentence_on_modes(lighter: Lighter, shift: float) -> str:
@@ -127,7 +121,8 @@ def _moved(scene: Scene) -> BoolArray:
     """Which modes a force or a contact moves."""
     along = [d for c in scene.contacts for d in (c.tangential, c.normal)]
     along += [force.direction for force in scene.forces]
-    return np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
+    moved: BoolArray = np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
+    return moved
 
 
 def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:

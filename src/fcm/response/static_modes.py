@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.contact.limits import FloatArray
+from fcm.contact.limits import BoolArray, FloatArray
 from fcm.response.structure import Group, group_of, modal_compliance, receptance, to_ports
 from fcm.scene.model import Modal, Scene
 
@@ -44,7 +44,7 @@ def with_static_modes(scene: Scene, tolerance: float) -> tuple[Modal, float] | N
     return None
 
 
-def condensed(modal: Modal, directions: FloatArray, high: FloatArray) -> Modal:
+def condensed(modal: Modal, directions: FloatArray, high: BoolArray) -> Modal:
     """The modes with those marked high replaced by their static response to directions (dof, direction)."""
     shapes = modal.shapes[high] / np.sqrt(modal.mass[high])[:, None]  # of modal mass 1
     w, damping = modal.frequency[high], modal.damping[high]

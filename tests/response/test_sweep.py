@@ -1,0 +1,210 @@
+"""Sweeps: the same curves whatever the groups and cores, after a failure and after an interruption."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import netCDF4
+import numpy as np
+import pytest
+
+import fcm
+from fcm.response import groups, sweep
+from fcm.response.kept import Kept, fingerprint
+from fcm.response.sweep import INTERRUPTED, interrupted, trace
+
+PRELOADS = np.linspace(-20.0, 60.0, 6)
+
+
+def curve_with(scene, n_0):
+    (contact,) = scene.contacts
+    return replace(scene, contacts=(replace(contact, n_0=n_0),), parameters={"n_0": n_0})
+
+
+@pytest.fixture(scope="module")
+def scene():
+    one = replace(fcm.load_scene("yang1998-n5"), max_step=0.2)
+    return replace(one, curves=tuple(curve_with(one, n_0) for n_0 in PRELOADS))
+
+
+@pytest.fixture
+def small_groups(monkeypatch):
+    monkeypatch.setattr(sweep, "LARGEST_GROUP", 2)
+
+
+@pytest.fixture(scope="module")
+def whole(scene):
+    return trace(scene, "closed-form")
+
+
+def same(response, other):
+    for one, two in zip(response.curves, other.curves, strict=True):
+        assert one.parameters == two.parameters
+        assert one.complete == two.complete
+        for name in ("frequency", "amplitude", "mean", "table_error"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
+        assert one.peaks == two.peaks and one.folds == two.folds
+
+
+def test_groups_give_the_curves_of_the_whole(scene, whole, small_groups):
+    response = trace(scene, "closed-form")
+    for one, two in zip(response.curves, whole.curves, strict=True):
+        assert one.parameters == two.parameters
+        assert one.peaks["u"] == pytest.approx(two.peaks["u"], rel=1e-9)
+        assert one.folds == pytest.approx(two.folds, rel=1e-9)
+
+
+def test_two_cores_give_what_one_gives(scene, small_groups):
+    shown = []
+    response = trace(scene, "closed-form", jobs=2, progress=lambda share, _: shown.append(share))
+    same(response, trace(scene, "closed-form"))
+    assert shown[-1] == 1.0 and shown == sorted(shown)
+
+
+def test_a_curve_that_fails_loses_no_other(scene, whole, monkeypatch):
+    real = groups.trace_group
+
+    def trace_group(group, *args):
+        if any(curve.parameters["n_0"] == PRELOADS[3] for curve in group.each_curve()):
+            raise MemoryError("too much")
+        return real(group, *args)
+
+    monkeypatch.setattr(groups, "trace_group", trace_group)
+    response = trace(scene, "closed-form")
+    lost = response.curves[3]
+    assert not lost.complete and lost.reason == "MemoryError: too much" and lost.points == 0
+    others = [c for i, c in enumerate(response.curves) if i != 3]
+    assert [c.complete for c in others] == [True] * 5
+    assert others[-1].peaks["u"] == pytest.approx(whole.curves[-1].peaks["u"], rel=1e-9)
+
+
+def interrupt_after(monkeypatch, count):
+    real, calls = groups.trace_group, []
+
+    def trace_group(*args):
+        calls.append(args)
+        if len(calls) > count:
+            raise KeyboardInterrupt
+        return real(*args)
+
+    monkeypatch.setattr(groups, "trace_group", trace_group)
+    return calls
+
+
+def test_an_interrupted_sweep_is_continued(scene, small_groups, tmp_path, monkeypatch):
+    reference = trace(scene, "closed-form")
+    keep = tmp_path / "a.nc.unfinished"
+    with monkeypatch.context() as patch:
+        interrupt_after(patch, 2)
+        part = trace(scene, "closed-form", keep=keep)
+    assert interrupted(part) and keep.is_file()
+    assert [c.reason for c in part.curves] == [""] * 4 + [INTERRUPTED] * 2
+    with monkeypatch.context() as patch:
+        calls = interrupt_after(patch, 99)
+        resumed = trace(scene, "closed-form", keep=keep, resume=True)
+    assert len(calls) == 1  # only the last group
+    same(resumed, reference)
+    assert not keep.exists()
+
+
+def test_another_scene_does_not_take_what_was_kept(scene, small_groups, tmp_path, monkeypatch):
+    keep = tmp_path / "a.nc.unfinished"
+    with monkeypatch.context() as patch:
+        interrupt_after(patch, 2)
+        trace(scene, "closed-form", keep=keep)
+    other = replace(scene, curves=tuple(replace(c, frequency_range=(0.8, 1.2)) for c in scene.curves))
+    calls = interrupt_after(monkeypatch, 99)
+    trace(other, "closed-form", keep=keep, resume=True)
+    assert len(calls) == 3
+
+
+def test_interrupted_before_anything_is_finished(scene, small_groups, tmp_path, monkeypatch):
+    keep = tmp_path / "a.nc.unfinished"
+    interrupt_after(monkeypatch, 0)
+    with pytest.raises(KeyboardInterrupt):
+        trace(scene, "closed-form", keep=keep)
+    assert not keep.exists()
+
+
+def test_a_damaged_file_is_read_up_to_the_damage(scene, whole, tmp_path):
+    mark = fingerprint(scene.curves, "closed-form", None, 2)
+    path = tmp_path / "kept"
+    kept = Kept(path, mark, resume=False)
+    kept.add(0, whole.curves[:3])
+    first = path.stat().st_size
+    kept.add(1, whole.curves[3:])
+    data = path.read_bytes()
+    for length in (0, 10, len(mark), first - 1, first, first + 30, len(data) - 1, len(data)):
+        path.write_bytes(data[:length])
+        found = Kept(path, mark, resume=True).finished
+        assert sorted(found) == [0] * (length >= first) + [1] * (length == len(data))
+    path.write_bytes(data[: first - 40] + bytes(40) + data[first:])
+    assert Kept(path, mark, resume=True).finished == {}
+
+
+SCENE = """
+[modal]
+dofs = ["u", "v"]
+frequency = [1.0, 10.0]
+damping = 0.01
+shapes = [[0.707, 0.707], [1.0, -0.5]]
+[[contact]]
+name = "shroud"
+tangential = "u"
+normal = "v"
+mu = 0.4
+k_u = 1.0
+k_v = 1.0
+n_0 = 5.0
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.7, 1.7]
+max_step = 0.2
+[sweep]
+"contact.shroud.mu" = { normal = [0.4, 0.05], count = 30, seed = 1 }
+"contact.shroud.n_0" = { normal = [10, 3], count = 30, seed = 1 }
+"""
+PROGRAM = """
+import sys
+import fcm.response.sweep as sweep
+sweep.LARGEST_GROUP = 5
+from fcm.cli import main
+if __name__ == "__main__":
+    main(sys.argv[1:], prog_name="fcm")
+"""
+
+
+def test_ctrl_c_and_resume_give_the_same_file(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    (tmp_path / "program.py").write_text(PROGRAM)
+    command = [sys.executable, "program.py", "respond", "scene.toml", "--jobs", "2"]
+    subprocess.run([*command, "-o", "whole.nc"], cwd=tmp_path, check=True, capture_output=True)
+    run = subprocess.Popen([*command, "-o", "a.nc"], cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+                           stdout=subprocess.DEVNULL)  # fmt: skip
+    kept = tmp_path / "a.nc.unfinished"
+    deadline = time.monotonic() + 50.0
+    while time.monotonic() < deadline and not (kept.is_file() and kept.stat().st_size > 100):
+        time.sleep(0.01)
+    os.kill(run.pid, signal.SIGINT)
+    _, said = run.communicate(timeout=50)
+    assert run.returncode == 3 and "Traceback" not in said
+    assert "a.nc.unfinished: continue with --resume" in said and "curves not complete" in said
+    with netCDF4.Dataset(tmp_path / "a.nc") as part:
+        assert 0 < part["complete"][:].sum() < 30
+    subprocess.run([*command, "-o", "a.nc", "--resume"], cwd=tmp_path, check=True, capture_output=True)
+    assert not kept.exists()
+    with netCDF4.Dataset(tmp_path / "a.nc") as one, netCDF4.Dataset(tmp_path / "whole.nc") as two:
+        assert set(one.variables) == set(two.variables)
+        for name in one.variables:
+            np.testing.assert_array_equal(one[name][...], two[name][...])
+
+
+def test_resume_needs_a_file(tmp_path):
+    run = [sys.executable, "-m", "fcm.cli", "respond", "yang1998", "--resume"]
+    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2 and "--resume needs the -o FILE" in done.stderr
