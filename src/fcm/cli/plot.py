@@ -13,6 +13,7 @@ from fcm.cli.messages import Messages, pass_messages
 ENDINGS = (".png", ".svg", ".pdf")
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
+    "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
 }
 
 

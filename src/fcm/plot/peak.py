@@ -1,0 +1,152 @@
+"""Peak amplitude and peak frequency against what was swept: of the preload, the curve to design by."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import curve_label, frequency_label, symbols
+from fcm.plot.read import BoolArray, FloatArray, read_response
+from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+IntArray = npt.NDArray[np.intp]
+
+_NEEDED = ("peak_amplitude", "peak_frequency", "complete")
+_DECADES = 100.0  # positive swept values that span more are on a logarithmic axis
+_MOST_LINES = 12  # more combinations of the other swept values than this are a cloud of points
+_MARK = "#c03020"
+_MANY = 60  # values on a line whose points are not marked any more
+
+
+@dataclass(frozen=True)
+class Peaks:
+    """The greatest amplitudes of the curves of a sweep; a curve that is not complete may have a greater."""
+
+    dofs: tuple[str, ...]
+    frequency_unit: str
+    parameters: dict[str, FloatArray]  # (curve,) each
+    amplitude: FloatArray  # (curve, dof)
+    frequency: FloatArray  # (curve, dof) in the file's unit
+    complete: BoolArray  # (curve,)
+
+
+def read_peaks(path: Path) -> Peaks:
+    """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
+    from netCDF4 import Dataset
+
+    response = read_response(path)
+    with Dataset(str(path)) as data:
+        missing = [name for name in _NEEDED if name not in data.variables]
+        if missing:
+            raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
+        amplitude, frequency, complete = (_floats(data.variables[name]) for name in _NEEDED)
+    shape = (len(response.curves), len(response.dofs))
+    if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
+        raise PlotError(f"{path}: not a response file: its peaks have shape {amplitude.shape}, not {shape}")
+    keys = response.curves[0].parameters if response.curves else {}
+    swept = {key: np.array([curve.parameters[key] for curve in response.curves]) for key in keys}
+    return Peaks(response.dofs, response.frequency_unit, swept, amplitude, frequency, complete == 1)
+
+
+def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
+    """The figure of one degree of freedom against one swept quantity, by default the first of each."""
+    column, key = _column(peaks, dof), _key(peaks, against)
+    known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
+    if not known.any():
+        raise PlotError("the file holds no complete curve")
+    lines = _lines(peaks, key, known)
+    with house_style():
+        figure = new_figure(WIDTH, 1.3 * HEIGHT)
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        for axes, values in ((upper, peaks.amplitude), (lower, peaks.frequency)):
+            _draw(axes, peaks.parameters[key], values[:, column], known, lines)
+        _finish_axes(upper, lower, peaks, key, column, known)
+        if len(lines) > 1:
+            _name_lines(figure, upper, peaks, key, lines)
+        _mark_least(upper, lower, peaks, key, column, known)
+    return figure
+
+
+def _column(peaks: Peaks, dof: str | None) -> int:
+    if dof is not None and dof not in peaks.dofs:
+        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(peaks.dofs)}")
+    return 0 if dof is None else peaks.dofs.index(dof)
+
+
+def _key(peaks: Peaks, against: str | None) -> str:
+    if not peaks.parameters:
+        raise PlotError("nothing was swept: the file holds one curve, and one peak")
+    if against is not None and against not in peaks.parameters:
+        raise PlotError(f"{against!r} was not swept; the file has {', '.join(peaks.parameters)}")
+    return next(iter(peaks.parameters)) if against is None else against
+
+
+def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
+    """Curves with the same other swept values, each in the order of the key; none if there are too many."""
+    x = peaks.parameters[key]
+    others = [values for name, values in peaks.parameters.items() if name != key]
+    groups: dict[tuple[float, ...], list[int]] = {}
+    for i in np.flatnonzero(known).tolist():
+        groups.setdefault(tuple(float(values[i]) for values in others), []).append(i)
+    if len(groups) > _MOST_LINES:
+        return []
+    return [np.array(group)[np.argsort(x[group], kind="stable")] for group in groups.values()]
+
+
+def _draw(axes: Axes, x: FloatArray, y: FloatArray, known: BoolArray, lines: Sequence[IntArray]) -> None:
+    """Lines, or a cloud of points where there are none."""
+    if not lines:
+        axes.plot(x[known], y[known], "o", color="black", markersize=1.5, markeredgewidth=0.0)
+        return
+    for line, colour in zip(lines, sequence_colours(len(lines)), strict=True):
+        mark = "o" if line.size <= _MANY else ""
+        axes.plot(x[line], y[line], color=colour, linewidth=1.1, marker=mark, markersize=2.5)
+
+
+def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    (symbol,) = symbols([key])
+    name = symbol if symbol == key else f"{symbol}  ({key})"
+    x = peaks.parameters[key][known]
+    lower.set_xlabel(name, parse_math=symbol != key)
+    upper.set_ylabel(f"Peak amplitude of {peaks.dofs[column]}", parse_math=False)
+    lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
+    if x.min() > 0.0 and x.max() > _DECADES * x.min():
+        lower.set_xscale("log")
+    y = peaks.amplitude[known, column]
+    if y.max() > 10.0 * y.min() > 0.0:
+        logarithmic_axis(upper)
+    else:
+        upper.set_ylim(bottom=0.0)
+    lower.minorticks_on()
+
+
+def _name_lines(figure: Figure, axes: Axes, peaks: Peaks, key: str, lines: Sequence[IntArray]) -> None:
+    others = [name for name in peaks.parameters if name != key]
+    names = [curve_label({name: float(peaks.parameters[name][line[0]]) for name in others}) for line in lines]
+    figure.legend(axes.get_lines(), names, loc="outside right upper")
+
+
+def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    """A ring around the least peak of all, a thin line down to its frequency, and its values above."""
+    curves = np.flatnonzero(known)
+    least = curves[np.argmin(peaks.amplitude[curves, column])]
+    x, y = float(peaks.parameters[key][least]), float(peaks.amplitude[least, column])
+    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=_MARK, markeredgewidth=1.0)
+    for axes in (upper, lower):
+        axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
+    where = curve_label({name: float(values[least]) for name, values in peaks.parameters.items()})
+    upper.set_title(f"least peak {y:.4g} at {where}", loc="right", fontsize=8, color=_MARK)
+
+
+def _floats(variable: Any) -> FloatArray:
+    return np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)

@@ -1,0 +1,101 @@
+"""The peaks of a sweep as drawn: lines, a cloud, the least of all; from the file to the picture."""
+
+import numpy as np
+import pytest
+
+from fcm.plot.errors import PlotError
+from fcm.plot.peak import Peaks, draw_peak, read_peaks
+from fcm.response import trace
+from fcm.response.output import write_netcdf
+from fcm.scene import load_scene
+
+N_0, MU = "contact.shroud.n_0", "contact.shroud.mu"
+
+
+def peaks(**parameters):
+    """Least at n_0 = 10 for mu = 0.4, higher for any other mu."""
+    swept = {{"n_0": N_0, "mu": MU}[key]: np.asarray(values, float) for key, values in parameters.items()}
+    n_0, mu = swept[N_0], swept.get(MU, np.full(len(swept[N_0]), 0.4))
+    amplitude = 6.0 + np.abs(n_0 - 10.0) / 5.0 + 10.0 * np.abs(mu - 0.4)
+    amplitude = np.column_stack([amplitude, 0.1 * amplitude[::-1]])
+    frequency = np.column_stack([1.0 + n_0 / 100.0, 1.0 + n_0 / 200.0])
+    return Peaks(("u", "v"), "rad/s", swept, amplitude, frequency, np.full(len(n_0), True))
+
+
+def title(axes):
+    return axes.get_title(loc="right")
+
+
+def test_the_least_peak_is_marked_on_a_line_in_order():
+    upper, lower = draw_peak(peaks(n_0=[50, 10, -20, 0])).axes
+    line, ring = upper.lines[:2]
+    assert line.get_xdata().tolist() == [-20, 0, 10, 50]
+    assert line.get_ydata().tolist() == pytest.approx([12, 8, 6, 14])
+    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == (10.0, 6.0)
+    assert title(upper) == "least peak 6 at $n_{0}$ = 10"
+    assert lower.lines[0].get_ydata().tolist() == pytest.approx([0.8, 1.0, 1.1, 1.5])
+    assert "contact.shroud.n_0" in lower.get_xlabel() and "rad/s" in lower.get_ylabel()
+
+
+def test_another_degree_of_freedom():
+    upper, _ = draw_peak(peaks(n_0=[0, 10, 50]), dof="v").axes
+    assert upper.lines[0].get_ydata().tolist() == pytest.approx([1.4, 0.6, 0.8])
+    assert upper.get_ylabel() == "Peak amplitude of v"
+
+
+def test_a_line_for_each_of_the_other_values():
+    n_0, mu = (x.ravel() for x in np.meshgrid([0, 10, 20], [0.2, 0.4], indexing="ij"))
+    figure = draw_peak(peaks(n_0=n_0, mu=mu))
+    upper, _ = figure.axes
+    assert [line.get_xdata().tolist() for line in upper.lines[:2]] == [[0, 10, 20]] * 2
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["$\\mu$ = 0.2", "$\\mu$ = 0.4"]
+    assert title(upper) == "least peak 6 at $n_{0}$ = 10, $\\mu$ = 0.4"
+    assert draw_peak(peaks(n_0=n_0, mu=mu), against=MU).axes[1].get_xlabel().startswith("$\\mu$")
+
+
+def test_random_draws_are_points_without_lines():
+    random = np.random.default_rng(0)
+    upper, lower = draw_peak(peaks(n_0=random.normal(10, 3, 50), mu=random.normal(0.4, 0.05, 50))).axes
+    assert upper.lines[0].get_linestyle() == lower.lines[0].get_linestyle() == "None"
+    assert len(upper.lines[0].get_xdata()) == 50
+
+
+def test_a_curve_that_is_not_complete_is_not_drawn():
+    some = peaks(n_0=[0, 10, 20])
+    some.complete[1] = False
+    upper, _ = draw_peak(some).axes
+    assert upper.lines[0].get_xdata().tolist() == [0, 20]
+    some.complete[:] = False
+    with pytest.raises(PlotError, match="no complete curve"):
+        draw_peak(some)
+
+
+def test_decades_of_positive_values_are_logarithmic():
+    upper, lower = draw_peak(peaks(n_0=[0.01, 1.0, 100.0])).axes
+    assert lower.get_xscale() == "log" and upper.get_yscale() == "linear"
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"dof": "w"}, "no degree of freedom 'w'; the file has u, v"),
+        ({"against": "x"}, "'x' was not swept; the file has contact.shroud.n_0"),
+    ],
+)
+def test_what_is_not_there(more, said):
+    with pytest.raises(PlotError, match=said):
+        draw_peak(peaks(n_0=[0, 10]), **more)
+
+
+def test_the_optimal_preload_of_the_paper(tmp_path):
+    path = tmp_path / "a.nc"
+    write_netcdf(trace(load_scene("yang1998")), path)
+    upper, _ = draw_peak(read_peaks(path)).axes
+    assert title(upper) == "least peak 6.236 at $n_{0}$ = 10"
+
+
+def test_a_file_without_a_sweep(tmp_path):
+    path = tmp_path / "a.nc"
+    write_netcdf(trace(load_scene("yang1998-n5")), path)
+    with pytest.raises(PlotError, match="nothing was swept"):
+        draw_peak(read_peaks(path))
