@@ -15,7 +15,7 @@ from fcm.simulate.floquet import period_derivative
 from fcm.simulate.march import Segment, march
 from fcm.simulate.measure import Measure, measure
 from fcm.simulate.motion import Motion, dof_rows
-from fcm.simulate.run import simulate
+from fcm.simulate.run import cycles_from
 from fcm.simulate.state import State, entry
 from fcm.simulate.system import System
 
@@ -119,7 +119,8 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
         Of the external forces [rad/s].
     guess : State, optional
         At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
-        `harmonic_state`. By default the solution is the one that a simulation from rest approaches.
+        `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
+        goes around when that one is not stable.
 
     Raises
     ------
@@ -142,15 +143,22 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
                 "and start from their end, or from a solution at a frequency nearby"
             )
         return orbit
-    state: State | None = None
+    return _approached(system)
+
+
+def _approached(system: System) -> Orbit:
+    """The periodic solution that a simulation from rest comes near to."""
+    state, unstable = State.rest(system.scene), 0
     for cycles in FREE_CYCLES:
-        state = simulate(scene, frequency, cycles, state).end
+        *_, (_, state) = cycles_from(system, cycles, state)
         orbit = shoot(system, state)
-        if orbit is not None and orbit.stable:
+        unstable += orbit is not None and not orbit.stable
+        # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
+        if orbit is not None and (orbit.stable or unstable > 1):
             return orbit
     raise SimulationError(
-        f"the motion from rest at {frequency:g} rad/s has not become periodic in {sum(FREE_CYCLES)} cycles; "
-        "it may grow without end, repeat only after several periods, or need a guess"
+        f"the motion from rest at {system.omega:g} rad/s has not become periodic in {sum(FREE_CYCLES)} "
+        "cycles; it may grow without end, repeat only after several periods, or need a guess"
     )
 
 

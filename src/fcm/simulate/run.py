@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -82,21 +83,22 @@ def simulate_phases(
     for phase in phases:
         if not (np.isfinite(phase.cycles) and phase.cycles > 0.0):
             raise SimulationError(f"a phase has {phase.cycles:g} cycles; it needs more than none")
-        state = _run(System(scene, phase.frequency), phase.cycles, state, done, progress, total)
+        for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, state):
+            start = done[-1].start + done[-1].duration if done else 0.0
+            done.append(replace(cycle, start=start))
+            state = end
+            if progress is not None:
+                progress(len(done) / total, f"cycle {len(done)}")
     return Motion(scene, tuple(done), state)
 
 
-def _run(
-    system: System, cycles: float, state: State, done: list[Cycle], progress: Progress | None, total: float
-) -> State:
-    """Append the cycles of one phase; the state at its end."""
+def cycles_from(system: System, cycles: float, state: State) -> Iterator[tuple[Cycle, State]]:
+    """The cycles from a state on, each with the state at its end; the last one may be a part."""
     y, states = entry(system, state)
-    start = done[-1].start + done[-1].duration if done else 0.0
     for k in range(int(np.ceil(cycles))):
         part = min(1.0, cycles - k)
         set_angle(y, state.angle)
         segments, y, states = march(system, y, states, part * system.period)
-        done.append(Cycle(system, start + k * system.period, part * system.period, state.angle, segments))
-        if progress is not None:
-            progress(len(done) / total, f"cycle {len(done)}")
-    return leave(system, y, (state.angle + 2.0 * np.pi * (part % 1.0)) % (2.0 * np.pi))
+        angle = (state.angle + 2.0 * np.pi * (part % 1.0)) % (2.0 * np.pi)
+        cycle = Cycle(system, k * system.period, part * system.period, state.angle, segments)
+        yield cycle, leave(system, y, angle)
