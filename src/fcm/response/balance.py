@@ -55,7 +55,7 @@ class Balance:
         external = to_ports(self.group, compliance * scaled)
         d_external = to_ports(self.group, slope * scaled)
         flat = force.reshape(curves, contacts * FORCES)
-        matrix = self._real_matrix(G)
+        matrix = self.real_matrix(G)
         residual = x + (matrix @ flat[..., None])[..., 0] - _real_vector(external, contacts)
         by_omega = self._harmonic_force(dG, force) - _real_vector(d_external, contacts)
         blocks = matrix.reshape(curves, contacts * UNKNOWNS, contacts, FORCES).swapaxes(1, 2) @ tangent
@@ -79,7 +79,7 @@ class Balance:
         ports = np.linalg.solve(matrix, external[..., None])[..., 0]
         return _real_vector(ports, contacts)
 
-    def _real_matrix(self, G: AnyArray) -> FloatArray:
+    def real_matrix(self, G: AnyArray) -> FloatArray:
         """G as a real matrix from the six forces of each contact to its five unknowns."""
         contacts = self.group.contacts
         G = G.reshape(-1, contacts, 2, contacts, 2)

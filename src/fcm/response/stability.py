@@ -19,6 +19,8 @@ from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.law import UNKNOWNS
 from fcm.response.path import BoolArray
+from fcm.response.slow import dense, following, some_modes, with_followers
+from fcm.response.structure import Group
 
 GROWTH = 1e-9  # a growth rate counts as positive above this fraction of the frequency
 ZONE = 0.5  # of the frequency: half the distance between copies of an exponent
@@ -27,7 +29,7 @@ BLOCK = 4_000_000  # elements of the matrices that are held at a time
 
 def stable_points(balance: Balance, z: FloatArray) -> BoolArray:
     """Whether small disturbances of each point do not grow; z (point, unknown + 1)."""
-    size = 6 * balance.group.frequency.shape[1]
+    size = 6 * int((~following(balance.group, z[:, -1])).sum())
     step = max(BLOCK // size**2, 1)
     parts = [np.arange(first, min(first + step, z.shape[0])) for first in range(0, z.shape[0], step)]
     stable = [growth_rates(balance.take(part), z[part]) <= GROWTH * z[part, -1] for part in parts]
@@ -36,9 +38,13 @@ def stable_points(balance: Balance, z: FloatArray) -> BoolArray:
 
 def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     """Greatest real part of the exponents at each point, (point,) [1/s in the scene's units]."""
-    group, omega = balance.group, z[:, -1]
-    points, modes = z.shape[0], group.frequency.shape[1]
-    stiffness = _modal_tangent(balance, z).reshape(points, modes, 3, modes, 3)
+    group, omega, points = balance.group, z[:, -1], z.shape[0]
+    _, each = balance.law.forces(z[:, :-1].reshape(points, group.contacts, UNKNOWNS))
+    tangent, far = dense(each), following(group, omega)
+    if far.any():
+        tangent, group = with_followers(balance, far, omega, tangent), some_modes(group, ~far)
+    modes = group.frequency.shape[1]
+    stiffness = _modal_tangent(group, tangent).reshape(points, modes, 3, modes, 3)
     damping = np.zeros((points, modes, 3, modes, 3))
     i = np.arange(modes)
     rate = 2.0 * group.damping * group.frequency  # 2 zeta w_i
@@ -62,22 +68,18 @@ def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     return growth
 
 
-def _modal_tangent(balance: Balance, z: FloatArray) -> FloatArray:
+def _modal_tangent(group: Group, tangent: FloatArray) -> FloatArray:
     """Tangent of the contact forces in modal coordinates over the modal mass, (point, 3 modes, 3 modes).
 
     The three parts of a mode are the real and the imaginary part of its amplitude and its mean.
     """
-    group = balance.group
-    points, contacts = z.shape[0], group.contacts
-    _, tangent = balance.law.forces(z[:, :-1].reshape(points, contacts, UNKNOWNS))
-    ports = group.ports.reshape(-1, group.ports.shape[1], contacts, 2)
-    outward = _parts(ports, (0, 2), (1, 3), 4, 6)  # (curve, mode, 3, contact, 6)
+    modes, contacts = group.ports.shape[1], group.contacts
+    ports = group.ports.reshape(-1, modes, contacts, 2)
+    outward = _parts(ports, (0, 2), (1, 3), 4, 6) / group.mass[:, :, None, None, None]
     inward = _parts(ports, (0, 2), (1, 3), 4, 5)  # (curve, mode, 3, contact, 5)
-    modes = group.ports.shape[1]
-    left = outward / group.mass[:, :, None, None, None]
-    product = left.swapaxes(2, 3).swapaxes(1, 2).reshape(-1, contacts, 3 * modes, 6) @ tangent
-    right = inward.swapaxes(2, 3).swapaxes(1, 2).reshape(-1, contacts, 3 * modes, 5)
-    total: FloatArray = (product @ right.swapaxes(2, 3)).sum(axis=1)
+    left = outward.reshape(-1, 3 * modes, 6 * contacts)
+    right = inward.reshape(-1, 3 * modes, 5 * contacts)
+    total: FloatArray = left @ tangent @ right.swapaxes(1, 2)
     return total
 
 
