@@ -4,10 +4,12 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 DEMO   := build/demo
+PAPER  := build/paper
+DRAWN  := $(wildcard src/fcm/contact/*.py src/fcm/plot/*.py src/fcm/cli/coefficients.py)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo picture test check tables clean
+.PHONY: help demo picture figures test check tables clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -19,6 +21,16 @@ demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and thei
 
 picture: demo  ## the same, and its picture as the one of README.md
 	cp $(DEMO)/figure13.png .github/figure13.png
+
+figures: $(PAPER)/figure10.png $(PAPER)/figure11.png $(PAPER)/figure12.png  ## figures 10, 11 and 12 of the paper, in build/paper
+
+$(PAPER)/figure10.png: WHAT := surface --coefficient F_s --coefficient F_c --phi 0
+$(PAPER)/figure11.png: WHAT := surface --coefficient F_c --phi 15deg --phi 30deg
+$(PAPER)/figure12.png: WHAT := normal
+
+$(PAPER)/figure%.png: $(DRAWN) $(VENV)/installed
+	@mkdir -p $(@D)
+	$(BIN)/fcm plot $(WHAT) -o $@
 
 test: check  ## format, lint, types, then all tests
 	$(BIN)/python -m pytest -n 2

@@ -10,7 +10,7 @@ from fcm.cli.lazy import LazyGroup
 COMMANDS = {
     "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
     "respond": ("fcm.cli.respond:respond", "Trace the response curves of a scene."),
-    "plot": ("fcm.cli.plot:plot", "Draw a result: what a command has written, nothing computed again."),
+    "plot": ("fcm.cli.plot:plot", "Draw a result, or the coefficients of one contact."),
 }
 
 

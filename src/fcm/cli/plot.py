@@ -1,4 +1,4 @@
-"""``fcm plot WHAT``: pictures of what the other commands have written; nothing is computed here."""
+"""``fcm plot WHAT``: pictures of what the other commands have written, and of the coefficients."""
 
 from __future__ import annotations
 
@@ -14,12 +14,15 @@ ENDINGS = (".png", ".svg", ".pdf")
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
+    "surface": ("fcm.cli.coefficients:surface", "Friction coefficients over preload and load variation."),
+    "error": ("fcm.cli.coefficients:error", "Error of a table over the same plane."),
+    "normal": ("fcm.cli.coefficients:normal", "Coefficients of the variable normal load."),
 }
 
 
 @click.group(cls=LazyGroup, lazy=PICTURES)
 def plot() -> None:
-    """Draw a result."""
+    """Draw a result, or the coefficients of one contact."""
 
 
 @click.command()

@@ -1,0 +1,97 @@
+"""The coefficients over the plane (n0_bar, b_bar) at one phase, and its regimes (section 4.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.contact.fourier import fourier_coefficients
+from fcm.contact.limits import BoolArray, FloatArray, slip_limits
+from fcm.contact.loop import sequences
+
+COEFFICIENTS = ("F_b", "F_s", "F_c")
+N0_RANGE, B_RANGE = (-2.0, 3.0), (0.0, 2.0)  # what is shown unless asked otherwise
+STEPS = (400, 160)  # along n0_bar and b_bar; of equal length, so that n0_bar = +-b_bar are diagonals of cells
+CELLS = (400, 162)  # of unequal length, so that their middles are not on these lines
+
+Law = Callable[[FloatArray, FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A rectangle of n0_bar [-] and b_bar [-] at a phase [rad]."""
+
+    phi: float = 0.0
+    n0_range: tuple[float, float] = N0_RANGE
+    b_range: tuple[float, float] = B_RANGE
+
+    def nodes(self, steps: tuple[int, int] = STEPS) -> tuple[FloatArray, FloatArray]:
+        """n0_bar (i,) and b_bar (j,), the ends included."""
+        n0, b = (
+            np.linspace(*ends, n + 1) for ends, n in zip((self.n0_range, self.b_range), steps, strict=True)
+        )
+        return n0, b
+
+    def centres(self, steps: tuple[int, int] = CELLS) -> tuple[FloatArray, FloatArray]:
+        """The middles between the nodes, off the special values 0 and 1."""
+        n0, b = (0.5 * (nodes[1:] + nodes[:-1]) for nodes in self.nodes(steps))
+        return n0, b
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One coefficient over a plane."""
+
+    coefficient: str
+    plane: Plane
+    n0_bar: FloatArray  # (i,) [-]
+    b_bar: FloatArray  # (j,) [-]
+    values: FloatArray  # (j, i) [-]
+
+
+def surface(
+    coefficient: str, plane: Plane, steps: tuple[int, int] = STEPS, law: Law = fourier_coefficients
+) -> Surface:
+    """One of COEFFICIENTS over a plane, from the closed form or from another law such as a table.
+
+    >>> flat = surface("F_c", Plane(phi=0.0, b_range=(1.0, 2.0)), steps=(10, 10))
+    >>> float(abs(flat.values).max())  # in phase, and the load varies enough: no damping
+    0.0
+    """
+    n0, b = plane.nodes(steps)
+    F = law(n0[None, :], b[:, None], plane.phi)
+    return Surface(coefficient, plane, n0, b, F[COEFFICIENTS.index(coefficient)])
+
+
+def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
+    """n0_bar on the lines between the regimes, for each b_bar.
+
+    Below ``open`` the contact never closes, below ``separation`` it opens within the cycle, above ``slip``,
+    equation (25), it never slips.
+
+    >>> {name: n0.tolist() for name, n0 in boundaries(np.array([0.0, 0.5]), 0.0).items()}
+    {'open': [-0.0, -0.5], 'separation': [0.0, 0.5], 'slip': [1.0, 1.0]}
+    """
+    limits = slip_limits(b_bar, np.full_like(b_bar, phi))
+    width = 0.5 * (limits.ell_1_excess + limits.ell_2_excess)
+    return {"open": -b_bar, "separation": b_bar, "slip": b_bar + np.maximum(width, 0.0)}
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Where in a plane each sequence of states occurs."""
+
+    n0_bar: FloatArray  # (i,) [-]
+    b_bar: FloatArray  # (j,) [-]
+    where: dict[str, FloatArray]  # for each sequence (j, i): 1 where it occurs, else 0
+    separates: BoolArray  # (j, i) whether the contact opens and closes within the cycle
+
+
+def regions(plane: Plane, steps: tuple[int, int] = CELLS) -> Regions:
+    """The sequences of `hysteresis_loop` over a plane, in the middle of each cell."""
+    n0, b = plane.centres(steps)
+    found = sequences(n0[None, :], b[:, None], plane.phi)
+    where = {str(name): (found == name).astype(np.float64) for name in np.unique(found)}
+    return Regions(n0, b, where, np.abs(n0[None, :]) < b[:, None])
