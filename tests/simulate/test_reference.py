@@ -23,7 +23,7 @@ CASES = [
 @pytest.mark.parametrize(("name", "omega"), CASES)
 def test_against_solve_ivp_with_events(name, omega):
     motion = simulate(SCENES[name], omega, 20)
-    times = np.linspace(0.0, motion.duration, 401)
+    times = np.linspace(0.0, motion.duration, 401)[:-1]
     expected = integrate(SCENES[name], omega, 20, times)
     assert len(motion.transitions()) > 20
     assert np.abs(motion.displacement(times) - expected).max() < 1e-10 * np.abs(expected).max()

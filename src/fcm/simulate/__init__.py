@@ -1,5 +1,6 @@
 """Exact motion in time: simulation without a time step, schedules, periodic solutions."""
 
+from fcm.simulate.branch import Branch, trace_orbits
 from fcm.simulate.cycle import Cycle
 from fcm.simulate.energy import Energy, energy
 from fcm.simulate.errors import SimulationError
@@ -11,6 +12,7 @@ from fcm.simulate.run import simulate, simulate_phases, simulate_schedule
 from fcm.simulate.state import State
 
 __all__ = [
+    "Branch",
     "Cycle",
     "Energy",
     "History",
@@ -26,4 +28,5 @@ __all__ = [
     "simulate",
     "simulate_phases",
     "simulate_schedule",
+    "trace_orbits",
 ]

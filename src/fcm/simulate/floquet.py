@@ -31,14 +31,19 @@ def entry_derivative(system: System, states: str) -> FloatArray:
 
 def period_derivative(system: System, segments: list[Segment]) -> FloatArray:
     """Derivative of x = (q, q', f) at the end of the segments by x at their start."""
+    last = len(segments) - 1
+    return derivative_at(system, segments, last, segments[last].length)[: system.n.start]
+
+
+def derivative_at(system: System, segments: list[Segment], last: int, position: float) -> FloatArray:
+    """Derivative of the state vector at a position in a segment by x at the start of the first."""
     columns = entry_derivative(system, segments[0].states)
-    for i, segment in enumerate(segments):
-        whole = int(segment.length)
-        columns = segment.flow.advance(columns, whole)
-        columns = segment.flow.within(columns, segment.length - whole)
-        if i + 1 < len(segments):
+    for i, segment in enumerate(segments[: last + 1]):
+        length = position if i == last else segment.length
+        columns = segment.flow.at(columns, length)
+        if i < last:
             columns = _across(system, segment, segments[i + 1], columns)
-    return columns[: system.n.start]
+    return columns
 
 
 def _across(system: System, old: Segment, new: Segment, columns: FloatArray) -> FloatArray:

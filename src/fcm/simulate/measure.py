@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
 from fcm.simulate.cycle import NODES, WEIGHTS, Cycle, Piece, pieces
 from fcm.simulate.flow import ORDER
 
+IntArray = npt.NDArray[np.intp]
 _ORDERS = np.arange(ORDER + 1.0)
 _POWERS = NODES[:, None] ** _ORDERS  # (node, ORDER + 1)
 NEWTON = 5
@@ -71,18 +73,25 @@ def _greatest(piece: Piece, x: FloatArray, sign: float) -> FloatArray:
     """
     powers = sign * piece.powers
     best: FloatArray = np.maximum((sign * x).max(axis=(0, 1)), powers[:, 0].max(axis=0))
-    rising = powers[:, 1]
-    falling = (_ORDERS[1:] * piece.lengths[:, None] ** _ORDERS[:-1])[:, None] @ powers[:, 1:]
-    falling = falling[:, 0]
-    step, row = ((rising > 0.0) & (falling <= 0.0)).nonzero()
+    step, row, rising, falling = _turns(powers, piece.lengths)
     if step.size:
-        p, a, b = powers[step, :, row], rising[step, row], falling[step, row]
-        np.maximum.at(best, row, _peak(p, piece.lengths[step] * a / (a - b), piece.lengths[step]))
+        limit = piece.lengths[step]
+        value, _ = _peak(powers[step, :, row], limit * rising / (rising - falling), limit)
+        np.maximum.at(best, row, value)
     return best
 
 
-def _peak(powers: FloatArray, position: FloatArray, limit: FloatArray) -> FloatArray:
-    """Values of polynomials (peak, ORDER + 1) at their maxima next to the positions in [0, limit]."""
+def _turns(powers: FloatArray, lengths: FloatArray) -> tuple[IntArray, IntArray, FloatArray, FloatArray]:
+    """Steps and rows in which the slope turns from positive to negative, with its values at both ends."""
+    rising = powers[:, 1]
+    weights = _ORDERS[1:] * lengths[:, None] ** _ORDERS[:-1]
+    falling = (weights[:, None] @ powers[:, 1:])[:, 0]
+    step, row = ((rising > 0.0) & (falling <= 0.0)).nonzero()
+    return step, row, rising[step, row], falling[step, row]
+
+
+def _peak(powers: FloatArray, position: FloatArray, limit: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and positions of the maxima of polynomials (peak, ORDER + 1) next to positions in [0, limit]."""
     first = powers[:, 1:] * _ORDERS[1:]
     second = first[:, 1:] * _ORDERS[1:-1]
     for _ in range(NEWTON):
@@ -92,4 +101,19 @@ def _peak(powers: FloatArray, position: FloatArray, limit: FloatArray) -> FloatA
         move = -(first * x[:, :-1]).sum(axis=1) / np.where(down, bend, 1.0)
         position = np.clip(position + np.where(down, move, 0.0), 0.0, limit)
     value: FloatArray = (powers * position[:, None] ** _ORDERS).sum(axis=1)
-    return value
+    return value, position
+
+
+def extreme(powers: FloatArray, lengths: FloatArray) -> tuple[float, float]:
+    """The greatest value of one row over its steps, (step, ORDER + 1, 1), and where it is (in steps)."""
+    starts = powers[:, 0, 0]
+    k = int(starts.argmax())
+    best, where = float(starts[k]), float(k)
+    step, _, rising, falling = _turns(powers, lengths)
+    if step.size:
+        guess = lengths[step] * rising / (rising - falling)
+        value, position = _peak(powers[step, :, 0], guess, lengths[step])
+        k = int(value.argmax())
+        if value[k] > best:
+            best, where = float(value[k]), float(step[k] + position[k])
+    return best, where

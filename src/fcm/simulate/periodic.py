@@ -17,6 +17,7 @@ from fcm.simulate.measure import Measure, measure
 from fcm.simulate.motion import Motion, dof_rows
 from fcm.simulate.run import cycles_from
 from fcm.simulate.state import State, entry
+from fcm.simulate.stuck import choices
 from fcm.simulate.system import System
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
@@ -60,15 +61,21 @@ class Orbit:
 
 
 class Shot:
-    """The motion over one period from x = (q, q', f), with its derivative when it is asked for."""
+    """The motion over one period from x = (q, q', f), and how it fails to close.
 
-    def __init__(self, system: System, x: FloatArray) -> None:
+    With `choose`, the friction of contacts that always stick is the one of `choices`; else any will do.
+    """
+
+    def __init__(self, system: System, x: FloatArray, choose: bool = False) -> None:
         m = system.modes
         self.system, self.state = system, State(x[:m], x[m : 2 * m], x[2 * m :])
         y, states = entry(system, self.state)
         self.segments, end, _ = march(system, y, states, system.period)
         self.x = self.segments[0].y[: system.n.start].copy()  # as the contacts' states allow it
         self.gap = end[: system.n.start] - self.x
+        self.chosen = choices(system, self.segments) if choose else []
+        for choice in self.chosen:
+            self.gap[2 * m + choice.contact] = choice.gap
         self.scale = _scale(system, self.segments)
         self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
 
@@ -77,10 +84,17 @@ class Shot:
         """Of the state after the period by x."""
         return period_derivative(self.system, self.segments)
 
+    @cached_property
+    def closure(self) -> FloatArray:
+        """Derivative of the gap by x."""
+        matrix: FloatArray = self.derivative - np.eye(self.x.size)
+        for choice in self.chosen:
+            matrix[2 * self.system.modes + choice.contact] = choice.row
+        return matrix
+
     def step(self) -> FloatArray:
         """Newton's step; along directions in which nothing changes, none."""
-        identity = np.eye(self.x.size)
-        matrix = (self.derivative - identity) * self.scale / self.scale[:, None]
+        matrix = self.closure * self.scale / self.scale[:, None]
         solution = np.linalg.lstsq(matrix, -self.gap / self.scale, rcond=RANK)[0]
         step: FloatArray = solution * self.scale
         return step
