@@ -41,19 +41,25 @@ def locate(
     low, high = np.zeros(z.shape[0]), np.ones(z.shape[0])
     f_low, f_high = at_start.copy(), at_end.copy()
     missed = np.zeros(z.shape[0], dtype=bool)
-    for count in range(MAX_HALVINGS if z.shape[0] else 0):
-        share = np.where(missed, _any_share(low, high, count), _next_share(low, high, f_low, f_high, count))
-        new = segments.points(exact, share)
-        f = rate(exact.take(segments.curve), new.z, new.tangent, which)
-        narrow = (high - low) * segments.length <= WIDTH
-        use = new.converged & ~narrow
-        missed = ~new.converged
-        z[use], direction[use] = new.z[use], new.tangent[use]
-        before = np.sign(f) == np.sign(at_start)
-        low, f_low = np.where(use & before, share, low), np.where(use & before, f, f_low)
-        high, f_high = np.where(use & ~before, share, high), np.where(use & ~before, f, f_high)
-        if np.all(narrow | (use & (f == 0.0))):
+    left = np.flatnonzero(segments.length > WIDTH)
+    for count in range(MAX_HALVINGS):
+        if left.size == 0:
             break
+        some, lo, hi = segments.take(left), low[left], high[left]
+        by_rate = _next_share(lo, hi, f_low[left], f_high[left], count)
+        share = np.where(missed[left], _any_share(lo, hi, count), by_rate)
+        new = some.points(exact, share)
+        f = rate(exact.take(some.curve), new.z, new.tangent, which[left])
+        missed[left] = ~new.converged
+        use = left[new.converged]
+        share, f = share[new.converged], f[new.converged]
+        z[use], direction[use] = new.z[new.converged], new.tangent[new.converged]
+        before = np.sign(f) == np.sign(at_start[use])
+        low[use], f_low[use] = np.where(before, (share, f), (low[use], f_low[use]))
+        high[use], f_high[use] = np.where(before, (high[use], f_high[use]), (share, f))
+        zero = use[f == 0.0]
+        low[zero] = high[zero]
+        left = left[(high - low)[left] * some.length > WIDTH]
     return z, direction
 
 
