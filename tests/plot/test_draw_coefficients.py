@@ -8,7 +8,7 @@ import pytest
 from matplotlib.text import Text
 
 import fcm
-from fcm.contact.surface import Plane, boundaries, regions, surface
+from fcm.contact.surface import Plane, boundaries, edges, regions, surface
 from fcm.plot.normal import draw_normal
 from fcm.plot.plane import BOUNDARIES, phase_name
 from fcm.plot.surface import draw_contours, draw_surfaces
@@ -126,7 +126,7 @@ def test_nothing_overlaps(count):
 def an_error(plane=THIRTY, error=None):
     n0, b = plane.nodes(SMALL)
     error = np.full((20, 50), 1e-5) if error is None else error
-    return ErrorMap("F_s", plane, n0, b, error, (-1.2345, 1.9876), 3.21e-5)
+    return ErrorMap("F_s", plane, n0, b, error, edges(plane), (-1.2345, 1.9876), 3.21e-5)
 
 
 def test_errors_are_drawn_in_a_fixed_range():

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import output_option, replacing
+from fcm.cli.files import output_option
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.plot import ENDINGS
+from fcm.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +57,7 @@ def _positive_range(
     return _range(ctx, param, value)
 
 
-def _over_the_plane(coefficients: tuple[str, ...], output: str) -> Callable[[Any], Any]:
+def _over_the_plane(output: str, phase: str) -> Callable[[Any], Any]:
     """The options of the pictures over (n0_bar, b_bar)."""
     options = (
         output_option(
@@ -65,12 +66,12 @@ def _over_the_plane(coefficients: tuple[str, ...], output: str) -> Callable[[Any
         ),
         click.option(
             "--coefficient", "coefficients", multiple=True, type=click.Choice(["F_b", "F_s", "F_c"]),
-            default=coefficients, show_default=True,
+            default=("F_s", "F_c"), show_default=True,
             help="Mean force, stiffness or damping; may be repeated.",
         ),
         click.option(
-            "--phi", "phases", multiple=True, type=Phase(), default=(0.0,), show_default=True,
-            metavar="ANGLE",
+            "--phi", "phases", multiple=True, type=Phase(), default=(phase,),
+            show_default=True, metavar="ANGLE",
             help="Phase of the normal motion before the tangential, in radians or as 15deg; may be repeated.",
         ),
         click.option(
@@ -101,6 +102,7 @@ def _panels(
     """What each panel shows: two phases of a coefficient side by side, else two coefficients of a phase."""
     from fcm.contact.surface import Plane
 
+    coefficients, phases = tuple(dict.fromkeys(coefficients)), tuple(dict.fromkeys(phases))
     if (count := len(coefficients) * len(phases)) > MOST_PANELS:
         raise click.UsageError(f"{count} panels are too many for a picture: at most {MOST_PANELS}.")
     planes = [Plane(phi, n0_range, b_range) for phi in phases]
@@ -117,7 +119,7 @@ def _save(figure: Figure, output: Path) -> None:
 
 
 @click.command()
-@_over_the_plane(("F_s", "F_c"), "surface.png")
+@_over_the_plane("surface.png", phase="0")
 @click.option(
     "--table", type=click.Path(), metavar="FILE", help="Draw what this table has.  [default: the closed form]"
 )
@@ -157,7 +159,7 @@ def surface(
 
 
 @click.command()
-@_over_the_plane(("F_s", "F_c"), "error.png")
+@_over_the_plane("error.png", phase="30deg")
 @click.option(
     "--table", type=click.Path(), metavar="FILE", help="The table to compare.  [default: the shipped one]"
 )

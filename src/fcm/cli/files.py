@@ -1,10 +1,9 @@
-"""Files that a command writes: refused before the calculation, whole or not there after it."""
+"""Files that a command writes, refused before the calculation if they cannot be written."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -46,15 +45,3 @@ def _problem(path: Path, endings: tuple[str, ...]) -> str:
     probe.touch(exist_ok=False)
     probe.unlink()
     return ""
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A name to write under; the file takes its place at ``path`` only when it is whole."""
-    target = path.resolve()
-    partial = target.with_name(f".{target.stem}.{os.getpid()}.partial{target.suffix}")
-    try:
-        yield partial
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)

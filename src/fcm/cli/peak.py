@@ -6,8 +6,9 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.files import check_output, output_option, replacing
+from fcm.cli.files import check_output, output_option
 from fcm.cli.messages import Messages, pass_messages
+from fcm.files import replacing
 
 ENDINGS = (".png", ".svg", ".pdf")
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import output_option, replacing
+from fcm.cli.files import output_option
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
+from fcm.files import replacing
 
 if TYPE_CHECKING:
     from fcm.table.locate import Resolution

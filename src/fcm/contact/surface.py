@@ -80,6 +80,20 @@ def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
 
 
 @dataclass(frozen=True)
+class Edges:
+    """The lines of `boundaries` across a plane."""
+
+    b_bar: FloatArray  # (j,) [-]
+    n0_bar: dict[str, FloatArray]  # for each line (j,) [-]
+
+
+def edges(plane: Plane, steps: int = STEPS[0]) -> Edges:
+    """The lines between the regimes, at all b_bar of a plane."""
+    b = np.linspace(*plane.b_range, steps + 1)
+    return Edges(b, boundaries(b, plane.phi))
+
+
+@dataclass(frozen=True)
 class Regions:
     """Where in a plane each sequence of states occurs."""
 
@@ -87,6 +101,7 @@ class Regions:
     b_bar: FloatArray  # (j,) [-]
     where: dict[str, FloatArray]  # for each sequence (j, i): 1 where it occurs, else 0
     separates: BoolArray  # (j, i) whether the contact opens and closes within the cycle
+    edges: Edges
 
 
 def regions(plane: Plane, steps: tuple[int, int] = CELLS) -> Regions:
@@ -94,4 +109,4 @@ def regions(plane: Plane, steps: tuple[int, int] = CELLS) -> Regions:
     n0, b = plane.centres(steps)
     found = sequences(n0[None, :], b[:, None], plane.phi)
     where = {str(name): (found == name).astype(np.float64) for name in np.unique(found)}
-    return Regions(n0, b, where, np.abs(n0[None, :]) < b[:, None])
+    return Regions(n0, b, where, np.abs(n0[None, :]) < b[:, None], edges(plane))

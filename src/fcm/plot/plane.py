@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.contact.surface import Plane, boundaries
+from fcm.contact.surface import Edges, Plane
 from fcm.plot.read import FloatArray
 from fcm.plot.style import WIDTH, new_figure
 
@@ -26,7 +26,6 @@ BOUNDARIES: dict[str, tuple[str, Any]] = {  # name: label, line style
     "slip": (r"slip limit, $\bar{n}_0 = (\ell_1 + \ell_2)/2$", "-"),
 }
 ALONE = 1.4  # height of a picture of one panel, relative to that of a row of two
-_SAMPLES = 401  # points of a boundary, which has a corner at b_bar = 1 and phi = 0
 
 
 def phase_name(phi: float) -> str:
@@ -58,12 +57,11 @@ def panels(count: int, height: float, **more: Any) -> tuple[Figure, list[Axes]]:
     return figure, axes
 
 
-def draw_boundaries(axes: Axes, plane: Plane, colour: str) -> None:
-    """The lines between the regimes, as far as they cross the plane."""
-    b = np.linspace(*plane.b_range, _SAMPLES)
-    for name, n0 in boundaries(b, plane.phi).items():
+def draw_boundaries(axes: Axes, edges: Edges) -> None:
+    """The lines between the regimes; what is outside the plane is cut off by its limits."""
+    for name, n0 in edges.n0_bar.items():
         label, style = BOUNDARIES[name]
-        axes.plot(n0, b, color=colour, linestyle=style, linewidth=1.0, label=label)
+        axes.plot(n0, edges.b_bar, color="black", linestyle=style, linewidth=1.0, label=label)
 
 
 def finish_plane(axes: list[Axes], plane: Plane) -> None:

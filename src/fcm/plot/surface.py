@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
-_SPACE_HEIGHT, _FLAT_HEIGHT = 2.5, 2.5  # [inch] of a row of panels
+_SPACE_HEIGHT, _FLAT_HEIGHT = 2.3, 2.5  # [inch] of a row of panels
 _VIEW = (24.0, -125.0)  # [degree] elevation and azimuth
 _TICKS = 5  # intervals of an axis in space, at most
 _LEVELS = 12  # bands of filled contours, at most
@@ -39,7 +39,7 @@ def draw_surfaces(surfaces: Sequence[Surface]) -> Figure:
         figure, axes = panels(len(surfaces), _SPACE_HEIGHT, projection="3d")
         for one, drawn, title in zip(axes, surfaces, _titles(surfaces), strict=True):
             _draw_in_space(one, drawn, _range(surfaces, drawn.coefficient))
-            one.set_title(title, y=0.94)
+            one.set_title(title, y=0.97)
     return figure
 
 
@@ -50,7 +50,7 @@ def draw_contours(surfaces: Sequence[Surface], found: Sequence[Regions]) -> Figu
         for one, drawn, where, title in zip(axes, surfaces, found, _titles(surfaces), strict=True):
             _draw_bands(one, drawn, _range(surfaces, drawn.coefficient))
             draw_regions(one, where)
-            draw_boundaries(one, drawn.plane, "black")
+            draw_boundaries(one, where.edges)
             one.set_title(title)
         finish_plane(axes, surfaces[0].plane)
         boundary_legend(figure)
@@ -76,7 +76,7 @@ def _colours(signed: bool) -> Colormap:
 
     if signed:
         return ListedColormap(matplotlib.colormaps["RdBu_r"](np.linspace(0.15, 0.85, 256)))
-    return ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0.3, 1.0, 256)))
+    return ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0.0, 0.75, 256)))
 
 
 def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None:
@@ -97,14 +97,14 @@ def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None
     )
     axes.set(xlim=drawn.plane.n0_range, ylim=drawn.plane.b_range, zlim=span)
     axes.set_xlabel(N0_SYMBOL, labelpad=-4)
-    axes.set_ylabel(B_SYMBOL, labelpad=-6)
+    axes.set_ylabel(B_SYMBOL, labelpad=-2)
     axes.set_zlabel(MEANING[drawn.coefficient], labelpad=-4)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         corner = "lower" if axis is axes.xaxis else None  # two numbers in one corner would touch
         axis.set_major_locator(MaxNLocator(_TICKS, steps=[1, 2, 5, 10], prune=corner))
         axis.set_tick_params(pad=-1, labelsize=7)
     axes.view_init(*_VIEW)
-    axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.8)
+    axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.95)
 
 
 def _draw_bands(axes: Axes, drawn: Surface, span: tuple[float, float]) -> None:

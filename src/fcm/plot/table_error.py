@@ -49,7 +49,7 @@ def _draw_error(axes: Axes, drawn: ErrorMap) -> Any:
     mesh = axes.pcolormesh(
         drawn.n0_bar, drawn.b_bar, logarithm, cmap=colours, vmin=RANGE[0], vmax=RANGE[1], rasterized=True
     )
-    draw_boundaries(axes, drawn.plane, "black")
+    draw_boundaries(axes, drawn.edges)
     ring = [withStroke(linewidth=2.6, foreground="white")]
     axes.plot(
         *drawn.worst,

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 import fcm
+from fcm.files import replacing
 from fcm.response.result import UNIT, Curve, Response
 
 if TYPE_CHECKING:
@@ -152,7 +153,7 @@ def write_netcdf(response: Response, path: str | Path) -> None:
 
     fields = fields_of(response)
     swept = [name for name in fields if fields[name].dims == ("curve",) and name != "complete"]
-    with Replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+    with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
         file.setncatts(attributes(response))
         for name, field in fields.items():
             for dim, size in zip(field.dims, field.values.shape, strict=True):
@@ -176,7 +177,7 @@ def write_csv(response: Response, path: str | Path) -> None:
     keys = list(response.curves[0].parameters) if response.curves else []
     columns = [f"{kind} {dof}" for dof in response.dofs for kind in ("amplitude", "phase", "mean")]
     regimes = [f"regime {name}" for name in response.contacts]
-    with Replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(
             [
@@ -198,20 +199,3 @@ def write_csv(response: Response, path: str | Path) -> None:
                     + [*c.regime[k].tolist(), int(c.stable[k])]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
                 )
-
-
-class Replacing:
-    """A temporary name beside path that takes its place on success and vanishes on failure."""
-
-    def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
-        self.temporary = self.path.with_name(f".{self.path.name}.partial")
-
-    def __enter__(self) -> Path:
-        return self.temporary
-
-    def __exit__(self, kind: object, *_: object) -> None:
-        if kind is None:
-            self.temporary.replace(self.path)
-        else:
-            self.temporary.unlink(missing_ok=True)

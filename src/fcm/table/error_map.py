@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
-from fcm.contact.surface import CELLS, COEFFICIENTS, Plane
+from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, edges
 from fcm.table.atlas import FloatArray
 from fcm.table.measure import Interpolant
 
@@ -24,6 +24,7 @@ class ErrorMap:
     n0_bar: FloatArray  # (i + 1,) [-] edges of the cells
     b_bar: FloatArray  # (j + 1,) [-]
     error: FloatArray  # (j, i) [-]
+    edges: Edges  # between the regimes
     worst: tuple[float, float]  # n0_bar and b_bar of the greatest error
     largest: float  # the error there [-]
 
@@ -39,7 +40,7 @@ def error_map(coefficient: str, plane: Plane, table: Interpolant, steps: tuple[i
         near_b = np.clip(worst[1] + step_b * np.linspace(-1, 1, 2 * FINER + 1), *plane.b_range)
         worst, largest = _greatest(_error(coefficient, plane.phi, table, near_n0, near_b), near_n0, near_b)
         step_n0, step_b = step_n0 / FINER, step_b / FINER
-    return ErrorMap(coefficient, plane, *plane.nodes(steps), error, worst, largest)
+    return ErrorMap(coefficient, plane, *plane.nodes(steps), error, edges(plane), worst, largest)
 
 
 def _error(coefficient: str, phi: float, table: Interpolant, n0: FloatArray, b: FloatArray) -> FloatArray:
