@@ -27,6 +27,7 @@ class Lighter:
     """The scenes of a sweep without what they do not need."""
 
     full: tuple[Scene, ...]
+    exact: tuple[Scene, ...]  # without what has no effect
     curves: tuple[Scene, ...]  # what is traced
     contacts: tuple[int, ...]  # which of the contacts are traced
     sentences: tuple[str, ...]  # what was left out without any effect, and why
@@ -40,7 +41,7 @@ class Lighter:
 
 def keep_all(curves: tuple[Scene, ...]) -> Lighter:
     """The scenes as they are."""
-    return Lighter(curves, curves, tuple(range(len(curves[0].contacts))), ())
+    return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), ())
 
 
 def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighter:
@@ -53,7 +54,7 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighte
         lighter = _with_modals(lighter, {id(s.modal): _some_modes(s.modal, moved) for s in lighter})
         what = f"{_counted(int((~moved).sum()), 'mode')} of {moved.size}"
         sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
-    result = Lighter(curves, lighter, needed, tuple(sentences))
+    result = Lighter(curves, lighter, lighter, needed, tuple(sentences))
     if result.idle_table and lighter[0].contacts:
         result = replace(result, sentences=(*sentences, "the table: no contact has friction (no effect)"))
     return _static(result, tolerance)
@@ -61,7 +62,7 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighte
 
 def sentence_on_modes(lighter: Lighter, shift: float) -> str:
     """What was replaced, with the bound that the check gives."""
-    modal, fewer, unit = lighter.full[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
+    modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
     above = (lighter.above or 0.0) / (2.0 * np.pi if unit == "Hz" else 1.0)
     high = int((modal.frequency > (lighter.above or 0.0)).sum())
     few = int((fewer.frequency > (lighter.above or 0.0)).sum())
@@ -119,7 +120,8 @@ def _carries(scene: Scene, number: int) -> bool:
 
 def _moved(scene: Scene) -> BoolArray:
     """Which modes a force or a contact moves."""
-    along = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    along = [c.tangential for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0]
+    along += [c.normal for c in scene.contacts if c.k_v > 0.0]
     along += [force.direction for force in scene.forces]
     moved: BoolArray = np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
     return moved

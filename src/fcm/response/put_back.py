@@ -9,7 +9,7 @@ from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
 from fcm.response.balance import Balance
 from fcm.response.displacement import displacements
-from fcm.response.law import UNKNOWNS, ClosedForm
+from fcm.response.law import UNKNOWNS, ClosedForm, Law
 from fcm.response.leave_out import Lighter
 from fcm.response.path import amplitudes, correct, scales
 from fcm.response.points import extent
@@ -37,7 +37,7 @@ def checked(response: Response, lighter: Lighter) -> float:
     per_curve = max(min(EACH_CHECKED, MOST_CHECKED // len(response.curves)), 1)
     shifts = []
     for number in _spread(len(response.curves), MOST_CHECKED):
-        curve, scene = response.curves[number], lighter.full[number]
+        curve, scene = response.curves[number], lighter.exact[number]
         at = _sample(curve, per_curve)
         if at.size and scene.contacts:
             shifts.append(_shift(curve, scene, at))
@@ -47,7 +47,8 @@ def checked(response: Response, lighter: Lighter) -> float:
 def _all_regimes(curve: Curve, scene: Scene, traced: tuple[int, ...]) -> npt.NDArray[np.str_]:
     """The regimes with those of the contacts that were not traced."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
-    law = Balance(group_of([scene]), ClosedForm()).law
+    group = group_of([scene])
+    law = Law(group.mu, group.k_u, group.k_v, group.n_0, ClosedForm())
     regime = np.full((curve.frequency.size, len(scene.contacts)), "", dtype=curve.regime.dtype)
     regime[at] = sequences(*law.arguments(_unknowns(curve, scene, at)))
     regime[:, list(traced)] = curve.regime

@@ -1,0 +1,177 @@
+"""What is left out changes nothing, or less than is said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.response import ResponseError, leave_out, sweep, trace
+from fcm.response.slow import MANY
+from fcm.response.static_modes import condensed
+from fcm.scene import scene_from_dict
+
+
+def structure(modes, contacts, dofs, top, **more):
+    """Modes of a bar with some disorder; the first three have resonances in the range."""
+    random = np.random.default_rng(1)
+    names = [f"x{i}" for i in range(dofs)]
+    frequency = np.sort(random.uniform(3.0, top, modes))
+    frequency[:3] = 1.0, 1.7, 2.6
+    along = np.linspace(0.0, 1.0, dofs)
+    shapes = [
+        np.sin((k + 1) * np.pi * along + 0.3 * k) + 0.2 * random.normal(size=dofs) for k in range(modes)
+    ]
+
+    def contact(number):
+        one, two = random.choice(dofs, 2, replace=False)
+        tangential = {names[one]: 1.0, names[two]: -1.0} if number % 2 else names[one]
+        load = {"n_0": float(random.uniform(-0.2, 0.6)), "mu": 0.4, "k_u": 0.05, "k_v": 0.05}
+        return {"name": f"c{number}", "tangential": tangential, "normal": names[two], **load}
+
+    return scene_from_dict(
+        {
+            "modal": {"dofs": names, "frequency": frequency, "damping": 0.01, "shapes": np.array(shapes)},
+            "contact": [contact(number) for number in range(contacts)],
+            "force": [{"dof": names[3], "amplitude": 0.3}],
+            "response": {"frequency": [0.8, 2.2], "max_step": 0.2},
+            **more,
+        }
+    )
+
+
+def bound(response):
+    """The number in the sentence on modes."""
+    (sentence,) = [text for text in response.left_out if "far above" in text]
+    return float(sentence.rpartition(" ")[2].strip(")"))
+
+
+def test_five_hundred_modes_within_the_bound():
+    scene = structure(500, 4, 40, 300.0)
+    light, full = trace(scene), trace(scene, tolerance=None)
+    assert full.left_out == [] and 0.0 < bound(light) <= leave_out.TOLERANCE
+    one, other = light.curves[0], full.curves[0]
+    assert len(one.folds) == len(other.folds)
+    for dof, (amplitude, frequency) in other.peaks.items():
+        assert one.peaks[dof][0] == pytest.approx(amplitude, rel=bound(light))
+        assert one.peaks[dof][1] == pytest.approx(frequency, rel=bound(light))
+
+
+def test_a_smaller_tolerance_keeps_more():
+    scene = structure(200, 2, 20, 150.0)
+    kept = []
+    for tolerance in (1e-3, 1e-5, 1e-7):
+        lighter = leave_out.leave_out((scene,), tolerance)
+        kept.append(lighter.curves[0].modal.frequency.size)
+    assert kept[0] <= kept[1] <= kept[2]
+    assert leave_out.leave_out((scene,), 0.0).curves == (scene,)
+
+
+def test_the_error_falls_with_the_fourth_power_of_the_frequency():
+    scene = structure(200, 2, 20, 150.0)
+    modal = replace(scene.modal, damping=np.zeros(200))
+    directions = np.array([c.tangential for c in scene.contacts]).T
+    fewer = condensed(modal, directions, modal.frequency > 20.0)
+
+    def response(modal, omega):
+        return ((modal.shapes @ directions).T / (modal.mass * (modal.frequency**2 - omega**2))) @ modal.shapes
+
+    error = [np.abs(response(fewer, w) - response(modal, w)).max() for w in (2.0, 4.0)]
+    assert np.log2(error[1] / error[0]) == pytest.approx(4.0, abs=0.3)
+
+
+def test_a_wrong_estimate_is_found_and_everything_kept(monkeypatch):
+    scene = structure(120, 2, 20, 100.0)
+    reference = trace(scene, tolerance=None)
+    monkeypatch.setattr("fcm.response.static_modes._linear_error", lambda *_: 0.0)  # as if there were none
+    response = trace(scene, tolerance=1e-9)
+    assert response.left_out == []
+    assert response.curves[0].peaks == reference.curves[0].peaks
+
+
+def oscillator(**more):
+    """The paper's oscillator and a third degree of freedom that moves in the third mode only."""
+    data = {
+        "modal": {
+            "dofs": ["u", "v", "w"],
+            "frequency": [1.0, 10.0, 0.0],
+            "damping": 0.01,
+            "shapes": [[0.707, 0.707, 0.0], [1.0, -0.5, 0.0], [0.0, 0.0, 1.0]],
+        },
+        "contact": [
+            {"name": "shroud", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1, "k_v": 1, "n_0": 10},
+            {"name": "idle", "tangential": "v", "normal": "w", "mu": 0.0, "k_u": 1, "k_v": 0, "n_0": 3},
+            {"name": "far", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 0, "k_v": 0, "gap": 3},
+        ],
+        "force": [{"dof": "u", "amplitude": 1.0}, {"dof": "v", "amplitude": 1.0}],
+        "response": {"frequency": [0.7, 1.7], "max_step": 0.2},
+    }
+    return scene_from_dict(data | more)
+
+
+def test_idle_modes_and_contacts_have_no_effect():
+    response = trace(oscillator(), "closed-form")
+    paper = trace(replace(fcm.load_scene("yang1998"), curves=()), "closed-form")
+    assert response.contacts == ("shroud", "idle", "far")
+    assert [text.partition(":")[0] for text in response.left_out] == [
+        "contact idle", "contact far", "1 mode of 3",
+    ]  # fmt: skip
+    assert all("no effect" in text for text in response.left_out)
+    assert response.curves[0].regime.shape[1] == 3
+    assert response.curves[0].peaks["u"][0] == pytest.approx(6.236, abs=2e-3)
+    assert response.curves[0].peaks["w"][0] == 0.0
+    assert paper.left_out == []
+
+
+def test_the_regimes_of_contacts_left_out_are_those_of_contacts_kept():
+    scene = oscillator()
+    modal = replace(scene.modal, frequency=np.array([1.0, 10.0, 5.0]))  # keeping all needs no rigid mode
+    scene = replace(scene, modal=modal)
+    light, full = trace(scene, "closed-form"), trace(scene, "closed-form", tolerance=None)
+    assert light.left_out and not full.left_out
+    one, other = light.curves[0], full.curves[0]
+    assert one.peaks["u"] == pytest.approx(other.peaks["u"], rel=1e-7)
+    assert one.regime.shape[1] == other.regime.shape[1] == 3
+    for column in range(3):
+        assert set(one.regime[:, column]) == set(other.regime[:, column])
+
+
+def test_a_scene_whose_contacts_are_all_idle_is_linear():
+    idle = {"tangential": "v", "normal": "w", "mu": 0.0, "k_u": 1.0, "k_v": 0.0, "n_0": 3.0}
+    response = trace(oscillator(contact=[{"name": "one", **idle}, {"name": "two", **idle}]))
+    (curve,) = response.curves
+    assert response.complete and curve.regime.shape[1] == 2 and (curve.regime != "").all()
+    assert len(response.left_out) == 3
+    assert curve.peaks["u"][0] == pytest.approx(50.0, rel=1e-2)  # free resonance
+
+
+def test_a_rigid_mode_that_moves_is_refused():
+    contact = {"name": "c", "tangential": "u", "normal": "w", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+    with pytest.raises(ResponseError, match="rigid-body mode"):
+        trace(oscillator(contact=[contact]))
+
+
+def test_no_table_is_opened_without_friction(monkeypatch):
+    monkeypatch.setattr("fcm.table.open_table", lambda *_: pytest.fail("opened"))
+    contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.0, "k_u": 1.0, "k_v": 1.0, "n_0": -1.0}
+    response = trace(oscillator(contact=[contact]))
+    assert response.complete and any(text.startswith("the table") for text in response.left_out)
+
+
+def test_nothing_is_left_out_of_what_a_sweep_needs_anywhere():
+    swept = {"contact.idle.mu": [0.0, 0.4]}
+    response = trace(oscillator(sweep=swept), "closed-form")
+    assert [text.partition(":")[0] for text in response.left_out] == ["contact far", "1 mode of 3"]
+
+
+def test_stability_with_many_modes_is_that_of_all(monkeypatch):
+    scene = replace(structure(MANY + 12, 2, 12, 60.0), max_step=0.3)
+    fast = trace(scene, "closed-form", tolerance=None)
+    monkeypatch.setattr("fcm.response.slow.MANY", 10**6)
+    slow = trace(scene, "closed-form", tolerance=None)
+    np.testing.assert_array_equal(fast.curves[0].stable, slow.curves[0].stable)
+
+
+def test_groups_are_smaller_for_more_contacts():
+    scene = structure(40, 12, 20, 100.0)
+    assert len(sweep.in_groups((scene,) * 40)) > 1
