@@ -98,13 +98,13 @@ def _draw_in_space(axes: Any, drawn: Surface, span: tuple[float, float]) -> None
     axes.set(xlim=drawn.plane.n0_range, ylim=drawn.plane.b_range, zlim=span)
     axes.set_xlabel(N0_SYMBOL, labelpad=-4)
     axes.set_ylabel(B_SYMBOL, labelpad=-2)
-    axes.set_zlabel(MEANING[drawn.coefficient], labelpad=-4)
+    axes.set_zlabel(MEANING[drawn.coefficient], labelpad=-5)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         corner = "lower" if axis is axes.xaxis else None  # two numbers in one corner would touch
         axis.set_major_locator(MaxNLocator(_TICKS, steps=[1, 2, 5, 10], prune=corner))
         axis.set_tick_params(pad=-1, labelsize=7)
     axes.view_init(*_VIEW)
-    axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.95)
+    axes.set_box_aspect((1.2, 1.0, 0.75), zoom=0.9)
 
 
 def _draw_bands(axes: Axes, drawn: Surface, span: tuple[float, float]) -> None:

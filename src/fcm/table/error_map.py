@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
-from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, edges
+from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, boundaries, edges
 from fcm.table.atlas import FloatArray
 from fcm.table.measure import Interpolant
 
 ZOOMS = 4  # times that the worst point is looked for on a finer grid around it
-FINER = 10  # steps to each side of such a grid, as wide as one step of the grid before
+FINER = 10  # steps to each side of such a grid, together as wide as one step of the grid before
+BESIDE = 100  # points between two lines between regimes, crowded towards both
+ROWS = 401  # values of b_bar at which there are such points
+CORNER = np.geomspace(1e-4, 0.1, 25)  # and more of them, at so much from b_bar = 1
+STARTS = 16  # points from which the worst one is sought, of each kind
 
 
 @dataclass(frozen=True)
@@ -31,25 +36,62 @@ class ErrorMap:
 
 def error_map(coefficient: str, plane: Plane, table: Interpolant, steps: tuple[int, int] = CELLS) -> ErrorMap:
     """The error of a table in one of COEFFICIENTS; its greatest is sought between the cells' middles too."""
+
+    def error_at(n0: FloatArray, b: FloatArray) -> FloatArray:
+        index = COEFFICIENTS.index(coefficient)
+        return np.abs(table(n0, b, plane.phi)[index] - fourier_coefficients(n0, b, plane.phi)[index])
+
     n0, b = plane.centres(steps)
-    error = _error(coefficient, plane.phi, table, n0, b)
-    worst, largest = _greatest(error, n0, b)
-    step_n0, step_b = n0[1] - n0[0], b[1] - b[0]
-    for _ in range(ZOOMS):
-        near_n0 = np.clip(worst[0] + step_n0 * np.linspace(-1, 1, 2 * FINER + 1), *plane.n0_range)
-        near_b = np.clip(worst[1] + step_b * np.linspace(-1, 1, 2 * FINER + 1), *plane.b_range)
-        worst, largest = _greatest(_error(coefficient, plane.phi, table, near_n0, near_b), near_n0, near_b)
-        step_n0, step_b = step_n0 / FINER, step_b / FINER
+    error = error_at(n0[None, :], b[:, None])
+    step = (n0[1] - n0[0], b[1] - b[0])
+    starts = _peaks(error, *np.broadcast_arrays(n0[None, :], b[:, None]))
+    beside = _beside_boundaries(plane)
+    starts += _peaks(error_at(*beside), *beside)
+    worst, largest = max((_zoomed(error_at, plane, at, step) for at in starts), key=lambda one: one[1])
     return ErrorMap(coefficient, plane, *plane.nodes(steps), error, edges(plane), worst, largest)
 
 
-def _error(coefficient: str, phi: float, table: Interpolant, n0: FloatArray, b: FloatArray) -> FloatArray:
-    index = COEFFICIENTS.index(coefficient)
-    at = n0[None, :], b[:, None], phi
-    error: FloatArray = np.abs(table(*at)[index] - fourier_coefficients(*at)[index])
-    return error
+def _zoomed(
+    error_at: Callable[[FloatArray, FloatArray], FloatArray],
+    plane: Plane,
+    at: tuple[float, float],
+    step: tuple[float, float],
+) -> tuple[tuple[float, float], float]:
+    """The greatest error near a point, within a step of it and then within smaller ones."""
+    largest = 0.0
+    for shrink in FINER ** -np.arange(float(ZOOMS)):
+        axes = (
+            np.clip(x + h * shrink * np.linspace(-1.0, 1.0, 2 * FINER + 1), *ends)
+            for x, h, ends in zip(at, step, (plane.n0_range, plane.b_range), strict=True)
+        )
+        n0, b = np.meshgrid(*axes)
+        at, largest = _greatest(error_at(n0, b), n0, b)
+    return at, largest
+
+
+def _beside_boundaries(plane: Plane) -> tuple[FloatArray, FloatArray]:
+    """Points (j, i) that crowd towards b_bar = 1 and the lines between the regimes, where ridges are."""
+    low, high = plane.b_range
+    rows = np.concatenate([np.linspace(low, high, ROWS), 1.0 + CORNER, 1.0 - CORNER])
+    rows = np.unique(np.clip(rows, low, high))
+    lines = np.stack([*boundaries(rows, plane.phi).values()], axis=1)  # (j, line)
+    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, BESIDE))
+    between = lines[:, :-1, None] + np.diff(lines, axis=1)[:, :, None] * share
+    n0 = np.clip(between.reshape(len(rows), -1), *plane.n0_range)
+    return n0, np.broadcast_to(rows[:, None], n0.shape)
+
+
+def _peaks(error: FloatArray, n0: FloatArray, b: FloatArray) -> list[tuple[float, float]]:
+    """The greatest errors of rows of points, of those rows that are worse than their neighbours."""
+    of_row = error.max(axis=1)
+    padded = np.pad(of_row, 1)
+    rows = np.flatnonzero((of_row >= padded[:-2]) & (of_row >= padded[2:]))
+    rows = rows[np.argsort(of_row[rows])[-STARTS:]]
+    columns = error[rows].argmax(axis=1)
+    return [(float(n0[place]), float(b[place])) for place in zip(rows, columns, strict=True)]
 
 
 def _greatest(error: FloatArray, n0: FloatArray, b: FloatArray) -> tuple[tuple[float, float], float]:
-    row, column = np.unravel_index(np.argmax(error), error.shape)
-    return (float(n0[column]), float(b[row])), float(error[row, column])
+    """Where an error is greatest, and how great."""
+    index = np.unravel_index(np.argmax(error), error.shape)
+    return (float(n0[index]), float(b[index])), float(error[index])
