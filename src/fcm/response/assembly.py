@@ -32,7 +32,8 @@ class Assembly:
         arguments = at_points.law.arguments(z[:, :-1].reshape(z.shape[0], exact.group.contacts, 5))
         self.regime = sequences(*arguments)
         self.truncation_error = truncation_error(at_points, z)
-        self.stable = stable_points(at_points, z)
+        linear = np.logical_and.reduce(np.isin(self.regime, ("E", "S")), axis=1)
+        self.stable = stable_points(at_points, z, linear)
         self.same = hang_together(points.branch)
 
     def curves(self, scenes: tuple[Scene, ...], dofs: tuple[str, ...]) -> list[Curve]:

@@ -24,7 +24,7 @@ def following(group: Group, omega: FloatArray) -> BoolArray:
     """Which modes follow without delay at all of the frequencies omega (point,)."""
     if group.frequency.shape[1] <= MANY or omega.size == 0:
         return np.zeros(group.frequency.shape[1], dtype=bool)
-    far: BoolArray = (group.frequency > FAR * omega[:, None]).all(axis=0)
+    far: BoolArray = np.logical_and.reduce(group.frequency > FAR * omega[:, None], axis=0)
     far[group.frequency.min(axis=0).argmin()] = False  # at least one that does not
     return far
 
@@ -41,8 +41,8 @@ def with_followers(balance: Balance, far: BoolArray, omega: FloatArray, tangent:
     compliance, _ = modal_compliance(fast.group, omega)
     flexibility = fast.real_matrix(receptance(fast.group, compliance))
     size = tangent.shape[1]
-    softened: FloatArray = np.linalg.solve(np.eye(size) + tangent @ flexibility, tangent)
-    return softened
+    softened = np.linalg.solve(np.eye(size) + tangent @ flexibility, tangent)
+    return np.asarray(softened, dtype=np.float64)
 
 
 def dense(tangent: FloatArray) -> FloatArray:

@@ -27,8 +27,19 @@ ZONE = 0.5  # of the frequency: half the distance between copies of an exponent
 BLOCK = 4_000_000  # elements of the matrices that are held at a time
 
 
-def stable_points(balance: Balance, z: FloatArray) -> BoolArray:
-    """Whether small disturbances of each point do not grow; z (point, unknown + 1)."""
+def stable_points(balance: Balance, z: FloatArray, linear: BoolArray) -> BoolArray:
+    """Whether small disturbances of each point do not grow; z (point, unknown + 1).
+
+    Where the response is linear (point,), every contact stuck or open, the structure is passive and needs
+    no calculation.
+    """
+    stable = linear.copy()
+    some = np.flatnonzero(~linear)
+    stable[some] = _by_exponents(balance.take(some), z[some])
+    return stable
+
+
+def _by_exponents(balance: Balance, z: FloatArray) -> BoolArray:
     size = 6 * int((~following(balance.group, z[:, -1])).sum())
     step = max(BLOCK // size**2, 1)
     parts = [np.arange(first, min(first + step, z.shape[0])) for first in range(0, z.shape[0], step)]
