@@ -9,12 +9,19 @@ import numpy as np
 from fcm.scene.model import FloatArray, Scene
 from fcm.simulate.errors import SimulationError
 from fcm.simulate.periodic import RANK, TOLERANCE, Orbit, Shot, periodic
+from fcm.simulate.run import cycles_from
 from fcm.simulate.system import System
 
 SHORTEST_STEP = 1e-7
 MOST_CORRECTIONS = 8
 FREQUENCY_STEP = 1e-7  # of the difference quotient by frequency, relative
 SHARPEST_TURN = 0.8  # least cosine between successive tangents
+MOST_POINTS = 25  # on a curve, divided by the longest step
+LEAPS = (0.003, 0.03, 0.3)  # across a corner, in longest steps
+LEAP_CYCLES = 30
+MOST_CORNERS = 20
+CORNER = 1e-3  # step around a corner that turns back, in longest steps
+NEAR = 3.0  # distance, in longest steps, within which a solution is on the same curve
 FOLD = 1e-9  # to which a fold is located, relative
 
 
@@ -81,22 +88,32 @@ def trace_orbits(scene: Scene, max_step: float | None = None, start: Orbit | Non
     forward = np.zeros(first.state.q.size * 2 + first.state.friction.size + 1)
     forward[-1] = 1.0
     point = _start(scene, first, forward, high - low)
-    branch, step = Branch([point.shot.orbit(0)]), longest
+    branch, step, corners = Branch([point.shot.orbit(0)]), longest, 0
     while True:
         new = _step(point, step)
         if new is None:
             step *= 0.5
-            if step < SHORTEST_STEP:
+            if step >= SHORTEST_STEP:
+                continue
+            corners += 1
+            new = None if corners > MOST_CORNERS else _leap(point, longest)
+            new = new or _step(point, CORNER * longest, sharpest=-1.0)
+            step = longest / 8.0
+            if new is None or corners > MOST_CORNERS:
                 branch.reason = f"the curve cannot be followed beyond {point.shot.system.omega:g} rad/s"
                 return branch
-            continue
         omega = new.shot.system.omega
         if not low <= omega <= high:
             _finish(branch, scene, point, high if omega > high else low)
+            if omega < low:
+                branch.complete, branch.reason = False, "the curve came back to where it began"
             return branch
         if new.tangent[-1] * point.tangent[-1] < 0.0:
             branch.folds.append(_fold(point, new, step))
         branch.orbits.append(new.shot.orbit(0))
+        if len(branch.orbits) > MOST_POINTS / longest:
+            branch.reason = f"only very short steps succeed near {omega:g} rad/s; try another max_step"
+            return branch
         point, step = new, min(1.5 * step, longest)
 
 
@@ -146,7 +163,7 @@ def _point(shot: Shot, towards: FloatArray, span: float) -> _Point:
     return _Point(shot, tangent / np.linalg.norm(tangent), scale)
 
 
-def _step(point: _Point, size: float) -> _Point | None:
+def _step(point: _Point, size: float, sharpest: float = SHARPEST_TURN) -> _Point | None:
     """The solution a step further along the curve; None if the step is too long."""
     shot = _corrected(point, point.z + size * point.tangent * point.scale)
     if shot is None:
@@ -154,7 +171,31 @@ def _step(point: _Point, size: float) -> _Point | None:
     new = _point(shot, point.tangent * point.scale, float(point.scale[-1]))
     turn = float(new.tangent * new.scale / point.scale @ point.tangent)
     turn /= float(np.linalg.norm(new.tangent * new.scale / point.scale))
-    return new if turn > SHARPEST_TURN or size < 1e-4 else None
+    return new if turn > sharpest else None
+
+
+def _leap(point: _Point, longest: float) -> _Point | None:
+    """A solution beyond a corner of the curve, where steps along it fail: at a frequency a little further.
+
+    It is reached by simulation, and taken only if it is near.
+    """
+    system, span = point.shot.system, float(point.scale[-1])
+    sense = 1.0 if point.tangent[-1] >= 0.0 else -1.0
+    for share in LEAPS:
+        omega = system.omega + sense * share * longest * span
+        if omega <= 0.0:
+            return None
+        beyond = System(system.scene, omega)
+        *_, (_, state) = cycles_from(beyond, LEAP_CYCLES, point.shot.state)
+        z = np.append(np.concatenate((state.q, state.velocity, state.friction)), omega)
+        shot = _corrected(point, z, fixed=True)
+        if shot is not None:
+            away = np.append(shot.x, omega) - point.z
+            if np.linalg.norm(away / point.scale) < NEAR * longest:
+                forward = np.zeros_like(away)
+                forward[-1] = sense
+                return _point(shot, forward, span)
+    return None
 
 
 def _corrected(point: _Point, z: FloatArray, fixed: bool = False) -> Shot | None:
