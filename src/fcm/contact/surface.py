@@ -15,6 +15,7 @@ COEFFICIENTS = ("F_b", "F_s", "F_c")
 N0_RANGE, B_RANGE = (-2.0, 3.0), (0.0, 2.0)  # what is shown unless asked otherwise
 STEPS = (400, 160)  # along n0_bar and b_bar; of equal length, so that n0_bar = +-b_bar are diagonals of cells
 CELLS = (400, 162)  # of unequal length, so that their middles are not on these lines
+FINE_CELLS = (800, 324)  # whose edges are seen as a line
 
 Law = Callable[[FloatArray, FloatArray, float], tuple[FloatArray, FloatArray, FloatArray]]
 
@@ -104,7 +105,7 @@ class Regions:
     edges: Edges
 
 
-def regions(plane: Plane, steps: tuple[int, int] = CELLS) -> Regions:
+def regions(plane: Plane, steps: tuple[int, int] = FINE_CELLS) -> Regions:
     """The sequences of `hysteresis_loop` over a plane, in the middle of each cell."""
     n0, b = plane.centres(steps)
     found = sequences(n0[None, :], b[:, None], plane.phi)

@@ -14,7 +14,7 @@ from fcm.table.measure import Interpolant
 
 ZOOMS = 4  # times that the worst point is looked for on a finer grid around it
 FINER = 10  # steps to each side of such a grid, together as wide as one step of the grid before
-BESIDE = 100  # points between two lines between regimes, crowded towards both
+BESIDE = 250  # points between two lines between regimes, crowded towards both
 ROWS = 401  # values of b_bar at which there are such points
 CORNER = np.geomspace(1e-4, 0.1, 25)  # and more of them, at so much from b_bar = 1
 STARTS = 16  # points from which the worst one is sought, of each kind
