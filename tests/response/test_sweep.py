@@ -204,6 +204,36 @@ def test_ctrl_c_and_resume_give_the_same_file(tmp_path):
             np.testing.assert_array_equal(one[name][...], two[name][...])
 
 
+DEADLY = """
+import os
+from dataclasses import replace
+import fcm
+from fcm.response import sweep
+from fcm.response.law import ClosedForm
+
+class Deadly(ClosedForm):
+    def gradients(self, n0_bar, b_bar, phi):
+        if n0_bar.max() > 1e9:
+            os._exit(9)
+        return ClosedForm.gradients(n0_bar, b_bar, phi)
+
+if __name__ == "__main__":
+    sweep.LARGEST_GROUP = 1
+    scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
+    curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]
+    response = sweep.trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2)
+    print([(curve.complete, curve.reason[:31]) for curve in response.curves])
+"""
+
+
+def test_a_process_that_dies_loses_no_other_curve(tmp_path):
+    (tmp_path / "deadly.py").write_text(DEADLY)
+    done = subprocess.run([sys.executable, "deadly.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.stdout == "[(True, ''), (False, 'its process ended unexpectedly,'), (True, '')]\n", (
+        done.stderr
+    )
+
+
 def test_resume_needs_a_file(tmp_path):
     run = [sys.executable, "-m", "fcm.cli", "respond", "yang1998", "--resume"]
     done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)

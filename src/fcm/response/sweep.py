@@ -70,7 +70,7 @@ def trace(
     sentences = list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
-        if 2.0 * shift <= tolerance:
+        if 2.0 * shift <= tolerance or interrupted(response):
             sentences.append(sentence_on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
             lighter = leave_out(curves, 0.0)
