@@ -22,24 +22,23 @@ if TYPE_CHECKING:
 MOST_PANELS = 8
 FARTHEST = 1e6  # of a range that is drawn; beyond, nothing changes that could be seen
 NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401
+LONGEST_NAME = 50  # characters
 SPACE_STEPS = (100, 40)  # of a surface in space; finer ones can not be seen
 
 
-class Phase(click.ParamType[float]):
+def _phases(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
+    return tuple(map(_phase, texts))
+
+
+def _phase(text: str) -> float:
     """A number of radians, or of degrees: 0.5, 15deg."""
-
-    name = "phase"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        text = str(value).strip()
-        in_degrees = text.endswith("deg")
-        try:
-            number = float(text.removesuffix("deg"))
-        except ValueError:
-            number = math.nan
-        if not math.isfinite(number):
-            self.fail(f"{text!r} is no angle; it is a number of radians, or of degrees as 15deg.", param, ctx)
-        return math.radians(number) if in_degrees else number
+    try:
+        number = float(text.removesuffix("deg"))
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise click.BadParameter(f"{text!r} is no angle; it is a number of radians, or of degrees as 15deg.")
+    return math.radians(number) if text.endswith("deg") else number
 
 
 def _range(_ctx: click.Context, _param: click.Parameter, value: tuple[float, float]) -> tuple[float, float]:
@@ -70,7 +69,7 @@ def _over_the_plane(output: str, phase: str) -> Callable[[Any], Any]:
             help="Mean force, stiffness or damping; may be repeated.",
         ),
         click.option(
-            "--phi", "phases", multiple=True, type=Phase(), default=(phase,),
+            "--phi", "phases", multiple=True, default=(phase,), callback=_phases,
             show_default=True, metavar="ANGLE",
             help="Phase of the normal motion before the tangential, in radians or as 15deg; may be repeated.",
         ),
@@ -183,9 +182,8 @@ def error(
     shown = _panels(coefficients, phases, n0_range, b_range)
     opened = _opened(table)
     maps = [error_map(name, plane, opened) for name, plane in shown]
-    _save(
-        draw_errors(maps, "Error of " + ("the shipped table" if table is None else Path(table).name)), output
-    )
+    name = "the shipped table" if table is None else Path(table).name
+    _save(draw_errors(maps, f"Error of {_shorten(name)}"), output)
     worst = max(maps, key=lambda one: one.largest)
     n0, b = worst.worst
     messages.info(
@@ -210,6 +208,11 @@ def normal(messages: Messages, output: Path) -> None:
     n0_star = np.linspace(*NORMAL_RANGE, NORMAL_POINTS)
     _save(draw_normal(n0_star, *normal_coefficients(n0_star)), output)
     messages.info(f"wrote {output}")
+
+
+def _shorten(name: str) -> str:
+    """A name as long as a picture is wide, at most."""
+    return name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…"
 
 
 def _opened(table: str | None) -> Any:
