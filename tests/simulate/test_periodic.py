@@ -110,3 +110,12 @@ def test_a_curve_of_two_contacts():
     middle = min(branch.orbits, key=lambda orbit: abs(orbit.frequency - 1.4))
     again = periodic(scene, middle.frequency)
     assert again.measure.amplitude == pytest.approx(middle.measure.amplitude, rel=1e-8)
+
+
+@pytest.mark.parametrize(("n_0", "folds"), [(10.0, 0), (2.0, 0), (0.0, 0), (-5.0, 2), (-20.0, 2), (-60.0, 0)])
+def test_the_preloads_of_figure_13_over_the_whole_range(n_0, folds):
+    """Through the corners where contacts begin to slip or to separate, and never back."""
+    branch = trace_orbits(yang(n_0))
+    assert branch.complete, branch.reason
+    assert len(branch.folds) == folds
+    assert branch.orbits[-1].frequency == yang().frequency_range[1]

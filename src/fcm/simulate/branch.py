@@ -141,14 +141,21 @@ def _finish(branch: Branch, scene: Scene, last: _Point, end: float) -> None:
 
 def _matrix(shot: Shot, scale: FloatArray) -> FloatArray:
     """Derivative of the closure by x and frequency, in units of scale: (unknown, unknown + 1)."""
-    delta = FREQUENCY_STEP * shot.system.omega
-    ahead = Shot(System(shot.system.scene, shot.system.omega + delta), shot.x, choose=True)
-    by_frequency = (ahead.gap - shot.gap) / delta
+    for sense in (1.0, -1.0):
+        delta = sense * FREQUENCY_STEP * shot.system.omega
+        near = Shot(System(shot.system.scene, shot.system.omega + delta), shot.x, choose=True)
+        by_frequency = (near.gap - shot.gap) / delta
+        if _sequence(near) == _sequence(shot):
+            break  # else the quotient is across a corner, which the derivative by x is not
     for choice in shot.chosen:
         if not choice.limited:  # w = 0 at every frequency, though the neighbour may just slip
             by_frequency[2 * shot.system.modes + choice.contact] = 0.0
     columns: FloatArray = np.column_stack((shot.closure, by_frequency)) * scale / scale[:-1, None]
     return columns
+
+
+def _sequence(shot: Shot) -> list[str]:
+    return [segment.states for segment in shot.segments]
 
 
 def _point(shot: Shot, towards: FloatArray, span: float) -> _Point:
