@@ -43,7 +43,7 @@ def structure(modes, contacts, dofs, top, **more):
 def bound(response):
     """The number in the sentence on modes."""
     (sentence,) = [text for text in response.left_out if "far above" in text]
-    return float(sentence.rpartition(" ")[2].strip(")"))
+    return float(sentence.partition("less than ")[2].partition(",")[0])
 
 
 def test_five_hundred_modes_within_the_bound():
@@ -141,7 +141,7 @@ def test_a_scene_whose_contacts_are_all_idle_is_linear():
     response = trace(oscillator(contact=[{"name": "one", **idle}, {"name": "two", **idle}]))
     (curve,) = response.curves
     assert response.complete and curve.regime.shape[1] == 2 and (curve.regime != "").all()
-    assert len(response.left_out) == 3
+    assert len(response.left_out) == 4  # the contacts, a mode, the table
     assert curve.peaks["u"][0] == pytest.approx(50.0, rel=1e-2)  # free resonance
 
 

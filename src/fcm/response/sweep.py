@@ -65,9 +65,12 @@ def trace(
     begin = time.perf_counter()
     curves = scene.each_curve()
     lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance)
+    sentences = list(lighter.sentences)
+    if tolerance is not None and method == "table" and table is None and lighter.idle_table:
+        sentences.append("the table: no contact has friction (no effect)")
+        table = ClosedForm()
     sweep = _Sweep(scene, method, table, progress, jobs or os.cpu_count() or 1, keep, resume)
     response = sweep.run(lighter)
-    sentences = list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or interrupted(response):
@@ -103,7 +106,7 @@ class _Sweep:
         kept = Kept(several, mark, self.resume)
         left = {number: group for number, group in groups.items() if number not in kept.finished}
         try:
-            for number, curves in self._finished(lighter, left):
+            for number, curves in self._finished(left):
                 kept.add(number, curves)
             kept.remove()
         except KeyboardInterrupt:
@@ -112,9 +115,8 @@ class _Sweep:
                 raise
         return self._response(groups, kept.finished)
 
-    def _finished(self, lighter: Lighter, groups: dict[int, Group]) -> Finished:
-        table = _table_for(lighter, self.method, self.table)
-        work = Work(self.method, table)
+    def _finished(self, groups: dict[int, Group]) -> Finished:
+        work = Work(self.method, self.table or _shipped_table() if self.method == "table" else None)
         if self.jobs > 1 and len(groups) > 1:
             from fcm.response.cores import on_cores
 
@@ -130,12 +132,8 @@ class _Sweep:
         return Response(scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit)
 
 
-def _table_for(lighter: Lighter, method: str, table: Coefficients | None) -> Coefficients | None:
-    """The table to trace with, opened once for all groups; none where no contact has friction."""
-    if method != "table" or table is not None:
-        return table
-    if lighter.idle_table:
-        return ClosedForm()
+def _shipped_table() -> Coefficients:
+    """The shipped table, opened once for all groups."""
     from fcm.table import open_table
 
     return open_table()
