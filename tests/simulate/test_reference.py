@@ -12,7 +12,6 @@ from .reference import integrate, marched
 
 CASES = [
     ("n_0 = 5", 1.3),
-    ("n_0 = 0", 1.1),
     ("n_0 = -2", 1.15),
     ("one mode", 1.1),
     ("two contacts", 1.3),

@@ -65,7 +65,8 @@ def trace_orbits(scene: Scene, max_step: float | None = None, start: Orbit | Non
     Returns
     -------
     Branch
-        Its folds are located to 1e-9 of their frequency.
+        Its folds are located to 1e-9 of their frequency. Where regimes begin the curve has corners; it
+        may be left incomplete there, with a reason, and then succeeds with another max_step.
 
     Raises
     ------
@@ -90,18 +91,11 @@ def trace_orbits(scene: Scene, max_step: float | None = None, start: Orbit | Non
     point = _start(scene, first, forward, high - low)
     branch, step, corners = Branch([point.shot.orbit(0)]), longest, 0
     while True:
-        new = _step(point, step)
-        if new is None:
-            step *= 0.5
-            if step >= SHORTEST_STEP:
-                continue
-            corners += 1
-            new = None if corners > MOST_CORNERS else _leap(point, longest)
-            new = new or _step(point, CORNER * longest, sharpest=-1.0)
-            step = longest / 8.0
-            if new is None or corners > MOST_CORNERS:
-                branch.reason = f"the curve cannot be followed beyond {point.shot.system.omega:g} rad/s"
-                return branch
+        new, step, corner = _advance(point, step, longest)
+        corners += corner
+        if new is None or corners > MOST_CORNERS:
+            branch.reason = f"the curve cannot be followed beyond {point.shot.system.omega:g} rad/s"
+            return branch
         omega = new.shot.system.omega
         if not low <= omega <= high:
             _finish(branch, scene, point, high if omega > high else low)
@@ -115,6 +109,17 @@ def trace_orbits(scene: Scene, max_step: float | None = None, start: Orbit | Non
             branch.reason = f"only very short steps succeed near {omega:g} rad/s; try another max_step"
             return branch
         point, step = new, min(1.5 * step, longest)
+
+
+def _advance(point: _Point, step: float, longest: float) -> tuple[_Point | None, float, bool]:
+    """The next point, the step that led there, and whether it was across a corner."""
+    while step >= SHORTEST_STEP:
+        new = _step(point, step)
+        if new is not None:
+            return new, step, False
+        step *= 0.5
+    beyond = _leap(point, longest) or _step(point, CORNER * longest, sharpest=-1.0)
+    return beyond, longest / 8.0, True
 
 
 def _start(scene: Scene, first: Orbit, forward: FloatArray, span: float) -> _Point:
