@@ -9,7 +9,7 @@ DRAWN  := $(wildcard src/fcm/contact/*.py src/fcm/plot/*.py src/fcm/cli/coeffici
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo picture figures test check tables clean bench
+.PHONY: help demo picture figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -43,6 +43,9 @@ check: $(VENV)/installed-dev  ## format, lint and types only
 tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
 	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
+
+study: $(VENV)/installed  ## two hundred random scenes, each with three step limits: do the answers agree?
+	$(BIN)/python tests/response/random_scenes.py
 
 bench: $(VENV)/installed  ## run times beside one another: closed form, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py

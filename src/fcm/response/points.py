@@ -11,8 +11,8 @@ from fcm.response.balance import Balance
 from fcm.response.branches import Branches, hang_together
 from fcm.response.displacement import displacement_rates, displacements
 from fcm.response.extrema import fold_rate, locate
-from fcm.response.path import BoolArray, amplitudes, correct, scales
-from fcm.response.segment import EXACT, ITERATIONS, Segments
+from fcm.response.path import BoolArray, amplitudes, scales
+from fcm.response.segment import Segments, correct_exactly
 from fcm.response.structure import AnyArray, IntArray
 
 NEARLY_HIGHEST = 0.7  # a maximum between points may exceed them by this factor
@@ -59,7 +59,7 @@ def corrected(exact: Balance, branches: Branches) -> Points:
     row[ends] = np.eye(path.z.shape[1])[-1]  # the ends of the range stay where they are
     row /= np.sqrt((row * row).sum(axis=1, keepdims=True))
     balance = exact.take(curve)
-    new = correct(balance, path.z, scale, row, EXACT, ITERATIONS)
+    new = correct_exactly(balance, path.z, scale, row)
     z = np.where(new.converged[:, None], new.z, path.z)
     z[ends, -1] = path.z[ends, -1]
     before, _ = displacements(balance, path.z[:, :-1], path.z[:, -1])

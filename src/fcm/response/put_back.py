@@ -14,7 +14,7 @@ from fcm.response.leave_out import Lighter
 from fcm.response.path import amplitudes, correct, scales
 from fcm.response.points import extent
 from fcm.response.result import Curve, Response
-from fcm.response.segment import EXACT, ITERATIONS
+from fcm.response.segment import correct_exactly
 from fcm.response.structure import IntArray, group_of
 from fcm.scene.model import Scene
 
@@ -91,7 +91,7 @@ def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
     row = correct(balance, z, scale, row, iterations=1).tangent  # the tangent, to first order
     usable = np.isfinite(row).all(axis=1)  # not so in a fold itself
     row[~usable] = np.eye(z.shape[1])[-1]
-    new = correct(balance, z, scale, row, EXACT, ITERATIONS)
+    new = correct_exactly(balance, z, scale, row)
     X, _ = displacements(balance, new.z[:, :-1], new.z[:, -1])
     before = curve.amplitude[at] * np.exp(1j * curve.phase[at])
     # what the correction moved along the frequency counts as well, relative to the range

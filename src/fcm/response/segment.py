@@ -12,8 +12,14 @@ from fcm.response.path import Newton, amplitudes, correct, scales
 from fcm.response.structure import IntArray
 
 EXACT = 1e-13  # estimated error of a corrected point, relative
+NEAR = 1e-6  # how near a guess is taken to be: a first step above sqrt(EXACT NEAR) is not the last
 ITERATIONS = 12
 ALONG = 0.3  # cosine to the chord below which an end's direction belongs to a corner and is not used
+
+
+def correct_exactly(exact: Balance, guess: FloatArray, scale: FloatArray, row: FloatArray) -> Newton:
+    """To rounding; with stiff contacts the direction, too, needs a Jacobian taken at the solution."""
+    return correct(exact, guess, scale, row, EXACT, ITERATIONS, reach=NEAR)
 
 
 @dataclass
@@ -54,7 +60,7 @@ class Segments:
         first, last = self.slopes
         guess = self.start + s * s * (3.0 - 2.0 * s) * self.chord
         guess += s * (1.0 - s) * ((1.0 - s) * first - s * last)
-        new = correct(exact.take(self.curve), guess, self.scale, self.row, EXACT, ITERATIONS)
+        new = correct_exactly(exact.take(self.curve), guess, self.scale, self.row)
         away = np.sqrt((((new.z - guess) / self.scale) ** 2).sum(axis=1))
         new.converged &= away < self.length  # a solution further off is of another part of the curve
         new.tangent = self.scale * new.tangent

@@ -1,0 +1,105 @@
+"""Random scenes traced with three step limits: ``make study`` prints what became of them.
+
+One to four contacts between random degrees of freedom, two to twelve modes, preloads from open to stuck,
+friction from 0 to 2, stiffness ratios from 1e-3 to 1e6, damping from 0 to 0.1.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.response import Curve, trace
+from fcm.scene.model import Contact, Force, Modal, Scene
+
+STEPS = (0.1, 0.05, 0.02)
+AGREE = 1e-5  # relative, of peaks and folds between the steps
+
+
+def random_scene(seed: int) -> Scene:
+    rng = np.random.default_rng(seed)
+    modes, dofs = int(rng.integers(2, 13)), int(rng.integers(2, 9))
+    frequency = np.concatenate(([1.0], np.sort(rng.uniform(1.0, 10.0, modes - 1))))
+    damping = np.zeros(modes) if rng.random() < 0.1 else 10.0 ** rng.uniform(-4.0, -1.0, modes)
+    names = tuple(f"d{i}" for i in range(dofs))
+    modal = Modal(names, np.ones(modes), frequency, damping, rng.normal(size=(modes, dofs)))
+    contacts = tuple(_contact(rng, f"c{k}", dofs) for k in range(rng.integers(1, 5)))
+    forces = tuple(
+        Force(np.eye(dofs)[rng.integers(dofs)], 1.0, float(rng.uniform(0.0, 2.0 * np.pi)))
+        for _ in range(rng.integers(1, 3))
+    )
+    span = (float(rng.uniform(0.3, 0.8)), float(rng.uniform(1.3, 3.0)))
+    return Scene(f"random {seed}", modal, contacts, forces, span, 0.05)
+
+
+def _contact(rng: np.random.Generator, name: str, dofs: int) -> Contact:
+    first, second = rng.choice(dofs, 2, replace=False)
+    tangential, normal = np.eye(dofs)[first], np.eye(dofs)[second]
+    if rng.random() < 0.4:  # between two points of the structure
+        tangential = tangential - 0.8 * np.eye(dofs)[rng.integers(dofs)]
+        normal = normal - 0.7 * np.eye(dofs)[rng.integers(dofs)]
+    stiff = rng.random() < 0.3
+    k_u = float(10.0 ** (rng.uniform(-3.0, 6.0) if stiff else rng.uniform(-1.0, 2.0)))
+    k_v = float(k_u * 10.0 ** rng.uniform(-1.0, 1.0))
+    mu = 0.0 if rng.random() < 0.05 else float(rng.uniform(0.0, 2.0))
+    n_0 = float(rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2.0, 2.0))
+    return Contact(name, tangential, normal, mu, k_u, k_v, n_0)
+
+
+@dataclass
+class Outcome:
+    seed: int
+    curves: list[Curve]
+
+    @property
+    def complete(self) -> bool:
+        return all(curve.complete for curve in self.curves)
+
+    @property
+    def reasons(self) -> set[str]:
+        return {curve.reason.split(": ")[-1] for curve in self.curves if not curve.complete}
+
+    @property
+    def disagreement(self) -> float:
+        """Greatest relative difference of a peak or a fold from those of the finest step."""
+        finest = self.curves[-1]
+        return max(self._difference(curve, finest) for curve in self.curves[:-1])
+
+    @staticmethod
+    def _difference(one: Curve, other: Curve) -> float:
+        if len(one.folds) != len(other.folds):
+            return np.inf
+        pairs = [(one.peaks[dof][0], other.peaks[dof][0]) for dof in one.peaks]
+        pairs += list(zip(one.folds, other.folds, strict=True))
+        return max(abs(a / b - 1.0) for a, b in pairs)
+
+
+def outcome(seed: int) -> Outcome:
+    scene = random_scene(seed)
+    return Outcome(seed, [trace(replace(scene, max_step=step)).curves[0] for step in STEPS])
+
+
+def main(count: int = 200) -> None:
+    reasons: Counter[str] = Counter()
+    agree, differ = 0, []
+    for seed in range(count):
+        result = outcome(seed)
+        print(f"\r{seed + 1} of {count}", end="", file=sys.stderr, flush=True)
+        reasons.update(result.reasons)
+        if result.complete:
+            good = result.disagreement < AGREE
+            agree += good
+            differ += [] if good else [(seed, result.disagreement)]
+    print(file=sys.stderr)
+    print(f"{count} random scenes, each with the step limits {STEPS}")
+    print(f"{agree:5d}  complete; peaks and folds agree between the steps to {AGREE:g}")
+    print(f"{len(differ):5d}  complete; they differ by more (seed, by): {differ}")
+    for reason, number in reasons.most_common():
+        print(f"{number:5d}  stopped: {reason}")
+
+
+if __name__ == "__main__":
+    main(*(int(word) for word in sys.argv[1:]))
