@@ -6,6 +6,7 @@ import pytest
 from fcm import fourier_coefficients
 from fcm.table import atlas, build_table, open_table, spline
 from fcm.table.nodes import PRESETS, all_nodes
+from fcm.table.part import Part
 from fcm.table.vanishing import vanishing_variation
 
 
@@ -63,7 +64,7 @@ def test_vanishing_variation_is_the_limit_of_the_closed_form(b):
 
 
 def test_nodes_rise_from_open_to_the_slip_limit():
-    n0, b, phi = all_nodes(PRESETS["fast"])
+    n0, b, phi = all_nodes(Part.all_of(PRESETS["fast"]))
     assert np.all(np.diff(n0, axis=0) >= -1e-15 * b[1:])
     assert np.array_equal(n0[0], -b[0])
     assert np.all(np.diff(b[0], axis=0) > 0) and np.all(np.diff(phi[0, 0]) > 0)
@@ -99,7 +100,7 @@ def test_flat_ends_have_no_slope():
 
 def test_table_passes_through_its_nodes(tiny_file):
     table = open_table(tiny_file)
-    n0, b, phi = (field[1:, 1:-1, 1:-1] for field in all_nodes(table.resolution))
+    n0, b, phi = (field[1:, 1:-1, 1:-1] for field in all_nodes(table.part))
     error = np.abs(np.stack(table(n0, b, phi)) - np.stack(fourier_coefficients(n0, b, phi)))
     assert error[:, b < 100.0].max() < 1e-6
 

@@ -92,7 +92,7 @@ def test_values_that_are_not_finite(copy):
 
 
 def test_not_finite_even_if_sealed(tmp_path, tiny_file):
-    separation, slip, error = store.load(tiny_file)
+    separation, slip, error, _ = store.load(tiny_file)
     slip[0, 2, 2, 2] = np.inf
     path = tmp_path / "t.nc"
     store.write(path, store.encode(separation, slip), error, "test")

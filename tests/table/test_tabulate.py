@@ -52,7 +52,7 @@ def test_verify_agrees(run):
 
 
 def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
-    separation, slip, error = store.load(tiny_file)
+    separation, slip, error, _ = store.load(tiny_file)
     better = {**error, "max": 0.5 * error["max"]}
     store.write("lie.nc", store.encode(separation, slip), better, "test")
     done = run("--verify", "lie.nc")

@@ -110,8 +110,13 @@ def _traced(
     if max_step is not None:
         loaded = _with_step(loaded, max_step)
     messages.detail(f"{loaded.title or scene}: curves to trace: {len(loaded.each_curve())}, method: {method}")
-    response = trace(loaded, method=method, table=_opened(table), progress=messages.progress, **options)
+    opened = _opened(table)
+    response = trace(loaded, method=method, table=opened, progress=messages.progress, **options)
     messages.clear()
+    if outside := getattr(opened, "outside", 0):
+        messages.info(
+            f"{table}: {outside} look-ups outside the part it holds were answered by the closed form"
+        )
     return response
 
 

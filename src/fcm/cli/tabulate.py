@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fcm.table.study import Row
 
 DEFAULT_OUTPUT = "table.nc"
+POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the user says
 
 
 @click.command()
@@ -33,6 +34,10 @@ DEFAULT_OUTPUT = "table.nc"
 @click.option(
     "--nodes", type=int, nargs=4, metavar="U U X Z", callback=lambda _ctx, _param, value: _resolution(value),
     help="Nodes of your own: along n0_bar in separation and in slip, b_bar, phi.  [default: the preset's]",
+)  # fmt: skip
+@click.option(
+    "--for", "scene", metavar="SCENE",
+    help="Only the part of the table that the response of this scene looks up.",
 )  # fmt: skip
 @click.option(
     "--points", type=click.IntRange(10_000, 100_000_000), default=1_000_000, show_default=True,
@@ -57,6 +62,7 @@ def tabulate(
     output: Path,
     preset: str,
     nodes: Resolution | None,
+    scene: str | None,
     points: int,
     verify: Path | None,
     study: Path | None,
@@ -74,7 +80,9 @@ def tabulate(
         _alone(ctx, "study")
         _study(messages, study, to_json)
     else:
-        _build(messages, output, preset, nodes, points, to_json)
+        if scene is not None and ctx.get_parameter_source("points") is click.core.ParameterSource.DEFAULT:
+            points = POINTS_OF_PART
+        _build(messages, output, preset, nodes, scene, points, to_json)
 
 
 def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
@@ -89,14 +97,21 @@ def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int,
 
 def _alone(ctx: click.Context, option: str) -> None:
     """An option that builds nothing has no use for those that say what to build, nor for another such."""
-    for name in {"output", "preset", "nodes", "points", "verify", "study"} - {option}:
+    for name in {"output", "preset", "nodes", "scene", "points", "verify", "study"} - {option}:
         if ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
-            raise click.UsageError(f"--{name} is of no use with --{option}.")
+            raise click.UsageError(f"--{'for' if name == 'scene' else name} is of no use with --{option}.")
 
 
 def _build(
-    messages: Messages, output: Path, preset: str, nodes: Resolution | None, points: int, to_json: bool
+    messages: Messages,
+    output: Path,
+    preset: str,
+    nodes: Resolution | None,
+    scene: str | None,
+    points: int,
+    to_json: bool,
 ) -> None:
+    from fcm.cli.part import reached, saving
     from fcm.table import build_table
     from fcm.table.nodes import PRESETS
 
@@ -104,7 +119,9 @@ def _build(
     began = time.perf_counter()
     with _Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
-        table = build_table(output, resolution, points, progress, made_by)
+        part = None if scene is None else reached(messages, scene, resolution)
+        made_by += "" if scene is None else f" --for {scene}"
+        table = build_table(output, resolution, points, progress, made_by, part)
     seconds = time.perf_counter() - began
     size = output.stat().st_size
     result = {
@@ -114,28 +131,37 @@ def _build(
         "seconds": seconds,
         "error": table.error,
     }
+    if part is not None:
+        result["part"], sentence = saving(output, part)
+        messages.info(sentence)
     click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _as_table(table.error))
     messages.info(f"wrote {output}: {size / 1e6:.1f} MB in {seconds:.1f} s; {_error_line(table.error)}")
 
 
 def _verify(messages: Messages, path: Path, to_json: bool) -> None:
     from fcm.table import open_table
-    from fcm.table.measure import disagreement, measure
+    from fcm.table.measure import disagreement, measure, sample
 
     table = open_table(path)
     began = time.perf_counter()
     recorded = table.error
     if "points" not in recorded:
         raise click.UsageError(f"{path} records no error that could be verified.")
+    drawn = sample if table.part.whole else table.part.sample
     with _Interruptible(messages, "the table was not verified") as progress:
         again = measure(
-            table, recorded["points"], recorded["seed"], lambda share: progress(share / 2, "same points")
+            table,
+            recorded["points"],
+            recorded["seed"],
+            lambda share: progress(share / 2, "same points"),
+            drawn,
         )
         fresh = measure(
             table,
             recorded["points"],
             recorded["seed"] + 1,
             lambda share: progress((1 + share) / 2, "new points"),
+            drawn,
         )
     found = disagreement(recorded, again, fresh)
     result = {

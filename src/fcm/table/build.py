@@ -12,8 +12,9 @@ from fcm.table import atlas, store
 from fcm.table.atlas import FloatArray, Phase
 from fcm.table.locate import Resolution
 from fcm.table.lookup import Table
-from fcm.table.measure import POINTS, measure
-from fcm.table.nodes import PRESETS, Nodes, problem, separation_nodes, slip_nodes, unit
+from fcm.table.measure import POINTS, measure, sample
+from fcm.table.nodes import PRESETS, Nodes, axes, problem, separation_nodes, slip_nodes
+from fcm.table.part import Part
 from fcm.table.vanishing import vanishing_variation
 
 BUILT, MEASURED = 0.25, 0.95  # shares of the work done, for the progress
@@ -27,6 +28,7 @@ def build_table(
     points: int = POINTS,
     progress: Progress | None = None,
     history: str = "fcm.table.build_table",
+    part: Part | None = None,
 ) -> Table:
     """Build a table from the closed form, measure its error, write it and return it.
 
@@ -43,6 +45,8 @@ def build_table(
         Called with the share of the work done, from 0 to 1, and what is being done.
     history : str
         What made the table, for the file.
+    part : Part, optional
+        Only these nodes, of the same resolution; elsewhere the table then answers with the closed form.
 
     Raises
     ------
@@ -54,44 +58,48 @@ def build_table(
     if reason := problem(resolution):
         raise ValueError(f"resolution {resolution}: {reason}")
     done = (lambda share, what: None) if progress is None else progress
-    separation, slip = charts(resolution, lambda share: done(share * BUILT, "building"))
-    arrays = store.encode(separation, slip)
-    separation, slip = store.decode(arrays)  # with the rounding of the file
-    error = measure(
-        Table(separation, slip),
+    part = Part.all_of(resolution) if part is None else part
+    arrays = store.encode(*charts(part, lambda share: done(share * BUILT, "building")), part)
+    table = Table(*store.decode(arrays, part), part=part)  # with the rounding of the file
+    done(BUILT, "measuring the error")
+    table.error = measure(
+        table,
         points,
         progress=lambda share: done(BUILT + share * (MEASURED - BUILT), "measuring the error"),
+        drawn=sample if part.whole else part.sample,
     )
     done(MEASURED, "writing")
-    store.write(path, arrays, error, history)
-    return Table(separation, slip, error)
+    store.write(path, arrays, table.error, history, part)
+    return table
 
 
 def charts(
-    resolution: Resolution, progress: Callable[[float], None] = lambda share: None
+    part: Part, progress: Callable[[float], None] = lambda share: None
 ) -> tuple[FloatArray, FloatArray]:
-    """Reduced coefficients G at all nodes of separation and of slip, shapes (3, nu, nx, nz)."""
-    nu_1, nu_2, nx, nz = resolution
-    x, z = unit(nx), unit(nz)
-    separation, slip = np.empty((3, nu_1, nx, nz)), np.empty((3, nu_2, nx, nz))
-    for k, u in enumerate(unit(nu_1)):
-        separation[:, k] = _reduced_separation(separation_nodes(u[None], x, z))[:, 0]
+    """Reduced coefficients G at the nodes of separation and of slip, shapes (3, nu, nx, nz)."""
+    u_1, u_2, x, z = axes(part)
+    nu_1, nu_2 = u_1.size, u_2.size
+    separation, slip = (np.empty((3, n, x.size, z.size)) for n in (nu_1, nu_2))
+    limit = int(x[0] == 0.0)
+    for k, u in enumerate(u_1):
+        separation[:, k] = _reduced_separation(separation_nodes(u[None], x, z), limit)[:, 0]
         progress(k / (nu_1 + nu_2))
-    for k, u in enumerate(unit(nu_2)):
+    for k, u in enumerate(u_2):
         slip[:, k] = _reduced_slip(slip_nodes(u[None], x, z, resolved=True))[:, 0]
         progress((nu_1 + k) / (nu_1 + nu_2))
-    delta = atlas.delta_separation(unit(nu_1), np.zeros(1))
-    separation[:, :, 0] = vanishing_variation(*np.meshgrid(delta, atlas.phi_phase(z), indexing="ij"))
-    separation[:, -1] = 0.0  # fully open
-    slip[:, -1] = 0.0  # at the slip limit
+    if limit:
+        delta = atlas.delta_separation(u_1, np.zeros(1))
+        separation[:, :, 0] = vanishing_variation(*np.meshgrid(delta, atlas.phi_phase(z), indexing="ij"))
+    separation[:, u_1 == 1.0] = 0.0  # fully open
+    slip[:, u_2 == 1.0] = 0.0  # at the slip limit
     return separation, slip
 
 
-def _reduced_separation(nodes: Nodes) -> FloatArray:
-    """G = F (1 + b) / b; at x = 0, which is the limit b -> 0, left undone."""
+def _reduced_separation(nodes: Nodes, first: int) -> FloatArray:
+    """G = F (1 + b) / b; before the first x left undone, as x = 0 is the limit b -> 0."""
     G = np.zeros((3, *nodes.b_bar.shape))
-    n0, b, phi = (field[:, 1:] for field in nodes)
-    G[:, :, 1:] = np.stack(fourier_coefficients(n0, b, phi)) * ((1.0 + b) / b)
+    n0, b, phi = (field[:, first:] for field in nodes)
+    G[:, :, first:] = np.stack(fourier_coefficients(n0, b, phi)) * ((1.0 + b) / b)
     return G
 
 

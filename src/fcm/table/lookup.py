@@ -10,6 +10,7 @@ import numpy.typing as npt
 from fcm.table import spline
 from fcm.table.atlas import FloatArray
 from fcm.table.locate import Resolution, locate
+from fcm.table.part import Frame, Part
 
 BLOCK = 4096  # points at a time, so that the intermediate arrays stay in the processor's cache
 LARGEST, FARTHEST = 1e300, 2e300  # of b_bar, of n0_bar: an infinite preload or gap is as this one
@@ -24,6 +25,10 @@ class Table:
         Nodes along u in separation, along u in slip, along x, along z.
     error : dict
         The absolute error [-] measured when the table was built, see `fcm.table.measure`.
+    part : Part
+        The nodes that the table has; of one for a certain scene, not all.
+    outside : int
+        Points looked up so far that these nodes do not answer for: they are from the closed form.
 
     Examples
     --------
@@ -34,16 +39,27 @@ class Table:
     0.5000 0.3183
     """
 
-    def __init__(self, separation: FloatArray, slip: FloatArray, error: dict[str, Any] | None = None) -> None:
+    def __init__(
+        self,
+        separation: FloatArray,
+        slip: FloatArray,
+        error: dict[str, Any] | None = None,
+        part: Part | None = None,
+    ) -> None:
         """From the reduced coefficients G of the two charts, shapes (3, n, nx, nz)."""
         _, nodes_1, nodes_x, nodes_z = separation.shape
-        self.resolution: Resolution = (nodes_1, slip.shape[1], nodes_x, nodes_z)
+        self.part = Part.all_of((nodes_1, slip.shape[1], nodes_x, nodes_z)) if part is None else part
+        self.resolution: Resolution = self.part.resolution
         self.error = {} if error is None else error
-        flat, free = (spline.FLAT, spline.FLAT), (spline.FREE, spline.FREE)
-        self._coefficients = spline.stack(
-            spline.interpolate(separation, (flat, free, free)),
-            spline.interpolate(slip, (flat, (spline.FLAT, spline.FREE), free)),
+        self.outside = 0
+        self._frame = None if self.part.whole else Frame(self.part)
+        free = (spline.FREE, spline.FREE)
+        (nu_1, nu_2, nx, _), (_, of_u_1, of_u_2, of_x, _) = self.resolution, self.part
+        charts = (
+            (separation, (_ends(of_u_1, nu_1), free, free)),
+            (slip, (_ends(of_u_2, nu_2), (_ends(of_x, nx)[0], spline.FREE), free)),
         )
+        self._coefficients = spline.stack(*(spline.interpolate(*chart) for chart in charts if chart[0].size))
         self._strides, self._neighbours = spline.strides((nodes_x + 2, nodes_z + 2))
 
     def __call__(
@@ -100,11 +116,30 @@ class Table:
 
     def _block(self, n0: FloatArray, b: FloatArray, phi: FloatArray, kinds: int) -> FloatArray:
         place = locate(n0, b, phi, self.resolution, kinds > 1)
-        G = spline.evaluate(self._coefficients, place.q, self._strides, self._neighbours, kinds)
+        q, outside = (place.q, None) if self._frame is None else self._frame.within(place)
+        G = spline.evaluate(self._coefficients, q, self._strides, self._neighbours, kinds)
         values = np.empty_like(G)
         values[:, 0] = G[:, 0] * place.scale + place.base
         if kinds > 1:
             np.einsum("jkp,ckp->cjp", place.chain, G, out=values[:, 1:])
             values[0, 1:] += place.base_slopes
         values[0] *= place.sign
+        if outside is not None and outside.any():
+            values[:, :, outside] = self._exact(n0[outside], b[outside], phi[outside], kinds)
         return values
+
+    def _exact(self, n0: FloatArray, b: FloatArray, phi: FloatArray, kinds: int) -> FloatArray:
+        """What a part of a table does not answer for, from the closed form."""
+        from fcm.contact.fourier import fourier_coefficients, fourier_gradients
+
+        self.outside += n0.size
+        if kinds == 1:
+            return np.stack(fourier_coefficients(n0, b, phi))[:, None]
+        F, dF = fourier_gradients(n0, b, phi)
+        return np.concatenate((F[:, None], dF), axis=1)
+
+
+def _ends(nodes: tuple[int, int], count: int) -> tuple[str, str]:
+    """G is flat at the ends of an axis of so many nodes, not where a part of them is cut off."""
+    first, end = nodes
+    return spline.FLAT if first == 0 else spline.FREE, spline.FLAT if end == count else spline.FREE

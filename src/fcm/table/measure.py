@@ -19,6 +19,7 @@ SEED = 1998
 CHUNK = 50_000
 
 Progress = Callable[[float], None]  # with the share done
+Sampler = Callable[[int, int], tuple[FloatArray, FloatArray, FloatArray]]  # of so many points, with a seed
 
 
 class Interpolant(Protocol):
@@ -74,9 +75,13 @@ def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArra
 
 
 def measure(
-    table: Interpolant, points: int = POINTS, seed: int = SEED, progress: Progress | None = None
+    table: Interpolant,
+    points: int = POINTS,
+    seed: int = SEED,
+    progress: Progress | None = None,
+    drawn: Sampler = sample,
 ) -> dict[str, Any]:
-    """Error of a table at `sample(points, seed)`.
+    """Error of a table at `sample(points, seed)`, or at points drawn otherwise.
 
     Returns
     -------
@@ -85,7 +90,7 @@ def measure(
         the number of points, and for each of F_b, F_s, F_c ``max``, ``p999`` (99.9 %), ``rms`` and ``worst``,
         the point [n0_bar, b_bar, phi] of the greatest error. Errors are absolute [-].
     """
-    n0, b, phi = sample(points, seed)
+    n0, b, phi = drawn(points, seed)
     error = np.empty((3, points))
     for first in range(0, points, CHUNK):
         part = slice(first, first + CHUNK)

@@ -9,6 +9,7 @@ import numpy as np
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray, Phase
 from fcm.table.locate import Resolution
+from fcm.table.part import Part
 
 PRESETS: dict[str, Resolution] = {"default": (65, 17, 81, 71), "fast": (25, 9, 37, 29)}
 LEAST, MOST = 5, 2000  # nodes on an axis: what a spline needs, and more than anybody does
@@ -61,9 +62,16 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
     return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, Phase.of(phi)).width, b, phi)
 
 
-def all_nodes(resolution: Resolution) -> Nodes:
+def axes(part: Part) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """The nodes of a part along u in separation, u in slip, x and z."""
+    first, second, third, fourth = (
+        unit(count)[slice(*nodes)] for count, nodes in zip(part.resolution, part[1:], strict=True)
+    )
+    return first, second, third, fourth
+
+
+def all_nodes(part: Part) -> Nodes:
     """The nodes of both charts one after the other, n0 rising from -b to the slip limit."""
-    nu_1, nu_2, nx, nz = resolution
-    x, z = unit(nx), unit(nz)
-    parts = separation_nodes(unit(nu_1)[::-1], x, z), slip_nodes(unit(nu_2), x, z)
+    u_1, u_2, x, z = axes(part)
+    parts = separation_nodes(u_1[::-1], x, z), slip_nodes(u_2, x, z)
     return Nodes(*(np.concatenate(pair) for pair in zip(*parts, strict=True)))

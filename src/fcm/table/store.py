@@ -24,8 +24,10 @@ import numpy.typing as npt
 import fcm
 from fcm.table import seal
 from fcm.table.atlas import FloatArray
+from fcm.table.part import Part
 
 LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
+PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
 DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
 COMMENT = (
@@ -33,6 +35,11 @@ COMMENT = (
     "the others slip without separation, from n0_bar = b_bar to the slip limit. phi + pi changes the sign of "
     "F_b alone. b_bar = 1e8 stands for infinity. Between the nodes fcm interpolates F (1 + b_bar) / b_bar in "
     "separation and the slopes in slip by cubic splines; measured_error is the absolute error of that."
+)
+PART_COMMENT = (
+    " This file has a part of the nodes, those that one scene needs: part has the first of them and one "
+    "past the last, along separation (from its onset), slip, variation and phase. Elsewhere fcm uses the "
+    "closed form."
 )
 COEFFICIENTS = {"b": "mean", "s": "sine (stiffness)", "c": "cosine (damping)"}
 GRID = ("level", "variation", "phase")
@@ -69,34 +76,58 @@ class TableError(ValueError):
     """A file that is not a sound table; the message says which file and why."""
 
 
-def encode(separation: FloatArray, slip: FloatArray) -> Arrays:
-    """The arrays of the file, from the reduced coefficients of the two charts, shapes (3, nu, nx, nz)."""
+def encode(separation: FloatArray, slip: FloatArray, part: Part | None = None) -> Arrays:
+    """The arrays of the file, from the reduced coefficients of the two charts, shapes (3, nu, nx, nz).
+
+    A chart of which the part has no node has no arrays of its own.
+    """
     from fcm.contact import fourier_coefficients
     from fcm.table.nodes import all_nodes
 
-    nodes = all_nodes((separation.shape[1], *slip.shape[1:]))
+    part = part or _all_of(separation, slip)
+    nodes = all_nodes(part)
     arrays: Arrays = {"n0_bar": nodes.n0_bar, "b_bar": nodes.b_bar[0], "phi": nodes.phi[0, 0]}
     F = fourier_coefficients(*nodes)
     for k, name in enumerate(COEFFICIENTS):
         arrays[f"F_{name}"] = F[k].astype(np.float32)
-        arrays[f"ratio_{name}"] = separation[k, ::-1, 0].astype(np.float32)
-        arrays[f"slope_{name}"] = slip[k].astype(np.float32)
+        if separation.size and part.variation[0] == 0:
+            arrays[f"ratio_{name}"] = separation[k, ::-1, 0].astype(np.float32)
+        if slip.size:
+            arrays[f"slope_{name}"] = slip[k].astype(np.float32)
     return arrays
 
 
-def decode(arrays: Arrays) -> tuple[FloatArray, FloatArray]:
+def decode(arrays: Arrays, part: Part) -> tuple[FloatArray, FloatArray]:
     """The reduced coefficients of the two charts: the inverse of `encode`, but for rounding."""
-    F, ratio, slope = (
-        np.stack([arrays[f"{kind}_{name}"] for name in COEFFICIENTS]) for kind in ("F", "ratio", "slope")
-    )
-    levels, b = ratio.shape[1], arrays["b_bar"][1:]
+    F = np.stack([arrays[f"F_{name}"] for name in COEFFICIENTS])
+    levels = part.separation[1] - part.separation[0]
     separation = np.empty((3, levels, *F.shape[2:]))
-    separation[:, :, 0] = ratio
-    np.multiply(F[:, :levels, 1:], (1.0 + b) / b, out=separation[:, :, 1:])
+    first = int("ratio_b" in arrays)
+    if first:
+        separation[:, :, 0] = np.stack([arrays[f"ratio_{name}"] for name in COEFFICIENTS])
+    b = arrays["b_bar"][first:]
+    if levels:
+        np.multiply(F[:, :levels, first:], (1.0 + b) / b, out=separation[:, :, first:])
+    if "slope_b" not in arrays:
+        return separation[:, ::-1], np.empty((3, 0, *F.shape[2:]))
+    slope = np.stack([arrays[f"slope_{name}"] for name in COEFFICIENTS])
     return separation[:, ::-1], slope.astype(np.float64)
 
 
-def write(path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: str) -> None:
+def _all_of(separation: FloatArray, slip: FloatArray) -> Part:
+    nodes = separation.shape[1], slip.shape[1], *slip.shape[2:]
+    return Part.all_of((nodes[0], nodes[1], nodes[2], nodes[3]))
+
+
+def _kept(part: Part) -> set[str]:
+    """The variables that a file with these nodes has."""
+    left_out = {"ratio": part.variation[0] > 0 or part.separation[1] == 0, "slope": part.slip[1] == 0}
+    return {key for key in VARIABLES if not left_out.get(key.split("_")[0], False)}
+
+
+def write(
+    path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None = None
+) -> None:
     """Write a table under a temporary name in the same folder, then rename it.
 
     Raises
@@ -107,7 +138,7 @@ def write(path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: s
     target = Path(path).resolve()
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(target.parent))
-    attributes = _attributes(arrays, error, history)
+    attributes = _attributes(arrays, error, history, part)
     with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
         partial = Path(folder) / "table.nc"
         try:
@@ -118,7 +149,10 @@ def write(path: str | Path, arrays: Arrays, error: Mapping[str, Any], history: s
         partial.replace(target)
 
 
-def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str) -> dict[str, Any]:
+def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None) -> dict[str, Any]:
+    if part is None:
+        resolution = (arrays["ratio_b"].shape[0], *arrays["slope_b"].shape)
+        part = Part.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
     attributes = {
         "Conventions": "CF-1.8",
         "title": TITLE,
@@ -127,10 +161,13 @@ def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str) -> dict[
         "references": "Yang, Chu and Menq (1998), Journal of Sound and Vibration 210(4), 453-481",
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {history}",
         "comment": COMMENT,
-        "layout": np.int32(LAYOUT),
-        "resolution": np.array([*arrays["ratio_b"].shape[:1], *arrays["slope_b"].shape], dtype=np.int32),
+        "layout": np.int32(LAYOUT if part.whole else PART_LAYOUT),
+        "resolution": np.array(part.resolution, dtype=np.int32),
         "measured_error": json.dumps(error),
     }
+    if not part.whole:
+        attributes["comment"] = COMMENT + PART_COMMENT
+        attributes["part"] = np.array(part[1:], dtype=np.int32).reshape(-1)
     return {**attributes, "checksum": _checksum(arrays, attributes)}
 
 
@@ -139,6 +176,8 @@ def _write(path: Path, arrays: Arrays, attributes: dict[str, Any]) -> None:
 
     with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
         for key, (dimensions, described) in VARIABLES.items():
+            if key not in arrays:
+                continue
             for name, size in zip(dimensions, arrays[key].shape, strict=True):
                 if name not in file.dimensions:
                     file.createDimension(name, size)
@@ -150,7 +189,8 @@ def _write(path: Path, arrays: Arrays, attributes: dict[str, Any]) -> None:
 
 def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
     """Of the shapes and bytes of all arrays, and of the attributes that say what they are worth."""
-    value = zlib.crc32(f"{attributes['measured_error']} {list(attributes['resolution'])}".encode())
+    part = list(attributes["part"]) if "part" in attributes else ""
+    value = zlib.crc32(f"{attributes['measured_error']} {list(attributes['resolution'])}{part}".encode())
     for key in sorted(arrays):
         array = np.ascontiguousarray(arrays[key])
         value = zlib.crc32(
@@ -159,8 +199,10 @@ def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
     return f"crc32:{value:08x}"
 
 
-def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[str, Any]]:
-    """The reduced coefficients of the two charts, and the recorded error; path None is the shipped table.
+def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[str, Any], Part]:
+    """The reduced coefficients of the two charts, the recorded error, and the nodes that the file has.
+
+    path None is the shipped table.
 
     Raises
     ------
@@ -181,7 +223,17 @@ def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[s
         raise TableError(f"{name}: {_what_instead(name)} ({reason})") from None
     if damage := _damage(attributes, arrays, content is not None):
         raise TableError(f"{name}: damaged, {damage}; {REMEDY}")
-    return *decode(arrays), json.loads(attributes["measured_error"])
+    part = _part(attributes)
+    return *decode(arrays, part), json.loads(attributes["measured_error"]), part
+
+
+def _part(attributes: Mapping[str, Any]) -> Part:
+    resolution = tuple(map(int, attributes["resolution"]))
+    whole = Part.all_of((resolution[0], resolution[1], resolution[2], resolution[3]))
+    if "part" not in attributes:
+        return whole
+    ends = tuple(map(int, attributes["part"]))
+    return Part(whole.resolution, *((ends[k], ends[k + 1]) for k in (0, 2, 4, 6)))
 
 
 def _what_instead(path: Path) -> str:
@@ -206,17 +258,17 @@ def _read(path: Path, content: bytes | None) -> tuple[dict[str, Any], Arrays]:
 def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
     if not np.array_equal(attributes.get("title", ""), TITLE):
         raise TableError(f"{path}: netCDF, but not a table made by fcm tabulate")
-    if not np.array_equal(attributes.get("layout", ""), LAYOUT):
+    if not np.array_equal(attributes.get("layout", ""), PART_LAYOUT if "part" in attributes else LAYOUT):
         found = f"a table of layout {attributes.get('layout')}, and this fcm reads layout {LAYOUT}"
         raise TableError(f"{path}: {found}; {REMEDY}")
 
 
 def _damage(attributes: Mapping[str, Any], arrays: Arrays, sealed: bool) -> str:
     """What is wrong with a file that says it is a table; empty if nothing is."""
-    if missing := sorted(set(VARIABLES) - set(arrays)):
-        return f"{', '.join(missing)} missing"
     if missing := sorted({"measured_error", "resolution", "checksum"} - set(attributes)):
         return f"attribute {', '.join(missing)} missing"
+    if missing := sorted(_kept(_part(attributes)) - set(arrays)):
+        return f"{', '.join(missing)} missing"
     for key, array in arrays.items():
         if array.dtype.kind != "f" or not np.isfinite(array.sum()):
             return f"{key} holds values that are not finite numbers"

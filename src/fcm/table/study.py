@@ -22,6 +22,7 @@ from fcm.table.locate import NODES_BETWEEN, Resolution, locate
 from fcm.table.lookup import Table
 from fcm.table.measure import sample
 from fcm.table.nodes import PRESETS
+from fcm.table.part import Part
 
 BOX = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is in [0, pi]
 SHARES = (0.25, 0.35, 0.5, 0.7, 1.0)  # of the nodes of the default table, along each axis
@@ -92,7 +93,7 @@ def _candidates() -> Iterator[tuple[str, str, int, Coefficients]]:
         values = _box_values(shape)
         yield "rectilinear", "linear", values[0].size, _box_linear(values)
         yield "rectilinear", "cubic", values[0].size, _box_cubic(values)
-        parts = charts(resolution)
+        parts = charts(Part.all_of(resolution))
         yield "regimes", "linear", nodes, _regimes_linear(resolution, *parts)
         yield "regimes", "cubic", nodes, Table(*parts)
     yield "closed form", "", 0, fourier_coefficients

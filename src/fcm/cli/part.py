@@ -1,0 +1,95 @@
+"""``fcm tabulate --for SCENE``: the part of a table that a scene needs, and what it saves."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+from fcm.cli.messages import Messages
+from fcm.table import TableError, open_table
+from fcm.table.build import charts
+from fcm.table.locate import Resolution
+from fcm.table.part import Part, Reach
+
+REPEATS = 3  # the best of so many times is reported
+
+
+def reached(messages: Messages, scene: str, resolution: Resolution) -> Part:
+    """The nodes that the response of a scene looks up, traced with the closed form.
+
+    Raises
+    ------
+    TableError
+        If it looks nothing up, as the contacts never slip or open part of a cycle.
+    """
+    from fcm.response import trace
+    from fcm.scene import load_scene
+
+    reach = Reach(resolution)
+    response = trace(load_scene(scene), table=reach, progress=messages.progress)
+    messages.clear()
+    part = reach.part()
+    if part is None:
+        raise TableError(f"{scene}: no contact slips, or opens in a part of its cycle, so it needs no table")
+    if stopped := sum(not curve.complete for curve in response.curves):
+        messages.warning(
+            f"{scene}: {stopped} curves could not be traced to their ends; the part may lack some"
+        )
+    return part
+
+
+def saving(path: Path, part: Part) -> tuple[dict[str, Any], str]:
+    """How much smaller and faster the part in a file is than all nodes of its resolution.
+
+    All nodes are not built for that: their time is that of a part times their number.
+    """
+    whole = Part.all_of(part.resolution)
+    build = _seconds(lambda: charts(part), 1)
+    opening = _seconds(lambda: open_table(path), REPEATS)
+    times = whole.nodes / part.nodes
+    found = {
+        "nodes": part.nodes,
+        "nodes_of_all": whole.nodes,
+        "bytes_of_all": _bytes(whole),
+        "seconds_of_nodes": build,
+        "seconds_of_all_nodes": build * times,
+        "seconds_to_open": opening,
+    }
+    sentence = (
+        f"{part.nodes} of {whole.nodes} nodes: {path.stat().st_size / 1e6:.2g} MB instead of "
+        f"{_bytes(whole) / 1e6:.2g}; computed in {build:.2g} s instead of about {build * times:.2g}"
+    )
+    reference = _shipped(part.resolution)
+    if reference is None:
+        return found, f"{sentence}; opens in {1e3 * opening:.0f} ms"
+    found["seconds_to_open_all"] = _seconds(lambda: open_table(reference), REPEATS)
+    return (
+        found,
+        f"{sentence}; opens in {1e3 * opening:.0f} ms instead of {1e3 * found['seconds_to_open_all']:.0f}",
+    )
+
+
+def _shipped(resolution: Resolution) -> Path | None:
+    """The table of that resolution that comes with fcm."""
+    from fcm.table.nodes import PRESETS
+    from fcm.table.store import DEFAULT
+
+    names = [name for name, preset in PRESETS.items() if preset == resolution]
+    return DEFAULT.with_name(f"{names[0]}.nc") if names else None
+
+
+def _bytes(part: Part) -> int:
+    """Of the file's large arrays: n0_bar and three coefficients at every node, three slopes in slip."""
+    slip = part.nodes * (part.slip[1] - part.slip[0]) // sum(end - first for first, end in part[1:3])
+    return 20 * part.nodes + 12 * slip
+
+
+def _seconds(run: Any, times: int) -> float:
+    """Least time of some runs."""
+    taken = []
+    for _ in range(times):
+        began = time.perf_counter()
+        run()
+        taken.append(time.perf_counter() - began)
+    return min(taken)

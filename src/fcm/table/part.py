@@ -1,0 +1,158 @@
+"""A part of a table: the nodes around those points of the atlas that a calculation has looked up.
+
+Splines through a part differ from those through all nodes near its cut sides only: by a factor of 0.27 less
+with every node from there. So a part has `GUARD` nodes more than it answers for.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.table import atlas
+from fcm.table.atlas import FloatArray
+from fcm.table.locate import NODES_BETWEEN, BoolArray, Place, Resolution, locate
+
+MARGIN = 1  # nodes around those reached: a solver's path is another with another table
+GUARD = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7
+
+Range = tuple[int, int]  # the first node, and one past the last; empty if they are the same
+
+
+class Part(NamedTuple):
+    """Nodes that a table has, of all those of its resolution."""
+
+    resolution: Resolution
+    separation: Range
+    slip: Range
+    variation: Range
+    phase: Range
+
+    @classmethod
+    def all_of(cls, resolution: Resolution) -> Part:
+        """Every node."""
+        nu_1, nu_2, nx, nz = resolution
+        return cls(resolution, (0, nu_1), (0, nu_2), (0, nx), (0, nz))
+
+    @property
+    def whole(self) -> bool:
+        """Whether this is every node."""
+        return self == Part.all_of(self.resolution)
+
+    @property
+    def nodes(self) -> int:
+        """How many there are in both charts."""
+        levels, nx, nz = (int(np.diff(r).sum()) for r in (self[1:3], self.variation, self.phase))
+        return levels * nx * nz
+
+    def sample(self, count: int, seed: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Points n0_bar, b_bar, phi that it answers for, uniform in the coordinates of the charts."""
+        random = np.random.default_rng(seed)
+        _, _, nx, nz = self.resolution
+        x, z = (_uniform(random, count, *axis) for axis in ((self.variation, nx), (self.phase, nz)))
+        phi = atlas.phi_phase(z)
+        b = atlas.b_variation(x, phi)
+        lengths = np.array([max(0, end - first) for first, end in self[1:3]])
+        slips = random.random(count) * lengths.sum() >= lengths[0]
+        u_1 = _uniform(random, count, self.separation, self.resolution[0])
+        u_2 = _uniform(random, count, self.slip, self.resolution[1])
+        width = atlas.geometry(b, atlas.Phase.of(phi)).width
+        opened = b * np.cos(atlas.delta_separation(u_1, b))
+        return np.where(slips, b + atlas.t_slip(u_2) * width, opened), b, phi
+
+
+class Frame:
+    """Where the nodes of a part are, of each chart along each axis (chart, 3), to place look-ups in it."""
+
+    def __init__(self, part: Part) -> None:
+        nu_1, nu_2, nx, nz = part.resolution
+        self.first_slip = nu_1 - 1 + NODES_BETWEEN
+        first, end = part.separation
+        slip_at = end - first - 1 + NODES_BETWEEN if end > first else 0  # in the stacked coefficients
+        ranges = [
+            [(nodes, count), (part.variation, nx), (part.phase, nz)]
+            for nodes, count in ((part.separation, nu_1), (part.slip, nu_2))
+        ]
+        limits = np.array([[_answered(*axis) for axis in chart] for chart in ranges], dtype=np.float64)
+        skipped = np.array([[nodes[0] for nodes, _ in chart] for chart in ranges])
+        self.all = np.array(((0, 0, 0), (self.first_slip, 0, 0)))
+        self.here = np.array(((0, 0, 0), (slip_at, 0, 0))) - skipped
+        self.low, self.high = limits[..., 0], limits[..., 1]
+
+    def within(self, place: Place) -> tuple[FloatArray, BoolArray]:
+        """Coordinates of places in the nodes of the part, and which places it does not answer for.
+
+        Where F needs no table, outside of both charts, any coordinates will do.
+        """
+        chart = (place.q[0] > self.first_slip - 1).astype(np.intp)
+        low, high, here = self.low[chart].T, self.high[chart].T, self.here[chart].T
+        q = place.q - self.all[chart].T
+        outside = ((q < low) | (q > high)).any(axis=0) & (place.scale != 0.0)
+        return np.maximum(np.minimum(q, high), low) + here, outside
+
+
+def _answered(nodes: Range, count: int) -> tuple[int, int]:
+    """The first and last of these nodes, of so many in all, but for the guards at cut sides."""
+    first, end = nodes
+    if first == end:
+        return 0, -1
+    return first + GUARD * (first > 0), end - 1 - GUARD * (end < count)
+
+
+def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> FloatArray:
+    low, high = _answered(nodes, of)
+    return random.uniform(low, max(low, high), count) / (of - 1)
+
+
+class Reach:
+    """The closed form in the place of a table, noting where in the charts of a resolution it is asked."""
+
+    def __init__(self, resolution: Resolution) -> None:
+        self.resolution = resolution
+        self.looked_up = 0
+        self._low, self._high = np.full((2, 3), np.inf), np.full((2, 3), -np.inf)
+
+    def gradients(
+        self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
+    ) -> tuple[FloatArray, FloatArray]:
+        """Coefficients and derivatives as `fcm.fourier_gradients` gives them."""
+        from fcm.contact.fourier import fourier_gradients  # which look-up does not need
+
+        arrays = np.broadcast_arrays(*(np.asarray(a, dtype=np.float64) for a in (n0_bar, b_bar, phi)))
+        self._note(*(a.reshape(-1) for a in arrays))
+        return fourier_gradients(*arrays)
+
+    def _note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
+        place = locate(n0, b, phi, self.resolution, derivatives=False)
+        self.looked_up += n0.size
+        first_slip = self.resolution[0] - 1 + NODES_BETWEEN
+        slips = place.q[0] > first_slip - 1
+        for chart, chosen in enumerate((~slips, slips)):
+            q = place.q[:, chosen & (place.scale != 0.0)]
+            q[0] -= chart * first_slip
+            self._low[chart] = np.minimum(self._low[chart], q.min(axis=1, initial=np.inf))
+            self._high[chart] = np.maximum(self._high[chart], q.max(axis=1, initial=-np.inf))
+
+    def part(self) -> Part | None:
+        """The nodes that it takes to answer the same again; None if none are needed."""
+        if not np.isfinite(self._low).any():
+            return None
+        nu_1, nu_2, nx, nz = self.resolution
+        low, high = self._low.min(axis=0), self._high.max(axis=0)
+        return Part(
+            self.resolution,
+            _around(self._low[0, 0], self._high[0, 0], nu_1),
+            _around(self._low[1, 0], self._high[1, 0], nu_2),
+            _around(low[1], high[1], nx),
+            _around(low[2], high[2], nz),
+        )
+
+
+def _around(low: float, high: float, count: int) -> Range:
+    """Nodes of an axis around an interval of it, margin and guards included."""
+    if low > high:
+        return 0, 0
+    more = MARGIN + GUARD
+    return max(0, int(np.floor(low)) - more), min(count, int(np.ceil(high)) + more + 1)
