@@ -10,8 +10,7 @@ import numpy as np
 from fcm.response.law import Coefficients
 from fcm.response.path import Progress
 from fcm.response.result import Curve
-from fcm.response.trace import ResponseError
-from fcm.response.trace import trace as trace_group
+from fcm.response.trace import ResponseError, trace_group
 from fcm.scene.model import Scene
 
 Group = tuple[Scene, ...]

@@ -35,6 +35,7 @@ class Curve:
     peaks: dict[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
+    uncorrected: int = 0  # points left out because the closed form gave none there
 
     @property
     def points(self) -> int:

@@ -79,6 +79,8 @@ def trace(
             lighter = leave_out(curves, 0.0)
             response = sweep.run(lighter)
     response = restored(response, lighter)
+    if uncorrected := sum(curve.uncorrected for curve in response.curves):
+        sentences.append(f"{uncorrected} points that could not be corrected with the closed form")
     response.left_out = sentences
     response.seconds = time.perf_counter() - begin
     return response

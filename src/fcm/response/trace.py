@@ -23,33 +23,13 @@ class ResponseError(ValueError):
     """The calculation cannot be begun; the message says why."""
 
 
-def trace(
+def trace_group(
     scene: Scene,
     method: str = "table",
     table: Coefficients | None = None,
     progress: Progress | None = None,
 ) -> Response:
-    """Trace the response curves of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        From `fcm.load_scene`; one curve for each combination of its swept values.
-    method : {"table", "closed-form"}
-        Coefficients that the solver uses on its way. Either way every point is then corrected with the
-        closed form; the shift is its `table_error`.
-    table : optional
-        An open table; the shipped one by default.
-    progress : optional
-        Called now and then with the finished fraction and a text.
-
-    Raises
-    ------
-    ResponseError
-        If the method is unknown, or a mode has frequency 0.
-    """
-    if method not in METHODS:
-        raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
+    """Trace the curves of a scene as one group; the arguments are those of `fcm.response.trace`."""
     begin = time.perf_counter()
     curves = scene.each_curve()
     _check(curves)
@@ -58,7 +38,8 @@ def trace(
     used = exact if method == "closed-form" else Balance(group, table or _default_table())
     branches = all_branches(used, np.array([c.max_step for c in curves]), progress)
     points = corrected(exact, branches)
-    dropped = branches.trace.curve.size - points.curve.size
+    found = np.bincount(branches.curve[branches.trace.curve], minlength=len(curves))
+    uncorrected = found - np.bincount(points.curve, minlength=len(curves))
     if used is exact:
         points.shift[:] = 0.0  # no table was used
     points = with_folds(exact, refined(exact, points))
@@ -67,12 +48,11 @@ def trace(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
         scene.frequency_unit,
     )  # fmt: skip
-    if dropped:
-        response.left_out.append(f"{dropped} points that could not be corrected with the closed form")
     response.seconds = time.perf_counter() - begin
     share = response.seconds / max(sum(c.points for c in results), 1)
-    for curve in results:  # curves advance together: each is charged by its points
-        curve.seconds = share * curve.points
+    for curve, number in zip(results, uncorrected, strict=True):
+        curve.seconds = share * curve.points  # curves advance together: each is charged by its points
+        curve.uncorrected = int(number)
     return response
 
 
