@@ -11,6 +11,7 @@ import xarray
 
 import fcm
 from fcm.table import TableError, build_table, open_table, seal, store
+from fcm.table.arrays import encode
 
 
 def refused(path, match):
@@ -95,7 +96,7 @@ def test_not_finite_even_if_sealed(tmp_path, tiny_file):
     separation, slip, error, _ = store.load(tiny_file)
     slip[0, 2, 2, 2] = np.inf
     path = tmp_path / "t.nc"
-    store.write(path, store.encode(separation, slip), error, "test")
+    store.write(path, encode(separation, slip), error, "test")
     refused(path, "not finite")
 
 

@@ -7,6 +7,7 @@ from click.testing import CliRunner
 
 from fcm.cli import main
 from fcm.table import build, open_table, store
+from fcm.table.arrays import encode
 
 
 @pytest.fixture
@@ -54,7 +55,7 @@ def test_verify_agrees(run):
 def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
     separation, slip, error, _ = store.load(tiny_file)
     better = {**error, "max": 0.5 * error["max"]}
-    store.write("lie.nc", store.encode(separation, slip), better, "test")
+    store.write("lie.nc", encode(separation, slip), better, "test")
     done = run("--verify", "lie.nc")
     assert done.exit_code == 3
     assert "the recorded error is not true: max" in done.stderr

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +11,12 @@ import click
 
 from fcm.cli.files import output_option
 from fcm.cli.guard import NOT_COMPLETED
+from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages, pass_messages
-from fcm.files import replacing
+from fcm.cli.table_study import write_study
 
 if TYPE_CHECKING:
     from fcm.table.locate import Resolution
-    from fcm.table.study import Row
 
 DEFAULT_OUTPUT = "table.nc"
 POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the user says
@@ -78,7 +77,7 @@ def tabulate(
         _verify(messages, verify, to_json)
     elif study is not None:
         _alone(ctx, "study")
-        _study(messages, study, to_json)
+        write_study(messages, study, to_json)
     else:
         if scene is not None and ctx.get_parameter_source("points") is click.core.ParameterSource.DEFAULT:
             points = POINTS_OF_PART
@@ -117,7 +116,7 @@ def _build(
 
     resolution = PRESETS[preset] if nodes is None else nodes
     began = time.perf_counter()
-    with _Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
+    with Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
         part = None if scene is None else reached(messages, scene, resolution)
         made_by += "" if scene is None else f" --for {scene}"
@@ -148,7 +147,7 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
     if "points" not in recorded:
         raise click.UsageError(f"{path} records no error that could be verified.")
     drawn = sample if table.part.whole else table.part.sample
-    with _Interruptible(messages, "the table was not verified") as progress:
+    with Interruptible(messages, "the table was not verified") as progress:
         again = measure(
             table,
             recorded["points"],
@@ -177,79 +176,6 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
         messages.error(f"error: {path}: the recorded error is not true: {found}")
         click.get_current_context().exit(NOT_COMPLETED)
     messages.info(f"{path}: as recorded, in {result['seconds']:.1f} s; {_error_line(fresh)}")
-
-
-def _study(messages: Messages, path: Path, to_json: bool) -> None:
-    from fcm.table.study import Row, study
-
-    began = time.perf_counter()
-    with _Interruptible(messages, "nothing was written") as progress:
-        rows = study(progress)
-    lines = [",".join(Row._fields)] + [",".join(map(_cell, row)) for row in rows]
-    with replacing(path) as partial:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    picture = path.with_suffix(".png")
-    with replacing(picture) as partial:
-        _draw(rows, partial)
-    if to_json:
-        click.echo(json.dumps([row._asdict() for row in rows], indent=2))
-    else:
-        columns = list(zip(*(line.split(",") for line in lines), strict=True))
-        widths = [max(map(len, column)) + 2 for column in columns]
-        for cells in zip(*columns, strict=True):
-            click.echo("".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
-    best = min((row for row in rows if row.nodes), key=lambda row: row.rms)
-    messages.info(
-        f"wrote {path} and {picture} in {time.perf_counter() - began:.1f} s; "
-        f"least error {best.max:.1e} at most, {best.rms:.1e} rms: {best.layout}, {best.interpolation}"
-    )
-
-
-def _cell(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _draw(rows: list[Row], path: Path) -> None:
-    """Error against size, and against the time of a look-up of ten points: a line for each layout."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(10, 4.2), layout="constrained")
-    by_size, by_time = figure.subplots(1, 2, sharey=True)
-    for layout, mark in (("rectilinear", "s"), ("regimes", "o")):
-        for interpolation, style in (("linear", "--"), ("cubic", "-")):
-            some = [row for row in rows if (row.layout, row.interpolation) == (layout, interpolation)]
-            label, colour = f"{layout}, {interpolation}", "C0" if layout == "regimes" else "C1"
-            for axes, field in ((by_size, "bytes"), (by_time, "us_of_group")):
-                at = [getattr(row, field) / (1e6 if field == "bytes" else 1.0) for row in some]
-                axes.loglog(at, [row.rms for row in some], style, marker=mark, color=colour, label=label)
-                axes.loglog(at, [row.max for row in some], style, marker=mark, color=colour, alpha=0.3)
-    by_time.set_xscale("linear")
-    by_time.set_xlim(0.0, 1.05 * max(row.us_of_group for row in rows))
-    by_time.axvline(rows[-1].us_of_group, color="black", linestyle=":", label="closed form, exact")
-    by_size.set(xlabel="size [MB]", ylabel="absolute error: rms (strong), greatest (pale) [-]")
-    by_time.set(xlabel="time for ten points [µs]")
-    by_time.legend(fontsize="small")
-    figure.savefig(path, dpi=150)
-
-
-class _Interruptible:
-    """Progress of a calculation; if it is interrupted, says how far it was and what remains."""
-
-    def __init__(self, messages: Messages, remains: str) -> None:
-        self.messages, self.remains, self.share = messages, remains, 0.0
-
-    def __enter__(self) -> Callable[[float, str], None]:
-        return self._progress
-
-    def _progress(self, share: float, what: str) -> None:
-        self.share = share
-        self.messages.progress(share, what)
-
-    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        self.messages.clear()
-        if kind is not None and issubclass(kind, KeyboardInterrupt):
-            self.messages.error(f"interrupted at {100 * self.share:.0f} %: {self.remains}")
-            click.get_current_context().exit(NOT_COMPLETED)
 
 
 def _as_table(error: dict[str, Any]) -> str:

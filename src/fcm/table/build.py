@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fcm.contact import fourier_coefficients
-from fcm.table import atlas, store
+from fcm.table import arrays, atlas, store
 from fcm.table.atlas import FloatArray, Phase
 from fcm.table.locate import Resolution
 from fcm.table.lookup import Table
@@ -59,8 +59,8 @@ def build_table(
         raise ValueError(f"resolution {resolution}: {reason}")
     done = (lambda share, what: None) if progress is None else progress
     part = Part.all_of(resolution) if part is None else part
-    arrays = store.encode(*charts(part, lambda share: done(share * BUILT, "building")), part)
-    table = Table(*store.decode(arrays, part), part=part)  # with the rounding of the file
+    stored = arrays.encode(*charts(part, lambda share: done(share * BUILT, "building")), part)
+    table = Table(*arrays.decode(stored, part), part=part)  # with the rounding of the file
     done(BUILT, "measuring the error")
     table.error = measure(
         table,
@@ -69,7 +69,7 @@ def build_table(
         drawn=sample if part.whole else part.sample,
     )
     done(MEASURED, "writing")
-    store.write(path, arrays, table.error, history, part)
+    store.write(path, stored, table.error, history, part)
     return table
 
 
