@@ -12,6 +12,8 @@ from fcm.response.law import ClosedForm
 from fcm.response.stability import growth_rates
 from fcm.response.structure import group_of
 
+from .random_scenes import random_scene
+
 
 @pytest.fixture(scope="module")
 def curves():
@@ -81,3 +83,14 @@ def test_the_truncation_error_predicts_the_size_of_the_papers_discrepancy(curves
     true = (15.83 - 14.8) / 14.8
     assert true / 4.0 < predicted < 4.0 * true
     assert curves[50.0].truncation_error.max() < 0.1 * predicted
+
+
+def test_contacts_too_stiff_for_the_table_are_traced_without_it():
+    """A gap closed by springs 1e6 times as stiff as the structure: the right answer, and the run says how."""
+    scene = replace(random_scene(26), max_step=0.1)
+    by_table, exact = trace(scene, "table"), trace(scene, "closed-form")
+    one, other = by_table.curves[0], exact.curves[0]
+    assert one.without_table and any("stiff" in sentence for sentence in by_table.left_out)
+    assert one.folds == pytest.approx(other.folds, rel=1e-6)
+    for dof in one.peaks:
+        assert one.peaks[dof][0] == pytest.approx(other.peaks[dof][0], rel=1e-6)

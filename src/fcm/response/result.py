@@ -36,6 +36,7 @@ class Curve:
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
     uncorrected: int = 0  # points left out because the closed form gave none there
+    without_table: bool = False  # traced again with the closed form, because the table led away from it
 
     @property
     def points(self) -> int:

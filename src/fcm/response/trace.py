@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from fcm.response.branches import all_branches
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.path import Progress
 from fcm.response.points import corrected, refined, with_folds
-from fcm.response.result import Response
-from fcm.response.structure import group_of, with_contact
+from fcm.response.result import Curve, Response
+from fcm.response.structure import IntArray, group_of, with_contact
 from fcm.scene.model import Scene
 
 METHODS = ("table", "closed-form")
@@ -44,6 +45,8 @@ def trace_group(
         points.shift[:] = 0.0  # no table was used
     points = with_folds(exact, refined(exact, points))
     results = Assembly(exact, points, branches).curves(curves, scene.modal.dofs)
+    if used is not exact:
+        _without_table(scene, curves, results, uncorrected, progress)
     response = Response(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
         scene.frequency_unit,
@@ -52,8 +55,28 @@ def trace_group(
     share = response.seconds / max(sum(c.points for c in results), 1)
     for curve, number in zip(results, uncorrected, strict=True):
         curve.seconds = share * curve.points  # curves advance together: each is charged by its points
-        curve.uncorrected = int(number)
+        curve.uncorrected = curve.uncorrected if curve.without_table else int(number)
     return response
+
+
+def _without_table(
+    scene: Scene,
+    curves: tuple[Scene, ...],
+    results: list[Curve],
+    uncorrected: IntArray,
+    progress: Progress | None,
+) -> None:
+    """Trace again, with the closed form, the curves on which the correction of the table's error fails.
+
+    The force of a contact much stiffer than the structure carries that error multiplied.
+    """
+    again = np.flatnonzero(uncorrected)
+    if again.size == 0:
+        return
+    whole = replace(scene, curves=tuple(curves[i] for i in again))
+    for i, curve in zip(again, trace_group(whole, "closed-form", None, progress).curves, strict=True):
+        curve.without_table = True
+        results[i] = curve
 
 
 def _check(curves: tuple[Scene, ...]) -> None:
