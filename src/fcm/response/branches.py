@@ -13,19 +13,10 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
-from fcm.response.path import (
-    COMPLETE,
-    RETURNED,
-    STALLED,
-    BoolArray,
-    Progress,
-    Trace,
-    amplitudes,
-    follow,
-    scales,
-)
+from fcm.response.newton import amplitudes, scales
+from fcm.response.path import COMPLETE, RETURNED, STALLED, Progress, Trace, follow
 from fcm.response.start import linear_starts, starting_points
-from fcm.response.structure import IntArray
+from fcm.response.structure import BoolArray, IntArray
 
 DISTINCT = 1e-5  # solutions further apart than this, relative to their size, are different
 

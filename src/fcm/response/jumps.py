@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.contact.limits import FloatArray
-from fcm.response.path import BoolArray
+from fcm.response.structure import BoolArray
 
 
 @dataclass(frozen=True)

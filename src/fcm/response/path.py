@@ -6,27 +6,23 @@ and one stacked solve serve all of them, each with its own step.
 
 Where a regime begins, a response curve has a corner. The step shrinks until the corner is a point; if the
 curve turns back on itself there, its new direction is found from the equations just beyond, with the
-orientation that the sign of the determinant carries across a corner (Eaves 1976, Allgower and Georg,
-"Introduction to numerical continuation methods", section 2.1 and chapter 15).
+orientation that the sign of the determinant carries across a corner, as for piecewise linear paths
+(Allgower and Georg, "Introduction to Numerical Continuation Methods").
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.response.structure import IntArray
+from fcm.response.newton import CLOSE, Equations, Newton, amplitudes, correct, oriented_tangent, scales
+from fcm.response.structure import BoolArray, IntArray
 
-BoolArray = npt.NDArray[np.bool_]
 Progress = Callable[[float, str], None]  # finished fraction and a text
 
-MAX_ITERATIONS = 7  # Newton steps before a predictor is judged too far away
-CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every point is corrected later
 SAME_DIRECTION = 0.94  # cosine: a smooth step turns by less than 20 degrees
 GENTLE_TURN = 0.25  # [rad] the turn that the step size aims at
 CORNER = 1e-4  # a step this short may turn by any angle below a right angle: it crosses a corner
@@ -35,7 +31,6 @@ CORNER_TRIES = 16  # directions around a corner in which its regimes are looked 
 STRAIGHT = 0.999  # cosine above which a change of orientation is a branch point and not a corner
 FIRST_STEP = 1e-3
 LONGEST_PATH = 20000  # steps
-OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
 BOUNDLESS = 1e9  # amplitude, in units of that at the start, that only an undamped resonance reaches
 
@@ -47,27 +42,6 @@ REASONS = {
     UNBOUNDED: "the amplitude grows without limit, at a resonance that nothing damps; add damping",
     TOO_LONG: f"the curve did not leave the range within {LONGEST_PATH} steps; try a larger --max-step",
 }
-
-
-class Derivatives(Protocol):
-    """What the follower needs at a point of each curve."""
-
-    @property
-    def residual(self) -> FloatArray: ...  # (curve, unknown)
-    @property
-    def jacobian(self) -> FloatArray: ...  # (curve, unknown, unknown)
-    @property
-    def by_omega(self) -> FloatArray: ...  # (curve, unknown), by the parameter of the path
-
-
-class Equations(Protocol):
-    """residual(x, p) = 0 for a group of curves."""
-
-    def evaluate(self, x: FloatArray, omega: FloatArray, /) -> Derivatives:
-        """Residual and derivatives at x (curve, unknown) and the parameter (curve,)."""
-
-    def take(self, index: IntArray, /) -> Equations:
-        """The equations of some of the curves."""
 
 
 @dataclass
@@ -96,100 +70,6 @@ class _Front:
 
     def take(self, keep: BoolArray) -> _Front:
         return replace(self, **{name: value[keep] for name, value in vars(self).items()})
-
-
-def amplitudes(x: FloatArray) -> FloatArray:
-    """Size of the tangential and the normal displacement of each contact, (curve, 2 contacts)."""
-    blocks = x.reshape(x.shape[0], x.shape[1] // 5, 5)
-    u = np.hypot(blocks[..., 0], blocks[..., 1])
-    v = np.maximum(np.hypot(blocks[..., 2], blocks[..., 3]), np.abs(blocks[..., 4]))
-    return np.stack((u, v), axis=-1).reshape(x.shape[0], 2 * blocks.shape[1])
-
-
-def scales(x: FloatArray, largest: FloatArray, extent: FloatArray) -> FloatArray:
-    """Units in which a curve is measured: amplitudes by their present size, the parameter by its range."""
-    overall = largest.max(axis=1, initial=0.0, keepdims=True)
-    size = np.maximum(amplitudes(x), np.maximum(OWN_FLOOR * largest, OTHER_FLOOR * overall))
-    size = np.where(size > 0.0, size, 1.0) * np.sqrt(max(size.shape[1], 1))
-    pairs = size.reshape(x.shape[0], x.shape[1] // 5, 2)
-    each = np.repeat(pairs, [2, 3], axis=2).reshape(x.shape)
-    return np.concatenate((each, np.broadcast_to(extent, (x.shape[0],))[:, None]), axis=1)
-
-
-def solve_each(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Stacked linear solve; a singular or non-finite system gives NaN instead of stopping the others."""
-    finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2))
-    try:
-        if finite.all():
-            return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
-    except np.linalg.LinAlgError:
-        pass
-    out = np.full(right.shape, np.nan)
-    for i in np.flatnonzero(finite):
-        try:
-            out[i] = np.linalg.solve(matrix[i], right[i])
-        except np.linalg.LinAlgError:
-            continue
-    return out
-
-
-@dataclass
-class Newton:
-    """Outcome of a corrector: points, whether they converged, and the curve's direction there."""
-
-    z: FloatArray
-    converged: BoolArray
-    tangent: FloatArray  # unit, scaled, on the side of the row that closed the system
-    determinant: FloatArray  # sign of the bordered Jacobian
-
-
-def correct(
-    equations: Equations,
-    z: FloatArray,
-    scale: FloatArray,
-    row: FloatArray,
-    close: FloatArray | float = CLOSE,
-    iterations: int = MAX_ITERATIONS,
-    reach: FloatArray | float = 1.0,
-) -> Newton:
-    """Newton's method in the plane through z with normal row (scaled coordinates).
-
-    Converged when the error that remains, estimated as length (length / length before), is below close;
-    reach is the length that stands before the first step.
-    """
-    z = z.copy()
-    size = z.shape[1]
-    right = np.zeros((z.shape[0], size, 2))
-    right[:, -1, 1] = 1.0
-    before = np.broadcast_to(reach, (z.shape[0],))
-    done = np.zeros(z.shape[0], dtype=bool)
-    matrix = np.empty((z.shape[0], size, size))
-    tangent = row.copy()
-    for _ in range(iterations):
-        fill(matrix, equations.evaluate(z[:, :-1], z[:, -1]), scale, right)
-        matrix[:, -1, :] = row
-        solution = solve_each(matrix, right)
-        change = np.where(done[:, None], 0.0, solution[:, :, 0])
-        tangent = np.where(done[:, None], tangent, solution[:, :, 1])
-        z += scale * change
-        length = np.sqrt((change * change).sum(axis=1))
-        done |= (length * length < close * before) & (length < 0.1 * before)
-        done |= length < 1e-2 * close
-        before = length
-        if done.all() or not np.isfinite(length).any():
-            break
-    norm = np.sqrt((tangent * tangent).sum(axis=1, keepdims=True))
-    sign = np.linalg.slogdet(np.where(np.isfinite(matrix), matrix, 0.0))[0]
-    ok = done & np.isfinite(norm[:, 0]) & (norm[:, 0] > 0.0)
-    return Newton(z, ok, tangent / np.where(norm > 0.0, norm, 1.0), sign)
-
-
-def fill(matrix: FloatArray, at: Derivatives, scale: FloatArray, right: FloatArray) -> None:
-    """Rows and columns of the bordered system in scaled coordinates, and the residual."""
-    rows = 1.0 / scale[:, :-1]
-    matrix[:, :-1, :-1] = at.jacobian * (rows[:, :, None] * scale[:, None, :-1])
-    matrix[:, :-1, -1] = at.by_omega * (rows * scale[:, -1:])
-    right[:, :-1, 0] = -at.residual * rows
 
 
 def follow(
@@ -393,21 +273,3 @@ class _Follower:
         share = np.where(self.status == RUNNING, self.furthest, 1.0)
         left = self.front.curve.size
         self.progress(float(share.mean()), f"{left} curve{'s' if left != 1 else ''} running")
-
-
-def oriented_tangent(
-    equations: Equations, z: FloatArray, scale: FloatArray, along: FloatArray, orientation: FloatArray
-) -> FloatArray:
-    """Direction of the curve through z whose bordered determinant has the sign of orientation."""
-    matrix = np.empty((z.shape[0], z.shape[1], z.shape[1]))
-    right = np.zeros((z.shape[0], z.shape[1], 2))
-    right[:, -1, 1] = 1.0
-    fill(matrix, equations.evaluate(z[:, :-1], z[:, -1]), scale, right)
-    matrix[:, -1, :] = along
-    tangent = solve_each(matrix, right)[:, :, 1]
-    tangent = np.where(np.isfinite(tangent), tangent, along)
-    tangent /= np.sqrt((tangent * tangent).sum(axis=1, keepdims=True))
-    matrix[:, -1, :] = tangent
-    sign = np.linalg.slogdet(np.where(np.isfinite(matrix), matrix, 0.0))[0]
-    oriented: FloatArray = tangent * (sign * orientation)[:, None]
-    return oriented

@@ -11,9 +11,9 @@ from fcm.response.balance import Balance
 from fcm.response.branches import Branches, hang_together
 from fcm.response.displacement import displacement_rates, displacements
 from fcm.response.extrema import fold_rate, locate
-from fcm.response.path import BoolArray, amplitudes, scales
+from fcm.response.newton import amplitudes, scales
 from fcm.response.segment import Segments, correct_exactly
-from fcm.response.structure import AnyArray, IntArray
+from fcm.response.structure import AnyArray, BoolArray, IntArray
 
 NEARLY_HIGHEST = 0.7  # a maximum between points may exceed them by this factor
 FINE = 0.08  # distance of points near a summit, so that no maximum hides between two of them

@@ -11,7 +11,7 @@ from fcm.response.balance import Balance
 from fcm.response.displacement import displacements
 from fcm.response.law import UNKNOWNS, ClosedForm, Law
 from fcm.response.leave_out import Lighter
-from fcm.response.path import amplitudes, correct, scales
+from fcm.response.newton import amplitudes, correct, scales
 from fcm.response.points import extent
 from fcm.response.result import Curve, Response
 from fcm.response.segment import correct_exactly

@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
-from fcm.response.path import Newton, amplitudes, correct, scales
+from fcm.response.newton import Newton, amplitudes, correct, scales
 from fcm.response.structure import IntArray
 
 EXACT = 1e-13  # estimated error of a corrected point, relative

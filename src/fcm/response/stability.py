@@ -18,9 +18,8 @@ import numpy as np
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.law import UNKNOWNS
-from fcm.response.path import BoolArray
 from fcm.response.slow import dense, following, some_modes, with_followers
-from fcm.response.structure import Group
+from fcm.response.structure import BoolArray, Group
 
 GROWTH = 1e-9  # a growth rate counts as positive above this fraction of the frequency
 ZONE = 0.5  # of the frequency: half the distance between copies of an exponent

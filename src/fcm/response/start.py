@@ -9,8 +9,9 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance, Evaluation
-from fcm.response.path import COMPLETE, BoolArray, amplitudes, correct, follow, scales
-from fcm.response.structure import IntArray
+from fcm.response.newton import amplitudes, correct, scales
+from fcm.response.path import COMPLETE, follow
+from fcm.response.structure import BoolArray, IntArray
 
 TRIES = 25  # Newton steps from a linear response
 WEAK = (1e-3, 1e-6, 1e-9)  # fractions of the load at which contacts are nearly linear

@@ -19,6 +19,7 @@ from fcm.scene.model import Contact, FloatArray, Scene
 AnyArray = npt.NDArray[Any]  # real or complex
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
