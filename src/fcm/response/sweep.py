@@ -82,9 +82,8 @@ def trace(
     if uncorrected := sum(curve.uncorrected for curve in response.curves):
         sentences.append(f"{uncorrected} points that could not be corrected with the closed form")
     if stiff := sum(curve.without_table for curve in response.curves):
-        sentences.append(
-            f"the table, for {stiff} curves whose stiff contacts multiply its error: closed form"
-        )
+        which = f"{stiff} curve{'s' if stiff > 1 else ''}"
+        sentences.append(f"the table, for {which} whose stiff contacts multiply its error: closed form")
     response.left_out = sentences
     response.seconds = time.perf_counter() - begin
     return response

@@ -36,16 +36,17 @@ def trace_group(
     _check(curves)
     group = group_of([with_contact(curve) for curve in curves])
     exact = Balance(group, ClosedForm())
-    used = exact if method == "closed-form" else Balance(group, table or _default_table())
+    by_table = method == "table" and not isinstance(table, ClosedForm)
+    used = Balance(group, table or _default_table()) if by_table else exact
     branches = all_branches(used, np.array([c.max_step for c in curves]), progress)
     points = corrected(exact, branches)
     found = np.bincount(branches.curve[branches.trace.curve], minlength=len(curves))
     uncorrected = found - np.bincount(points.curve, minlength=len(curves))
-    if used is exact:
-        points.shift[:] = 0.0  # no table was used
+    if not by_table:
+        points.shift[:] = 0.0
     points = with_folds(exact, refined(exact, points))
     results = Assembly(exact, points, branches).curves(curves, scene.modal.dofs)
-    if used is not exact:
+    if by_table:
         _without_table(scene, curves, results, uncorrected, progress)
     response = Response(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
