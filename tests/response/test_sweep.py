@@ -211,7 +211,7 @@ import fcm
 from fcm.response import sweep
 from fcm.response.law import ClosedForm
 
-class Deadly(ClosedForm):
+class Deadly:
     def gradients(self, n0_bar, b_bar, phi):
         if n0_bar.max() > 1e9:
             os._exit(9)
