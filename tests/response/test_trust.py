@@ -8,6 +8,7 @@ import pytest
 import fcm
 from fcm.response import trace
 from fcm.response.balance import Balance
+from fcm.response.branches import all_branches
 from fcm.response.law import ClosedForm
 from fcm.response.stability import growth_rates
 from fcm.response.structure import group_of
@@ -49,14 +50,14 @@ def test_a_linear_structure_decays_at_its_damping():
     assert rate == pytest.approx([-0.01], rel=1e-9)
 
 
-def test_real_exponent_and_jacobian_change_sign_together(curves):
-    """At a fold the determinant of the balance passes through zero."""
-    scene = fcm.load_scene("yang1998-n5")
-    balance = Balance(group_of([scene]), ClosedForm())
-    x = balance.linear(np.array([1.2]), np.ones((1, 1)))
-    at = balance.evaluate(x, np.array([1.2]))
-    stable = growth_rates(balance, np.column_stack((x, [1.2]))) < 0.0
-    assert stable[0] == (np.linalg.det(at.jacobian[0]) > 0.0)
+def test_real_exponent_and_jacobian_change_sign_together():
+    """Along the folded curve a point is stable where the determinant of the balance is positive."""
+    balance = Balance(group_of([fcm.load_scene("yang1998-n5")]), ClosedForm())
+    z = all_branches(balance, np.array([0.05]), None).trace.z
+    every = balance.take(np.zeros(z.shape[0], dtype=np.intp))
+    positive = np.linalg.det(every.evaluate(z[:, :-1], z[:, -1]).jacobian) > 0.0
+    assert np.array_equal(growth_rates(every, z) < 0.0, positive)
+    assert np.count_nonzero(np.diff(positive)) == 2
 
 
 def test_jumps_of_a_slow_sweep(curves):
