@@ -33,7 +33,8 @@ class Work:
             raise
         except Exception as error:
             if len(group) == 1:
-                return [lost_curve(group[0], f"{type(error).__name__}: {error}")]
+                what = "" if isinstance(error, MemoryError) else "a defect of fcm, "
+                return [lost_curve(group[0], f"{what}{type(error).__name__}: {error}")]
         return [self.curves((scene,))[0] for scene in group]
 
 

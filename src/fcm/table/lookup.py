@@ -81,6 +81,7 @@ class Table:
         """F, shape (3, ...), and dF, shape (3, 3, ...), laid out as by `fcm.contact.fourier_gradients`.
 
         dF are the derivatives of the interpolant itself, so Newton's method on it converges quadratically.
+        Within about 1 / b_bar^2 of n0_bar = b_bar, for b_bar above 600, they do not approach those of F.
         """
         values = self._evaluate(n0_bar, b_bar, phi, 4)
         return values[:, 0], values[:, 1:]
