@@ -36,10 +36,11 @@ def wheel(tmp_path_factory):
 
 
 def test_the_tables_and_scenes_are_in_it(wheel):
-    data = [path for folder in ("tables", "src/fcm/scenes") for path in (ROOT / folder).iterdir()]
-    assert len(data) >= 3
-    for path in data:
-        assert wheel[f"fcm/{path.parent.name}/{path.name}"] == path.stat().st_size
+    data = {"tables": ROOT / "tables", "scenes": ROOT / "src/fcm/scenes"}
+    held = [(name, path) for name, folder in data.items() for path in folder.rglob("*") if path.is_file()]
+    assert len(held) >= 3
+    for name, path in held:
+        assert wheel[f"fcm/{name}/{path.relative_to(data[name])}"] == path.stat().st_size
 
 
 def test_every_module_is_in_it(wheel):

@@ -22,13 +22,19 @@ LARGEST_FILE = 100_000_000  # bytes; a larger one is a mistake, or its modes bel
 
 
 def bundled_scenes() -> tuple[str, ...]:
-    """Names of the scenes that come with fcm.
+    """Names of the scenes that come with fcm; after them those of collections, as "extreme/stiff-normal".
 
-    >>> "yang1998" in bundled_scenes()
-    True
+    >>> "yang1998" in bundled_scenes(), "extreme/stiff-normal" in bundled_scenes()
+    (True, True)
     """
-    names = (Path(entry.name) for entry in (files("fcm") / "scenes").iterdir())
-    return tuple(sorted(name.stem for name in names if name.suffix == ".toml"))
+    folder = _bundled()
+    plain = sorted(path.stem for path in folder.glob("*.toml"))
+    collected = sorted(f"{path.parent.name}/{path.stem}" for path in folder.glob("*/*.toml"))
+    return (*plain, *collected)
+
+
+def _bundled() -> Path:
+    return Path(str(files("fcm") / "scenes"))
 
 
 def load_scene(path_or_name: str | Path) -> Scene:
@@ -41,7 +47,7 @@ def load_scene(path_or_name: str | Path) -> Scene:
     {'contact.shroud.n_0': 100.0}
     """
     if str(path_or_name) in bundled_scenes():
-        path = Path(str(files("fcm") / "scenes" / f"{path_or_name}.toml"))
+        path = _bundled() / f"{path_or_name}.toml"
         return scene_from_dict(_parsed(path, str(path_or_name)), str(path_or_name), path.parent)
     path = Path(path_or_name)
     return scene_from_dict(_parsed(path, str(path)), str(path), path.parent)
