@@ -29,23 +29,27 @@ def trace_group(
     method: str = "table",
     table: Coefficients | None = None,
     progress: Progress | None = None,
+    exact: Coefficients | None = None,
 ) -> Response:
-    """Trace the curves of a scene as one group; the arguments are those of `fcm.response.trace`."""
+    """Trace the curves of a scene as one group; the arguments are those of `fcm.response.trace`.
+
+    The points are solutions with the coefficients `exact`: by default the closed form.
+    """
     begin = time.perf_counter()
     curves = scene.each_curve()
     _check(curves)
     group = group_of([with_contact(curve) for curve in curves])
-    exact = Balance(group, ClosedForm())
+    exact_balance = Balance(group, exact or ClosedForm())
     by_table = method == "table" and not isinstance(table, ClosedForm)
-    used = Balance(group, table or _default_table()) if by_table else exact
+    used = Balance(group, table or _default_table()) if by_table else exact_balance
     branches = all_branches(used, np.array([c.max_step for c in curves]), progress)
-    points = corrected(exact, branches)
+    points = corrected(exact_balance, branches)
     found = np.bincount(branches.curve[branches.trace.curve], minlength=len(curves))
     uncorrected = found - np.bincount(points.curve, minlength=len(curves))
     if not by_table:
         points.shift[:] = 0.0
-    points = with_folds(exact, refined(exact, points))
-    results = Assembly(exact, points, branches).curves(curves, scene.modal.dofs)
+    points = with_folds(exact_balance, refined(exact_balance, points))
+    results = Assembly(exact_balance, points, branches).curves(curves, scene.modal.dofs)
     if by_table:
         _without_table(scene, curves, results, uncorrected, progress)
     response = Response(
