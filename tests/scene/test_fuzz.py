@@ -110,6 +110,7 @@ PATHS += [
     ("schedule", "cycles"),
     ("schedule", "frequency"),
 ]
+PATHS += [("start", key) for key in ("displacement", "velocity", "friction", "angle")]
 PATHS += [
     ("sweep", key)
     for key in ("contact.shroud.n_0", "contact.0.tangential.u", "modal.shapes.0.0", "force.0.phase")
@@ -141,6 +142,7 @@ def test_a_valid_scene_with_values_replaced(changes):
         "response": {"frequency": [0.5, 1.5]},
         "sweep": {"contact.shroud.n_0": [1, 2]},
         "schedule": [{"cycles": 1, "frequency": 1}],
+        "start": {"displacement": [0.0, 1.0]},
     }
     for (section, key), value in changes:
         table = data[section]

@@ -70,6 +70,27 @@ def test_frequencies_in_hertz_become_angular(data):
     assert scene.schedule[0].cycles == 10
 
 
+def test_a_schedule_needs_no_range(data):
+    for change in (data.__delitem__, lambda key: data.__setitem__(key, {"max_step": 0.1})):
+        change("response")
+        scene = scene_from_dict(data)
+        assert not scene.has_range and len(scene.schedule) == 1 and scene.start is None
+
+
+def test_where_a_schedule_starts(data):
+    scene = scene_from_dict(data | {"start": {"displacement": [1, -2.5], "angle": 0.5}})
+    assert scene.start.displacement.tolist() == [1, -2.5] and scene.start.velocity.tolist() == [0, 0]
+    assert scene.start.friction.tolist() == [0, 0] and scene.start.angle == 0.5
+    assert all(curve.start is scene.start for curve in scene.curves)
+
+
+def test_nothing_has_to_move_where_nothing_is_traced(data):
+    for force in data["force"]:
+        force["amplitude"] = 0.0
+    del data["response"], data["sweep"]
+    assert scene_from_dict(data).schedule
+
+
 def test_defaults(data):
     del data["modal"]["mass"], data["sweep"], data["schedule"], data["contact"], data["title"]
     data["modal"]["damping"] = 0.03

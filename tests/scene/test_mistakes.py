@@ -93,8 +93,6 @@ CASES = [
     ("force.0.phase", "90", 'force[0].phase: must be a number, is the string "90"'),
     ("force.0.dof", "q", 'force[0].dof: unknown degree of freedom "q"'),
     ("force.0.dof", {"u": 0}, "force[0].dof: has only zero weights"),
-    ("response", GONE, "response: missing; give a [response] table with frequency = [from, to]"),
-    ("response.frequency", GONE, "response.frequency: missing"),
     ("response.frequency", [1.7, 0.7], "response.frequency: goes down: [1.7, 0.7]; give the lower one first"),
     ("response.frequency", [1, 1], "response.frequency: is empty: [1, 1]"),
     ("response.frequency", [0, 1], "response.frequency[0]: must be greater than 0, is 0"),
@@ -109,6 +107,17 @@ CASES = [
     ("schedule.0.cycles", 0, "schedule[0].cycles: must be greater than 0, is 0"),
     ("schedule.0.frequency", -1.0, "schedule[0].frequency: must be greater than 0, is -1"),
     ("schedule.0.frequncy", 1.0, "schedule[0].frequncy: unknown key"),
+    ("start", [1], "start: must be a table, is a list of 1"),
+    ("start", {"velocty": [0, 0]}, 'start.velocty: unknown key; did you mean "velocity"?'),
+    ("start", {"displacement": 1.0}, "start.displacement: must be a list of numbers, is 1"),
+    (
+        "start",
+        {"displacement": [1]},
+        "start.displacement: must have one number for each mode, 2 in all, has 1",
+    ),
+    ("start", {"friction": [1]}, "start.friction: must have one number for each contact, 2 in all, has 1"),
+    ("start", {"velocity": [0, nan]}, "start.velocity[1]: must be finite, is nan"),
+    ("start", {"angle": "90"}, 'start.angle: must be a number, is the string "90"'),
     ("sweep", 3, "sweep: must be a table, is 3"),
 ]
 
@@ -226,3 +235,23 @@ def test_arrays_of_the_wrong_kind(data, mistakes, array):
     data["modal"]["frequency"] = array
     data["modal"]["shapes"] = array
     assert "modal.frequency" in mistakes(data)
+
+
+@pytest.mark.parametrize("schedule", [GONE, []])
+def test_without_a_schedule_there_must_be_a_range(data, mistakes, schedule):
+    put(data, "schedule", schedule)
+    del data["response"]["frequency"]
+    assert "response.frequency: missing; give a list of numbers" in mistakes(data)
+    del data["response"]
+    assert "response: missing; give a [response] table with frequency = [from, to]" in mistakes(data)
+
+
+def test_a_start_needs_a_schedule(data, mistakes):
+    del data["schedule"]
+    data["start"] = {}
+    assert mistakes(data) == ("test.toml: start: is of no use without a [[schedule]], which starts from it")
+
+
+def test_a_schedule_has_a_limit(data, mistakes):
+    data["schedule"] = [{"frequency": 1.0, "cycles": 6e6}] * 2
+    assert "schedule: asks for 1.2e+07 cycles; there can be 10000000" in mistakes(data)

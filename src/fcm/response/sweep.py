@@ -62,6 +62,8 @@ def trace(
     """
     if method not in METHODS:
         raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
+    if not scene.has_range:
+        raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
     curves = scene.each_curve()
     lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance)

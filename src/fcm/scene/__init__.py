@@ -2,7 +2,7 @@
 
 from fcm.scene.errors import SceneError
 from fcm.scene.load import bundled_scenes, load_scene, scene_from_dict
-from fcm.scene.model import Contact, Force, Modal, Phase, Scene
+from fcm.scene.model import Contact, Force, Modal, Phase, Scene, Start
 
 __all__ = [
     "Contact",
@@ -11,6 +11,7 @@ __all__ = [
     "Phase",
     "Scene",
     "SceneError",
+    "Start",
     "bundled_scenes",
     "load_scene",
     "scene_from_dict",

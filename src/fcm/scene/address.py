@@ -41,7 +41,7 @@ class Addresses:
 
     def _excused(self, key: str, path: str, mistakes: Mistakes) -> bool:
         """Keys with a better explanation than that they are not there."""
-        if key.startswith(("response.", "schedule.")):
+        if key.startswith(("response.", "schedule.", "start.")):
             mistakes.add(path, "the range, the step and the schedule cannot be swept")
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")

@@ -13,11 +13,12 @@ from fcm.scene.address import replaced
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.modal import UNITS, modal_of, read_modal
 from fcm.scene.model import FloatArray, Scene
-from fcm.scene.parts import contact_of, force_of, read_contacts, read_forces, read_response, read_schedule
+from fcm.scene.parts import contact_of, force_of, read_contacts, read_forces, read_response
+from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
 from fcm.scene.sweep import Swept, combinations, read_sweep
 
-KEYS = ("title", "frequency_unit", "modal", "contact", "force", "response", "sweep", "schedule")
+KEYS = ("title", "frequency_unit", "modal", "contact", "force", "response", "sweep", "schedule", "start")
 LARGEST_FILE = 100_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
 
 
@@ -73,7 +74,7 @@ def scene_from_dict(data: Mapping[str, Any], name: str = "scene", folder: str | 
     parts["contact"] = read_contacts(top, parts["modal"]["dofs"])
     parts["force"] = read_forces(top, parts["modal"]["dofs"])
     ends, step = read_response(top, unit)
-    schedule = read_schedule(top, unit)
+    schedule, start = read_schedule(top, unit), read_start(top, parts)
     swept = read_sweep(top, parts)
     title = top.text("title", "")
     mistakes.raise_if_any()
@@ -86,6 +87,7 @@ def scene_from_dict(data: Mapping[str, Any], name: str = "scene", folder: str | 
         max_step=step,
         frequency_unit=unit,
         schedule=schedule,
+        start=start,
         name=name,
     )
     scene = replace(scene, curves=_curves(scene, parts, swept))
@@ -117,7 +119,7 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
     for curve in scene.each_curve():
         where = ", ".join(f"{key} = {value:g}" for key, value in curve.parameters.items())
         where = f"sweep with {where}" if where else ""
-        if not _moved(curve):
+        if curve.has_range and not _moved(curve):
             mistakes.add(where, "the forces move no mode, so the response is zero")
         for contact in curve.contacts:
             if not contact.tangential.any():

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+NO_RANGE = (np.nan, np.nan)  # of a scene with a schedule and nothing to trace
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,16 @@ class Phase:
 
 
 @dataclass(frozen=True)
+class Start:
+    """The state that a time simulation starts from."""
+
+    displacement: FloatArray  # (mode,) modal
+    velocity: FloatArray  # (mode,) modal
+    friction: FloatArray  # (contact,) friction forces
+    angle: float  # omega t of the external forces [rad]
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
 
@@ -59,13 +70,19 @@ class Scene:
     modal: Modal
     contacts: tuple[Contact, ...]
     forces: tuple[Force, ...]
-    frequency_range: tuple[float, float]  # [rad/s]
+    frequency_range: tuple[float, float]  # [rad/s], NO_RANGE if there is only a schedule
     max_step: float  # longest step along a curve, relative to the curve's own extent
     frequency_unit: str = "rad/s"  # the unit of the scene's file and of results: "rad/s" or "Hz"
     schedule: tuple[Phase, ...] = ()
+    start: Start | None = None  # of the schedule; None is rest
     parameters: dict[str, float] = field(default_factory=dict)  # the swept values of this curve
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
+
+    @property
+    def has_range(self) -> bool:
+        """Whether there is a range of frequencies to trace."""
+        return not np.isnan(self.frequency_range[0])
 
     def each_curve(self) -> tuple[Scene, ...]:
         """The scenes to trace: those of the sweep, or this one alone."""

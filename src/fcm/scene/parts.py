@@ -1,4 +1,4 @@
-"""Contacts, forces, range and schedule of a scene."""
+"""Contacts, forces and range of a scene."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from fcm.scene.errors import quoted
 from fcm.scene.modal import UNITS
-from fcm.scene.model import Contact, Force, Phase
+from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.rules import FRACTION, POSITIVE, RULES
 from fcm.scene.section import Section
 
@@ -88,30 +88,24 @@ def force_of(draft: dict[str, Any]) -> Force:
 
 
 def read_response(top: Section, unit: str) -> tuple[tuple[float, float], float]:
-    """The range of frequencies [rad/s], and the longest step."""
+    """The range of frequencies [rad/s], nan if there is none but a schedule, and the longest step."""
+    if "response" not in top.data and top.data.get("schedule"):
+        return NO_RANGE, MAX_STEP
     section = top.table("response", "a [response] table with frequency = [from, to]")
     if section is None:
-        return (nan, nan), MAX_STEP
+        return NO_RANGE, MAX_STEP
     section.only("frequency", "max_step")
-    ends = section.vector("frequency", POSITIVE)
     step = section.number("max_step", FRACTION, default=MAX_STEP)
+    if "frequency" not in section.data and top.data.get("schedule"):
+        return NO_RANGE, step
+    ends = section.vector("frequency", POSITIVE)
     if ends is None:
-        return (nan, nan), step
+        return NO_RANGE, step
     if len(ends) != 2:
         section.wrong("frequency", f"must be two numbers, [from, to], is a list of {len(ends)}")
-        return (nan, nan), step
+        return NO_RANGE, step
     low, high = (float(end) * UNITS[unit] for end in ends)
     if low >= high:
         order = "goes down" if low > high else "is empty"
         section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; give the lower one first")
     return (low, high), step
-
-
-def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
-    """The phases of a time simulation."""
-    phases = []
-    for section in top.tables("schedule"):
-        section.only("frequency", "cycles")
-        frequency = section.number("frequency", POSITIVE) * UNITS[unit]
-        phases.append(Phase(frequency, section.number("cycles", POSITIVE)))
-    return tuple(phases)

@@ -61,7 +61,7 @@ def simulate_schedule(scene: Scene, state: State | None = None, progress: Progre
     """The exact motion of a scene through its schedule, each phase continuing the last.
 
     The state continues, and so does the phase angle of the forces: it does not jump when the frequency
-    does.
+    does. By default it begins with the scene's own [start], or else at rest.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def simulate_schedule(scene: Scene, state: State | None = None, progress: Progre
     """
     if not scene.schedule:
         raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
-    return simulate_phases(scene, scene.schedule, state, progress)
+    return simulate_phases(scene, scene.schedule, state or State.start(scene), progress)
 
 
 def simulate_phases(

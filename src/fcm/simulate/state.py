@@ -37,6 +37,14 @@ class State:
         modes = scene.modal.mass.size
         return State(np.zeros(modes), np.zeros(modes), np.zeros(len(scene.contacts)))
 
+    @staticmethod
+    def start(scene: Scene) -> State:
+        """Where the scene's schedule starts from: rest, unless the scene says otherwise."""
+        given = scene.start
+        if given is None:
+            return State.rest(scene)
+        return State(given.displacement, given.velocity, given.friction, given.angle)
+
 
 def entry(system: System, state: State) -> tuple[FloatArray, str]:
     """The state vector of a state, and a combination of contact states for `settle` to begin with."""

@@ -1,0 +1,57 @@
+"""The time simulation of a scene: the phases of its schedule and the state that they start from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.modal import UNITS
+from fcm.scene.model import FloatArray, Phase, Start
+from fcm.scene.rules import ANY, POSITIVE, RULES
+from fcm.scene.section import Section
+
+MOST_CYCLES = 10_000_000  # of all phases, hours of computing
+
+
+def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
+    """The phases of a time simulation."""
+    phases = []
+    for section in top.tables("schedule"):
+        section.only("frequency", "cycles")
+        frequency = section.number("frequency", POSITIVE) * UNITS[unit]
+        phases.append(Phase(frequency, section.number("cycles", POSITIVE)))
+    total = sum(phase.cycles for phase in phases)
+    if total > MOST_CYCLES:
+        top.wrong("schedule", f"asks for {total:g} cycles; there can be {MOST_CYCLES}")
+    return tuple(phases)
+
+
+def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
+    """The state that the schedule starts from; None, which is rest, without a [start] table."""
+    section = top.table("start", "") if "start" in top.data else None
+    if section is None:
+        return None
+    section.only("displacement", "velocity", "friction", "angle")
+    if not top.data.get("schedule"):
+        section.wrong("", "is of no use without a [[schedule]], which starts from it")
+    frequency = parts["modal"]["frequency"]
+    modes = None if frequency is None else len(frequency)
+    return Start(
+        _vector(section, "displacement", modes, "mode"),
+        _vector(section, "velocity", modes, "mode"),
+        _vector(section, "friction", len(parts["contact"]), "contact"),
+        section.number("angle", RULES["phase"], default=0.0),
+    )
+
+
+def _vector(section: Section, key: str, count: int | None, each: str) -> FloatArray:
+    """One number for each mode or contact, zeros by default."""
+    zeros = np.zeros(count or 0)
+    given = section.vector(key, ANY) if key in section.data else zeros
+    if given is not None and count is not None and len(given) != count:
+        section.wrong(key, f"must have one number for each {each}, {count} in all, has {len(given)}")
+    values = zeros if given is None else given
+    values.flags.writeable = False
+    return values
