@@ -12,6 +12,7 @@ from fcm.response.balance import Balance
 from fcm.response.branches import Branches, hang_together, outcome
 from fcm.response.displacement import amplitude_growth, displacements
 from fcm.response.extrema import locate, peak_rate
+from fcm.response.law import UNKNOWNS
 from fcm.response.path import REASONS
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.result import Curve
@@ -29,8 +30,8 @@ class Assembly:
         self.z = z = points.z
         at_points = exact.take(points.curve)
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
-        arguments = at_points.law.arguments(z[:, :-1].reshape(z.shape[0], exact.group.contacts, 5))
-        self.regime = sequences(*arguments)
+        self.loop = at_points.law.loops(z[:, :-1].reshape(z.shape[0], exact.group.contacts, UNKNOWNS))
+        self.regime = sequences(*np.moveaxis(self.loop[..., :3], -1, 0))
         self.truncation_error = truncation_error(at_points, z)
         linear = np.logical_and.reduce(np.isin(self.regime, ("E", "S")), axis=1)
         self.stable = stable_points(at_points, z, linear)
@@ -51,6 +52,7 @@ class Assembly:
                     phase=_pick(np.angle(self.X), part),
                     mean=_pick(self.mean, part),
                     regime=_pick(self.regime[:, : len(scene.contacts)], part),
+                    loop=_pick(self.loop[:, : len(scene.contacts)], part),
                     stable=_pick(self.stable, part),
                     table_error=_pick(self.points.shift, part),
                     truncation_error=_pick(self.truncation_error, part),

@@ -27,8 +27,7 @@ class Work:
     def curves(self, group: Group, progress: Progress | None = None) -> list[Curve]:
         """Trace a group; if that fails, each of its curves alone, and those that fail then are lost."""
         try:
-            whole = replace(group[0], curves=group)
-            return trace_group(whole, self.method, self.table, progress).curves
+            return self.traced(group, progress)
         except ResponseError:
             raise
         except Exception as error:
@@ -36,6 +35,11 @@ class Work:
                 what = "" if isinstance(error, MemoryError) else "a defect of fcm, "
                 return [lost_curve(group[0], f"{what}{type(error).__name__}: {error}")]
         return [self.curves((scene,))[0] for scene in group]
+
+    def traced(self, group: Group, progress: Progress | None) -> list[Curve]:
+        """The curves of a group; whatever cannot be foreseen is raised."""
+        whole = replace(group[0], curves=group)
+        return trace_group(whole, self.method, self.table, progress).curves
 
 
 def lost_curve(scene: Scene, reason: str) -> Curve:
@@ -48,6 +52,7 @@ def lost_curve(scene: Scene, reason: str) -> Curve:
         phase=np.empty((0, len(dofs))),
         mean=np.empty((0, len(dofs))),
         regime=np.empty((0, len(scene.contacts)), dtype="<U6"),
+        loop=np.empty((0, len(scene.contacts), 5)),
         stable=np.empty(0, dtype=bool),
         table_error=none,
         truncation_error=none,

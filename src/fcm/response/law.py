@@ -54,6 +54,11 @@ class Law:
         scale = self.ratio / a
         return scale * (self.n_0 + self.k_v * x[..., 4]), scale * self.k_v * b, phi
 
+    def loops(self, x: FloatArray) -> FloatArray:
+        """(curve, contact, 5): n0_bar, b_bar, phi of each contact's loop, its a, and the force k_u a."""
+        a = np.hypot(x[..., 0], x[..., 1])
+        return np.stack((*self.arguments(x), a, self.k_u * a), axis=-1)
+
     def forces(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Forces (curve, contact, 6) and their tangent (curve, contact, 6, 5) at x (curve, contact, 5)."""
         force = np.zeros((*x.shape[:-1], FORCES))

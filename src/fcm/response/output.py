@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 import fcm
+from fcm.contact.limits import FloatArray
 from fcm.files import replacing
 from fcm.response.result import UNIT, Curve, Response
 
@@ -19,7 +21,33 @@ if TYPE_CHECKING:
     import xarray
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
+ORBIT_COLUMNS = ("closure_error", "sweep")
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
+LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
+    ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
+    ("b_bar", "mu k_v b / (k_u a) of the loop", {"units": "1"}),
+    ("phi", "phase of the normal motion before the tangential, of the loop", {"units": "radian"}),
+    ("tangential_amplitude", "amplitude a of the tangential motion across the contact", {}),
+    ("spring_force", "k_u a, by which the loop's forces are divided", {}),
+)
+
+EXACT = {  # meanings that differ where the curves are of exact periodic solutions
+    "amplitude": "half the peak-to-peak displacement",
+    "phase": "phase of the fundamental, as fundamental * sin(omega t + phase)",
+    "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
+    "S separation",
+    "table_error": "0: no table was used",
+    "truncation_error": "0: no harmonic was left out",
+    "stable": "1 where small disturbances die out: all Floquet multipliers of a period within the unit circle",
+}
+ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
+    "fundamental": (("dof",), {"long_name": "amplitude of the fundamental"}),
+    "closure_error": (
+        (),
+        {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
+    ),
+    "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
+}
 
 
 class Field(NamedTuple):
@@ -73,6 +101,8 @@ def fields_of(response: Response) -> dict[str, Field]:
     points("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
     states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
     points("regime", lambda c: c.regime, ("contact",), long_name=states)
+    for i, (name, meaning, units) in enumerate(LOOP):
+        points(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
     shift = (
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
@@ -83,8 +113,24 @@ def fields_of(response: Response) -> dict[str, Field]:
     points(
         "stable", lambda c: np.where(np.isnan(c.frequency), np.nan, c.stable), (), long_name=hill, units="1"
     )
+    if response.method == "exact":
+        for name, meaning in EXACT.items():
+            out[name].attrs["long_name"] = meaning
+        for name, (dims, attrs) in ORBITS.items():
+            points(name, partial(_of_orbits, name=name), dims, **attrs)
     out |= _curve_fields(response, scale, cf_unit)
     return out
+
+
+def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
+    if curve.orbits is None:  # lost
+        return {"fundamental": curve.amplitude, "sweep": np.array([], dtype=str)}.get(name, curve.frequency)
+    values: npt.NDArray[Any] = getattr(curve.orbits, name)
+    return values
+
+
+def _of_loop(curve: Curve, column: int) -> FloatArray:
+    return curve.loop[..., column]
 
 
 def _curve_fields(response: Response, scale: float, cf_unit: str) -> dict[str, Field]:
@@ -119,7 +165,8 @@ def _padded(parts: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     longest = max((part.shape[0] for part in parts), default=0)
     text = bool(parts) and parts[0].dtype.kind == "U"
     tail = parts[0].shape[1:] if parts else ()
-    out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype="<U6" if text else np.float64)
+    kind = np.result_type("<U6", *parts) if text else np.float64
+    out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype=kind)
     for row, part in zip(out, parts, strict=True):
         row[: part.shape[0]] = part
     return out
@@ -130,10 +177,15 @@ def attributes(response: Response) -> dict[str, str]:
     return {
         "title": response.title,
         "layout": LAYOUT,
-        "source": f"fcm {fcm.__version__}, single-harmonic balance, method {response.method}",
+        "source": f"fcm {fcm.__version__}, {_kind(response.method)}",
         "frequency_unit": response.frequency_unit,
         "summary": json.dumps(summary(response), allow_nan=False),
     }
+
+
+def _kind(method: str) -> str:
+    exact = "exact periodic solutions between transitions, by shooting"
+    return exact if method == "exact" else f"single-harmonic balance, method {method}"
 
 
 def to_dataset(response: Response) -> xarray.Dataset:
@@ -175,7 +227,9 @@ def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
     scale = UNIT[response.frequency_unit]
     keys = list(response.curves[0].parameters) if response.curves else []
-    columns = [f"{kind} {dof}" for dof in response.dofs for kind in ("amplitude", "phase", "mean")]
+    exact = response.method == "exact"
+    kinds = ("amplitude", "phase", "mean", "fundamental")[: 4 if exact else 3]
+    columns = [f"{kind} {dof}" for dof in response.dofs for kind in kinds]
     regimes = [f"regime {name}" for name in response.contacts]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -188,14 +242,18 @@ def write_csv(response: Response, path: str | Path) -> None:
                 *columns,
                 *regimes,
                 *LAST_COLUMNS,
+                *(ORBIT_COLUMNS if exact else ()),
             ]
         )
         for number, c in enumerate(response.curves):
-            values = np.stack((c.amplitude, c.phase, c.mean), axis=2).reshape(c.frequency.size, -1)
+            orbits = c.orbits
+            parts = (c.amplitude, c.phase, c.mean, *(() if orbits is None else (orbits.fundamental,)))
+            values = np.stack(parts, axis=2).reshape(c.frequency.size, -1)
             for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
                     [number, c.branch[k], *c.parameters.values(), repr(float(c.frequency[k] / scale))]
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), int(c.stable[k])]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
+                    + ([] if orbits is None else [repr(float(orbits.closure_error[k])), orbits.sweep[k]])
                 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
@@ -28,7 +27,7 @@ def restored(response: Response, lighter: Lighter) -> Response:
     if len(lighter.contacts) < len(full[0].contacts):
         response.contacts = tuple(c.name for c in full[0].contacts)
         for curve, scene in zip(response.curves, full, strict=True):
-            curve.regime = _all_regimes(curve, scene, lighter.contacts)
+            _put_back(curve, scene, list(lighter.contacts))
     return response
 
 
@@ -44,15 +43,17 @@ def checked(response: Response, lighter: Lighter) -> float:
     return max(shifts, default=0.0)
 
 
-def _all_regimes(curve: Curve, scene: Scene, traced: tuple[int, ...]) -> npt.NDArray[np.str_]:
-    """The regimes with those of the contacts that were not traced."""
+def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
+    """Give a curve the loops and regimes of the contacts that were not traced."""
     at = np.flatnonzero(np.isfinite(curve.frequency))
     group = group_of([scene])
     law = Law(group.mu, group.k_u, group.k_v, group.n_0, ClosedForm())
-    regime = np.full((curve.frequency.size, len(scene.contacts)), "", dtype=curve.regime.dtype)
-    regime[at] = sequences(*law.arguments(_unknowns(curve, scene, at)))
-    regime[:, list(traced)] = curve.regime
-    return regime
+    loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
+    regime = np.full(loop.shape[:2], "", dtype=curve.regime.dtype)
+    loop[at] = law.loops(_unknowns(curve, scene, at))
+    regime[at] = sequences(*np.moveaxis(loop[at, :, :3], -1, 0))
+    loop[:, traced], regime[:, traced] = curve.loop, curve.regime
+    curve.loop, curve.regime = loop, regime
 
 
 def _unknowns(curve: Curve, scene: Scene, at: IntArray) -> FloatArray:

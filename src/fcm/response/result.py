@@ -15,6 +15,16 @@ UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
 
 @dataclass
+class Orbits:
+    """What only the points of an exact curve have; see `fcm.simulate.trace_exact`."""
+
+    fundamental: FloatArray  # (point, dof) amplitude of the fundamental
+    closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
+    sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
+    jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
+
+
+@dataclass
 class Curve:
     """One response curve; frequencies in rad/s.
 
@@ -27,6 +37,7 @@ class Curve:
     phase: FloatArray  # (point, dof) [rad], of amplitude * sin(omega t + phase)
     mean: FloatArray  # (point, dof)
     regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
+    loop: FloatArray  # (point, contact, 5) n0_bar, b_bar, phi, tangential amplitude a, force k_u a
     stable: npt.NDArray[np.bool_]  # (point,) by Hill's method on the balanced equations
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
     truncation_error: FloatArray  # (point,) response to the loop's harmonics 2, 3, ... by that to its first
@@ -37,6 +48,7 @@ class Curve:
     seconds: float
     uncorrected: int = 0  # points left out because the closed form gave none there
     without_table: bool = False  # traced again with the closed form, because the table led away from it
+    orbits: Orbits | None = None  # of the exact motion; amplitude is then half the peak-to-peak
 
     @property
     def points(self) -> int:
@@ -55,6 +67,8 @@ class Curve:
 
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
+        if self.orbits is not None and self.orbits.jumps is not None:
+            return self.orbits.jumps
         return jumps(self.frequency, self.amplitude, self.stable)
 
     def _jump(self, jump: Jump, scale: float) -> dict[str, Any]:
@@ -79,6 +93,7 @@ class Curve:
             "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
+            **({} if self.orbits is None else {"closure_error": self.worst(self.orbits.closure_error)}),
             "seconds": self.seconds,
         }
 
