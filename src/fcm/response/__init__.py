@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fcm.response.result import Curve, Response
@@ -15,15 +16,18 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "Curve", "Response", "ResponseError", "respond", "trace"]
 
 
-def respond(scene: Scene, method: str = "table") -> xarray.Dataset:
+def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None = None) -> xarray.Dataset:
     """Response curves of a scene as the dataset that ``fcm respond`` writes.
 
     Parameters
     ----------
     scene : Scene
         From `fcm.load_scene`.
-    method : {"table", "closed-form"}
-        Source of the Fourier coefficients while the curve is followed; the points are exact either way.
+    method : {"table", "closed-form", "exact"}
+        Harmonic balance with the Fourier coefficients of a table or in closed form while the curve is
+        followed (its points are the same either way); or the exact periodic solutions, by shooting.
+    at : sequence of float, optional
+        With "exact": frequencies in the scene's unit, visited by an upward and then a downward sweep.
 
     Returns
     -------
@@ -34,7 +38,7 @@ def respond(scene: Scene, method: str = "table") -> xarray.Dataset:
     Raises
     ------
     ResponseError
-        If the method is unknown.
+        If the method is unknown, or does not fit the other arguments.
 
     Examples
     --------
@@ -45,4 +49,10 @@ def respond(scene: Scene, method: str = "table") -> xarray.Dataset:
     """
     from fcm.response.output import to_dataset
 
+    if method == "exact":
+        from fcm.simulate import trace_exact
+
+        return to_dataset(trace_exact(scene, at))
+    if at is not None:
+        raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
     return to_dataset(trace(scene, method))

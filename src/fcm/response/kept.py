@@ -24,6 +24,8 @@ from fcm.scene.model import Scene
 HEAD = struct.Struct("<qq32s")  # number of the group, length, digest
 _ALLOWED = {  # what a record may consist of, and nothing that could do anything
     ("fcm.response.result", "Curve"),
+    ("fcm.response.result", "Orbits"),
+    ("fcm.response.jumps", "Jump"),
     ("numpy", "ndarray"),
     ("numpy", "dtype"),
     ("numpy._core.multiarray", "_reconstruct"),

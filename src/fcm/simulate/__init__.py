@@ -4,6 +4,7 @@ from fcm.simulate.branch import Branch, trace_orbits
 from fcm.simulate.cycle import Cycle
 from fcm.simulate.energy import Energy, energy
 from fcm.simulate.errors import SimulationError
+from fcm.simulate.exact import trace_exact
 from fcm.simulate.harmonic import harmonic_state
 from fcm.simulate.measure import Measure
 from fcm.simulate.motion import History, Motion, Transition
@@ -28,5 +29,6 @@ __all__ = [
     "simulate",
     "simulate_phases",
     "simulate_schedule",
+    "trace_exact",
     "trace_orbits",
 ]
