@@ -162,3 +162,65 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, ending):
     first, second = ((tmp_path / (name + ending)).read_bytes() for name in "ab")
     assert first == second
     assert first.startswith({".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}[ending])
+
+
+def with_errors(curve, table, truncation):
+    return replace(curve, table_error=table, truncation_error=truncation)
+
+
+def test_errors_are_drawn_below_the_curves():
+    table = np.where(FREQUENCY < 1.2, 1e-6, 0.0)
+    truncation = np.where(np.abs(FREQUENCY - 1.2) < 0.1, 1e-3, 0.0)
+    curves = [with_errors(resonance(9.0, 1.2, 5.0), table, truncation), resonance(7.0, 1.3, 1.0)]
+    axes, below = draw_response(response(*curves)).axes
+    (line,), (area,) = below.lines, below.patches
+    assert below.get_yscale() == "log" and below.get_ylabel() == "Relative error"
+    assert below.get_xlabel() == "Frequency $\\omega$ (rad/s)" and axes.get_xlabel() == ""
+    assert line.get_color() == axes.lines[0].get_color()
+    known = truncation > 0.0
+    np.testing.assert_array_equal(line.get_ydata()[known], 1e-3)
+    assert line.get_ydata()[~known].max() < below.get_ylim()[0]  # drawn down to the axis, not broken off
+    values, edges, _ = area.get_data()
+    assert set(values[edges[1:] < 1.19]) == {1e-6} and values[edges[:-1] > 1.21].max() < below.get_ylim()[0]
+
+
+def test_the_area_holds_the_largest_error_of_the_table():
+    small, large = np.full(201, 1e-7), np.full(201, 1e-5)
+    large[:100] = 0.0
+    curves = [
+        with_errors(resonance(p, 1.2, p), error, 0.0 * error) for p, error in ((9.0, small), (7.0, large))
+    ]
+    figure = draw_response(response(*curves))
+    (area,) = figure.axes[1].patches
+    values, edges, _ = area.get_data()
+    assert set(values[edges[1:] < 1.19]) == {1e-7} and set(values[edges[:-1] > 1.2]) == {1e-5}
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "higher harmonics left out", "table, before correction (largest of all)",
+    ]  # fmt: skip
+
+
+def test_the_area_is_not_drawn_between_branches():
+    apart = FREQUENCY.copy()
+    apart[50:150] = np.nan
+    curve = with_errors(replace(resonance(9.0, 1.2, 5.0), frequency=apart), np.full(201, 1e-6), np.zeros(201))
+    (area,) = draw_response(response(curve)).axes[1].patches
+    values, edges, _ = area.get_data()
+    assert values[(edges[:-1] > 0.96) & (edges[1:] < 1.44)].max() < 1e-8 < values[0]
+
+
+def test_no_panel_without_errors_or_when_not_wanted():
+    none = with_errors(resonance(9.0, 1.2, 5.0), np.zeros(201), np.zeros(201))
+    some = with_errors(resonance(9.0, 1.2, 5.0), np.zeros(201), np.full(201, 1e-3))
+    assert len(draw_response(response(none)).axes) == 1
+    assert len(draw_response(response(some), errors=False).axes) == 1
+    figure = draw_response(response(some))
+    assert len(figure.axes) == 2 and len(figure.legends[0].get_texts()) == 1
+
+
+def test_errors_above_one_and_of_a_single_point_are_drawn():
+    one = DrawnCurve(
+        {}, FREQUENCY[:1], np.ones((1, 2)), table_error=np.ones(1), truncation_error=np.full(1, 3.0)
+    )
+    figure = draw_response(response(one))
+    figure.draw_without_rendering()
+    assert figure.axes[1].get_ylim()[1] == 3.0

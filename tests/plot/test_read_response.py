@@ -95,3 +95,14 @@ def test_a_file_that_was_cut_off_is_said(path, cut):
     path.write_bytes(path.read_bytes()[:cut])
     with pytest.raises(PlotError, match=r"response\.nc: not a "):
         read_response(path)
+
+
+def test_errors_come_with_their_curves(path):
+    with netCDF4.Dataset(path, "a") as data:
+        data.createVariable("table_error", float, ("curve", "point"))[...] = [
+            [1.0, 2.0, 3.0],
+            [4.0, 5.0, NAN],
+        ]
+    first, second = read_response(path).curves
+    assert first.table_error.tolist() == [1.0, 2.0, 3.0] and second.table_error.tolist() == [4.0, 5.0]
+    assert first.truncation_error is None

@@ -37,17 +37,20 @@ def plot() -> None:
     "--log/--linear", default=None,
     help="Amplitude axis.  [default: logarithmic if the peaks span more than a decade]",
 )  # fmt: skip
+@click.option("--errors/--no-errors", default=True, show_default=True, help="A panel of the curves' errors.")
 @pass_messages
-def response(messages: Messages, file: Path, output: Path | None, dof: str | None, log: bool | None) -> None:
+def response(
+    messages: Messages, file: Path, output: Path | None, dof: str | None, log: bool | None, errors: bool
+) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
-    Unstable parts are dashed where the file knows them.
+    Unstable parts are dashed, and the errors of the curves drawn below them, where the file knows them.
     """
     from fcm.plot import draw_response, read_response, save
 
     output = output or file.with_suffix(".png")
     check_output(output, ENDINGS)
-    figure = draw_response(read_response(file), dof=dof, log=log)
+    figure = draw_response(read_response(file), dof=dof, log=log, errors=errors)
     with replacing(output) as partial:
         save(figure, partial)
     messages.info(f"wrote {output}")

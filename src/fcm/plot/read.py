@@ -30,6 +30,8 @@ class DrawnCurve:
     amplitude: FloatArray  # (point, dof)
     stable: BoolArray | None = None  # (point,)
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
+    table_error: FloatArray | None = None  # (point,) relative, before the correction
+    truncation_error: FloatArray | None = None  # (point,) relative
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,10 @@ def _response(dataset: Any) -> DrawnResponse:
     frequency, amplitude = _floats(variables["frequency"]), _floats(variables["amplitude"])
     if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
         raise ValueError(f"frequency has shape {frequency.shape}, amplitude {amplitude.shape}")
-    stable = _floats(variables["stable"]) if "stable" in variables else None
+    stable, *errors = (
+        _floats(variables[name]) if name in variables else None
+        for name in ("stable", "table_error", "truncation_error")
+    )
     regime = variables["regime"][:] if "regime" in variables else None
     swept = _swept(variables)
     curves = tuple(
@@ -75,6 +80,7 @@ def _response(dataset: Any) -> DrawnResponse:
             amplitude[i],
             None if stable is None else stable[i],
             None if regime is None else regime[i],
+            [None if error is None else error[i] for error in errors],
         )
         for i in range(len(frequency))
     )
@@ -87,6 +93,7 @@ def _curve(
     amplitude: FloatArray,
     stable: FloatArray | None,
     regime: Any,
+    errors: list[FloatArray | None],
 ) -> DrawnCurve:
     """Take the padding away; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
@@ -98,6 +105,7 @@ def _curve(
         amplitude[there],
         stable[there] != 0 if stable is not None and judged else None,  # unknown points count as stable
         frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
+        *(None if error is None else error[there] for error in errors),
     )
 
 

@@ -1,4 +1,4 @@
-"""Amplitude against frequency: one line a curve, labelled with what was swept."""
+"""Amplitude against frequency: one line a curve, labelled with what was swept; their errors below."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.error_panel import HEIGHT, SHARES, draw_errors, has_errors
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.place import label_at_peaks
@@ -23,21 +24,41 @@ _UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out o
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
 
-def draw_response(response: DrawnResponse, dof: str | None = None, log: bool | None = None) -> Figure:
-    """The figure of one degree of freedom (the first by default); unstable parts are dashed."""
+def draw_response(
+    response: DrawnResponse, dof: str | None = None, log: bool | None = None, errors: bool = True
+) -> Figure:
+    """The figure of one degree of freedom (the first by default); unstable parts are dashed.
+
+    Errors that the file knows have a panel below the curves, unless errors is false.
+    """
     column = _column(response, dof)
     curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
     if not curves:
         raise PlotError("the file holds no point of any curve")
     with house_style():
-        figure = new_figure()
-        axes = figure.add_subplot()
-        axes.set_prop_cycle(color=sequence_colours(len(curves)))
+        figure, axes, below = _panels(errors and has_errors(curves))
+        colours = sequence_colours(len(curves))
+        width = _WIDTH if len(curves) <= _MOST_NAMES else _THIN
+        axes.set_prop_cycle(color=colours)
         for curve in curves:
-            _draw_curve(axes, curve, column, _WIDTH if len(curves) <= _MOST_NAMES else _THIN)
+            _draw_curve(axes, curve, column, width)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
+        if below is not None:
+            draw_errors(figure, below, curves, colours, width)
+            below.set_xlabel(axes.get_xlabel())
+            axes.set_xlabel("")
         _name_curves(figure, axes, curves, column)
     return figure
+
+
+def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
+    """A figure with the axes of the curves, and below those of their errors."""
+    if not errors:
+        figure = new_figure()
+        return figure, figure.add_subplot(), None
+    figure = new_figure(height=HEIGHT)
+    axes, below = figure.subplots(2, sharex=True, height_ratios=SHARES)
+    return figure, axes, below
 
 
 def _column(response: DrawnResponse, dof: str | None) -> int:

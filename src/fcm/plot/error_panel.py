@@ -1,0 +1,83 @@
+"""The errors of response curves over the frequency, in a panel below them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.plot.read import DrawnCurve, FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SHARES = (3.1, 1.0)  # heights of the curves and of the panel
+HEIGHT = 4.9  # [inch] of a figure with both
+RANGE = (1e-8, 1.0)  # of errors; the same in every picture, so that pictures can be compared
+_BINS = 120  # over the frequencies
+_LEAST = 1e-30  # drawn in the place of 0, far below the panel
+_GREY = "0.8"
+
+
+def has_errors(curves: Sequence[DrawnCurve]) -> bool:
+    """Whether any curve has an error that is known and not 0."""
+    errors = [error for c in curves for error in (c.table_error, c.truncation_error) if error is not None]
+    return any(bool((error > 0.0).any()) for error in errors)
+
+
+def draw_errors(
+    figure: Figure, axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float
+) -> None:
+    """Lines for what the single harmonic leaves out of each curve; an area for the table, of all together."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    edges, table = _largest(curves)
+    axes.stairs(np.maximum(table, _LEAST), edges, baseline=_LEAST, fill=True, color=_GREY)
+    for curve, colour in zip(curves, colours, strict=True):
+        if curve.truncation_error is not None:
+            error = np.maximum(curve.truncation_error, _LEAST)
+            axes.plot(curve.frequency, error, color=colour, linewidth=width)
+    _finish(axes)
+    names: dict[str, Line2D | Patch] = {
+        "higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
+    }
+    if (table > 0.0).any():
+        of_all = " (largest of all)" if len(curves) > 1 else ""
+        names[f"table, before correction{of_all}"] = Patch(color=_GREY)
+    figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
+
+
+def _finish(axes: Axes) -> None:
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    top = max([RANGE[1], *(float(np.nanmax(line.get_ydata(), initial=0.0)) for line in axes.get_lines())])
+    axes.margins(x=0.0)
+    axes.set_yscale("log")
+    axes.set_ylim(RANGE[0], top)
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_ylabel("Relative error")
+
+
+def _largest(curves: Sequence[DrawnCurve]) -> tuple[FloatArray, FloatArray]:
+    """Edges of equal bins over the frequencies, and the largest error by the table in each, of any curve."""
+    ends = [limit for c in curves for limit in (np.nanmin(c.frequency), np.nanmax(c.frequency))]
+    edges = np.linspace(min(ends), max(ends), _BINS + 1)
+    largest = np.zeros(_BINS)
+    for curve in curves:
+        if curve.table_error is None:
+            continue
+        # 0 * frequency: a piece that leads to another branch has none
+        known = curve.table_error + 0.0 * curve.frequency
+        error = np.nan_to_num(np.maximum(known[:-1], known[1:]))
+        # the bins that each piece of the curve passes through
+        bins = np.clip(np.searchsorted(edges, curve.frequency, side="right") - 1, 0, _BINS - 1)
+        first, last = np.minimum(bins[:-1], bins[1:]), np.maximum(bins[:-1], bins[1:])
+        count = last - first + 1
+        before = np.cumsum(count) - count
+        at = np.repeat(first - before, count) + np.arange(count.sum())
+        np.maximum.at(largest, at, np.repeat(error, count))
+    return edges, largest
