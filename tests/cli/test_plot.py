@@ -30,8 +30,8 @@ def test_without_a_name_the_picture_is_beside_the_file(fcm, result, tmp_path):
 def test_options_reach_the_picture(fcm, result, monkeypatch):
     seen = {}
     monkeypatch.setattr("fcm.plot.draw_response", lambda *a, **k: seen.update(k) or draw_response(*a, **k))
-    assert fcm("plot", "response", result, "--dof", "v", "--log").code == 0
-    assert seen == {"dof": "v", "log": True}
+    assert fcm("plot", "response", result, "--dof", "v", "--log", "--no-errors").code == 0
+    assert seen == {"dof": "v", "log": True, "errors": False}
 
 
 @pytest.mark.parametrize(

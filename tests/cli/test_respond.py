@@ -187,6 +187,29 @@ def test_a_curve_that_stopped_is_reported_and_written(fcm, scene, tmp_path, monk
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
+def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene, monkeypatch):
+    """One curve, or all of a sweep, lost to a defect: 1; some of a sweep: 3, for the others are there."""
+
+    def fails_below(limit):
+        def trace_group(scene, *args):
+            if min(curve.contacts[0].n_0 for curve in scene.curves) < limit:
+                raise ZeroDivisionError("of zero")
+            return traced(scene, *args)
+
+        monkeypatch.setattr("fcm.response.groups.trace_group", trace_group)
+
+    from fcm.response.groups import trace_group as traced
+
+    fails_below(1e9)
+    done = fcm("respond", scene)
+    assert done.code == 1 and "a defect of fcm, ZeroDivisionError: of zero" in done.out
+    scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.n_0" = [5, 1]\n')
+    assert fcm("respond", scene).code == 1
+    fails_below(3.0)
+    done = fcm("respond", scene)
+    assert done.code == 3 and "1 of 2 curves not complete" in done.err
+
+
 def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeypatch):
     def full(*_args):
         raise OSError(28, "No space left on device", "a.nc")

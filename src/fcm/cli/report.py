@@ -95,6 +95,13 @@ def incomplete(summary: Mapping[str, Any]) -> str:
     return f"{stopped} of {len(curves)} curves not complete" if stopped else ""
 
 
+def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
+    """Whether no curve came out, each for a defect of fcm: the program failed, and not the calculation."""
+    from fcm.response.result import DEFECT
+
+    return all(curve.get("reason", "").startswith(DEFECT) for curve in summary["curves"])
+
+
 def _worst(curves: Sequence[Curve], key: str) -> float | None:
     return max((curve[key] for curve in curves if curve.get(key) is not None), default=None)
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.files import output_option
-from fcm.cli.guard import NOT_COMPLETED
+from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.report import as_table, cost_and_error, incomplete
+from fcm.cli.report import all_lost_to_defects, as_table, cost_and_error, incomplete
 
 if TYPE_CHECKING:
     from fcm.response import Response
@@ -149,4 +149,4 @@ def _close(messages: Messages, result: dict[str, Any]) -> None:
     messages.info(cost_and_error(result))
     if stopped := incomplete(result):
         messages.error(f"error: {stopped}; what was traced is reported and written")
-        click.get_current_context().exit(NOT_COMPLETED)
+        click.get_current_context().exit(DEFECT if all_lost_to_defects(result) else NOT_COMPLETED)

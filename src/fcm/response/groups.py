@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.response.law import Coefficients
 from fcm.response.path import Progress
-from fcm.response.result import Curve
+from fcm.response.result import DEFECT, Curve
 from fcm.response.trace import ResponseError, trace_group
 from fcm.scene.model import Scene
 
@@ -32,7 +32,7 @@ class Work:
             raise
         except Exception as error:
             if len(group) == 1:
-                what = "" if isinstance(error, MemoryError) else "a defect of fcm, "
+                what = "" if isinstance(error, MemoryError) else f"{DEFECT}, "
                 return [lost_curve(group[0], f"{what}{type(error).__name__}: {error}")]
         return [self.curves((scene,))[0] for scene in group]
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.response.jumps import Jump, jumps
 
+DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
 
