@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols
-from fcm.plot.read import BoolArray, FloatArray, read_response
+from fcm.plot.read import BoolArray, FloatArray, floats, read_response
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def read_peaks(path: Path) -> Peaks:
         missing = [name for name in _NEEDED if name not in data.variables]
         if missing:
             raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
-        amplitude, frequency, complete = (_floats(data.variables[name]) for name in _NEEDED)
+        amplitude, frequency, complete = (floats(data.variables[name]) for name in _NEEDED)
     shape = (len(response.curves), len(response.dofs))
     if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
         raise PlotError(f"{path}: not a response file: its peaks have shape {amplitude.shape}, not {shape}")
@@ -146,7 +146,3 @@ def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, k
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     where = curve_label({name: float(values[least]) for name, values in peaks.parameters.items()})
     upper.set_title(f"least peak {y:.4g} at {where}", loc="right", fontsize=8, color=_MARK)
-
-
-def _floats(variable: Any) -> FloatArray:
-    return np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)

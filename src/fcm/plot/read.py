@@ -64,11 +64,11 @@ def read_response(path: Path) -> DrawnResponse:
 def _response(dataset: Any) -> DrawnResponse:
     variables = dataset.variables
     dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
-    frequency, amplitude = _floats(variables["frequency"]), _floats(variables["amplitude"])
+    frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
     if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
         raise ValueError(f"frequency has shape {frequency.shape}, amplitude {amplitude.shape}")
     stable, *errors = (
-        _floats(variables[name]) if name in variables else None
+        floats(variables[name]) if name in variables else None
         for name in ("stable", "table_error", "truncation_error")
     )
     regime = variables["regime"][:] if "regime" in variables else None
@@ -112,11 +112,12 @@ def _curve(
 def _swept(variables: Any) -> dict[str, FloatArray]:
     """The swept values, by their full names: ``contact.shroud.n_0``."""
     return {
-        name: _floats(variable)
+        name: floats(variable)
         for name, variable in variables.items()
         if variable.dimensions == ("curve",) and str(getattr(variable, "long_name", "")).startswith(_SWEPT)
     }
 
 
-def _floats(variable: Any) -> FloatArray:
+def floats(variable: Any) -> FloatArray:
+    """A variable of the file, with NaN where it has no value."""
     return np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
