@@ -17,7 +17,7 @@ __all__ = ["METHODS", "Curve", "Response", "ResponseError", "respond", "trace"]
 
 
 def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None = None) -> xarray.Dataset:
-    """Response curves of a scene as the dataset that ``fcm respond`` writes.
+    """Response curves of a scene, and the motion of its schedule, as the dataset of ``fcm respond``.
 
     Parameters
     ----------
@@ -32,8 +32,9 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     Returns
     -------
     xarray.Dataset
-        Dimensions curve, point, dof, contact, fold; padded with NaN. Frequencies in the scene's unit,
-        phases in rad, displacements in the scene's unit of length.
+        Dimensions curve, point, dof, contact, fold, and those of a schedule, instant, cycle, transition,
+        schedule_phase; padded with NaN. Frequencies in the scene's unit, phases in rad, displacements in
+        the scene's unit of length.
 
     Raises
     ------
@@ -49,10 +50,21 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     """
     from fcm.response.output import to_dataset
 
+    response = _curves(scene, method, at)
+    if scene.schedule:
+        from fcm.simulate import histories
+
+        response.histories = histories(scene)
+    return to_dataset(response)
+
+
+def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:
+    if at is not None and method != "exact":
+        raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
+    if at is None and not scene.has_range and scene.schedule:
+        return Response.without_curves(scene)
     if method == "exact":
         from fcm.simulate import trace_exact
 
-        return to_dataset(trace_exact(scene, at))
-    if at is not None:
-        raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
-    return to_dataset(trace(scene, method))
+        return trace_exact(scene, at)
+    return trace(scene, method)

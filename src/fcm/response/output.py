@@ -67,6 +67,10 @@ def summary(response: Response) -> dict[str, Any]:
         "left_out": response.left_out,
         "seconds": response.seconds,
     }
+    if response.histories is not None:
+        from fcm.simulate import output
+
+        data["histories"] = output.summary(response.histories)
     return _without_nan(data)  # type: ignore[no-any-return]
 
 
@@ -80,16 +84,29 @@ def _without_nan(value: Any) -> Any:
 
 def fields_of(response: Response) -> dict[str, Field]:
     """Every variable of the file, coordinates first."""
-    curves, unit = response.curves, response.frequency_unit
-    scale = UNIT[unit]
-    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
+    swept = response.parameters
     out = {
         "dof": Field(("dof",), np.array(response.dofs), {"long_name": "degree of freedom"}),
         "contact": Field(("contact",), np.array(response.contacts, dtype=str), {"long_name": "contact"}),
     }
-    for key in curves[0].parameters if curves else ():
-        values = np.array([curve.parameters[key] for curve in curves])
+    for key in swept[0] if swept else ():
+        values = np.array([parameters[key] for parameters in swept])
         out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"})
+    if response.curves or response.histories is None:
+        out |= _point_fields(response)
+    if response.histories is not None:
+        from fcm.simulate import output
+
+        out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
+    return out
+
+
+def _point_fields(response: Response) -> dict[str, Field]:
+    """Every variable of the curves."""
+    curves, unit = response.curves, response.frequency_unit
+    scale = UNIT[unit]
+    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
+    out: dict[str, Field] = {}
 
     def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
         out[name] = Field(("curve", "point", *dims), _padded([pick(c) for c in curves]), attrs)
@@ -177,15 +194,21 @@ def attributes(response: Response) -> dict[str, str]:
     return {
         "title": response.title,
         "layout": LAYOUT,
-        "source": f"fcm {fcm.__version__}, {_kind(response.method)}",
+        "source": f"fcm {fcm.__version__}, {_kind(response)}",
         "frequency_unit": response.frequency_unit,
         "summary": json.dumps(summary(response), allow_nan=False),
     }
 
 
-def _kind(method: str) -> str:
-    exact = "exact periodic solutions between transitions, by shooting"
-    return exact if method == "exact" else f"single-harmonic balance, method {method}"
+def _kind(response: Response) -> str:
+    kinds = []
+    if response.curves:
+        exact = "exact periodic solutions between transitions, by shooting"
+        balance = f"single-harmonic balance, method {response.method}"
+        kinds.append(exact if response.method == "exact" else balance)
+    if response.histories is not None:
+        kinds.append("exact simulation of a schedule")
+    return "; ".join(kinds)
 
 
 def to_dataset(response: Response) -> xarray.Dataset:
@@ -193,10 +216,15 @@ def to_dataset(response: Response) -> xarray.Dataset:
     import xarray
 
     fields = fields_of(response)
-    coordinates = {"dof", "contact", *(response.curves[0].parameters if response.curves else ())}
     variables = {name: (f.dims, f.values, f.attrs) for name, f in fields.items()}
-    coords = {name: variables.pop(name) for name in list(variables) if name in coordinates}
+    coords = {name: variables.pop(name) for name in ["dof", "contact", *_coordinates(response, fields)]}
     return xarray.Dataset(variables, coords, attributes(response))
+
+
+def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
+    """Variables that say what a curve or an instant is: swept values, and times if there are any."""
+    swept = list(response.parameters[0]) if response.parameters else []
+    return [*swept, *(name for name in ("time", "cycles", "cycle_start") if name in fields)]
 
 
 def write_netcdf(response: Response, path: str | Path) -> None:
@@ -204,7 +232,7 @@ def write_netcdf(response: Response, path: str | Path) -> None:
     import netCDF4
 
     fields = fields_of(response)
-    swept = [name for name in fields if fields[name].dims == ("curve",) and name != "complete"]
+    coordinates = _coordinates(response, fields)
     with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
         file.setncatts(attributes(response))
         for name, field in fields.items():
@@ -214,19 +242,24 @@ def write_netcdf(response: Response, path: str | Path) -> None:
             text = field.values.dtype.kind == "U"
             kind: Any = str if text else field.values.dtype
             options: dict[str, Any] = (
-                {} if text or field.values.dtype.kind == "i" else {"fill_value": np.nan, "zlib": True}
+                {}
+                if text
+                else {"zlib": True}
+                if field.values.dtype.kind == "i"
+                else {"fill_value": np.nan, "zlib": True}
             )
             variable = file.createVariable(name, kind, field.dims, **options)
             variable[...] = field.values.astype(object) if text else field.values
             variable.setncatts(field.attrs)
-            if swept and field.dims[0] == "curve" and name not in swept:
-                variable.coordinates = " ".join(swept)
+            of = [x for x in coordinates if set(fields[x].dims) <= set(field.dims)]
+            if of and name not in coordinates:
+                variable.coordinates = " ".join(of)
 
 
 def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
     scale = UNIT[response.frequency_unit]
-    keys = list(response.curves[0].parameters) if response.curves else []
+    keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
     kinds = ("amplitude", "phase", "mean", "fundamental")[: 4 if exact else 3]
     columns = [f"{kind} {dof}" for dof in response.dofs for kind in kinds]

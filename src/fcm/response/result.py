@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.response.jumps import Jump, jumps
+from fcm.scene.model import Scene
+
+if TYPE_CHECKING:
+    from fcm.simulate.histories import Histories
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
@@ -111,8 +115,22 @@ class Response:
     frequency_unit: str
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
+    histories: Histories | None = None  # of the scene's schedule
+
+    @staticmethod
+    def without_curves(scene: Scene) -> Response:
+        """The response of a scene that has a schedule, but no range of frequencies."""
+        contacts = tuple(contact.name for contact in scene.contacts)
+        return Response(scene.title, scene.modal.dofs, contacts, [], "none", scene.frequency_unit)
 
     @property
     def complete(self) -> bool:
-        """Whether every curve reached the end of its range."""
-        return all(curve.complete for curve in self.curves)
+        """Whether every curve reached the end of its range, and of the schedule if there is one."""
+        simulated = self.histories is None or self.histories.complete
+        return simulated and all(curve.complete for curve in self.curves)
+
+    @property
+    def parameters(self) -> list[dict[str, float]]:
+        """The swept values of each curve, be it traced or simulated."""
+        simulated = self.histories.records if self.histories is not None else []
+        return [one.parameters for one in self.curves or simulated]

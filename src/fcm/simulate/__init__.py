@@ -6,6 +6,7 @@ from fcm.simulate.energy import Energy, energy
 from fcm.simulate.errors import SimulationError
 from fcm.simulate.exact import trace_exact
 from fcm.simulate.harmonic import harmonic_state
+from fcm.simulate.histories import Histories, histories
 from fcm.simulate.measure import Measure
 from fcm.simulate.motion import History, Motion, Transition
 from fcm.simulate.periodic import Orbit, periodic
@@ -16,6 +17,7 @@ __all__ = [
     "Branch",
     "Cycle",
     "Energy",
+    "Histories",
     "History",
     "Measure",
     "Motion",
@@ -25,6 +27,7 @@ __all__ = [
     "Transition",
     "energy",
     "harmonic_state",
+    "histories",
     "periodic",
     "simulate",
     "simulate_phases",

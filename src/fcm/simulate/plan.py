@@ -1,0 +1,100 @@
+"""What is kept of a schedule: its cycles, and the instants at which the displacements are sampled.
+
+Both are known before anything is simulated, and are the same for every curve of a sweep.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Phase
+
+MOST_SAMPLES, FEWEST_SAMPLES = 64, 8  # in a cycle
+MOST_NUMBERS = 4_000_000  # displacements that are sampled, of all curves: 32 MB before compression
+
+IntArray = npt.NDArray[np.intp]
+
+
+class Plan:
+    """The cycles of a schedule one after the other; the last of a phase may be a part of one.
+
+    Parameters
+    ----------
+    phases : sequence of Phase
+    columns : int
+        Displacements that are sampled at an instant: degrees of freedom times curves.
+
+    Examples
+    --------
+    >>> plan = Plan([Phase(2.0, 2.0), Phase(1.0, 0.5)], columns=2)
+    >>> plan.samples, plan.every, plan.part.tolist(), plan.instants
+    (64, 1, [1.0, 1.0, 0.5], 161)
+    >>> plan.start.round(3).tolist(), plan.time[-1].round(3)  # [s]
+    ([0.0, 3.142, 6.283], np.float64(9.425))
+    >>> plan.sentence
+    '64 samples a cycle'
+    """
+
+    def __init__(self, phases: Sequence[Phase], columns: int) -> None:
+        counts = [int(np.ceil(phase.cycles)) for phase in phases]
+        self.period = 2.0 * np.pi / np.array([phase.frequency for phase in phases])  # (phase,) [s]
+        self.length = np.array([phase.cycles for phase in phases])  # (phase,) in cycles
+        self.phase = np.repeat(np.arange(len(phases)), counts)  # (cycle,) index of its phase
+        within = np.concatenate([np.arange(count) for count in counts])
+        self.part = np.minimum(self.length[self.phase] - within, 1.0)  # (cycle,) 1 of a whole one
+        self.elapsed = _before(self.length)[self.phase] + within  # (cycle,) cycles at its start
+        self.phase_start = _before(self.length * self.period)  # (phase,) [s]
+        self.start = self.phase_start[self.phase] + within * self.period[self.phase]  # (cycle,) [s]
+        self.samples, self.every = _density(self.phase.size, columns)
+        sampled = np.ceil(self.part * self.samples - 1e-9).astype(np.intp)
+        sampled[np.arange(sampled.size) % self.every > 0] = 0
+        sampled[-1] = max(np.ceil(self.part[-1] * self.samples - 1e-9), 1)
+        self.first = _before(sampled).astype(np.intp)  # (cycle,) its first instant
+        self.sampled = sampled  # (cycle,) how many instants it has
+
+    @property
+    def instants(self) -> int:
+        """All that are sampled, the end included."""
+        return int(self.sampled.sum()) + 1
+
+    @cached_property
+    def time(self) -> FloatArray:
+        """Of each instant [s], from the start of the schedule."""
+        owner, inside = self._inside
+        begun = self.start[owner] + inside * self.period[self.phase[owner]]
+        return np.append(begun, self.phase_start[-1] + self.length[-1] * self.period[-1])
+
+    @cached_property
+    def cycles(self) -> FloatArray:
+        """Cycles that have passed at each instant."""
+        owner, inside = self._inside
+        return np.append(self.elapsed[owner] + inside, self.length.sum())
+
+    @cached_property
+    def _inside(self) -> tuple[IntArray, FloatArray]:
+        """For each instant but the last its cycle, and how much of it has passed."""
+        owner = np.repeat(np.arange(self.sampled.size), self.sampled)
+        return owner, (np.arange(owner.size) - self.first[owner]) / self.samples
+
+    @property
+    def sentence(self) -> str:
+        """How much the displacements are decimated."""
+        of = f" of every {self.every}th cycle" if self.every > 1 else " a cycle"
+        return f"{self.samples} samples{of}"
+
+
+def _before(values: FloatArray | IntArray) -> FloatArray:
+    """The sum of all values before each."""
+    return np.concatenate(([0.0], np.cumsum(values)[:-1]))
+
+
+def _density(cycles: int, columns: int) -> tuple[int, int]:
+    """Samples in a cycle, and of so many cycles one is sampled."""
+    samples = MOST_SAMPLES
+    while samples > FEWEST_SAMPLES and cycles * samples * columns > MOST_NUMBERS:
+        samples //= 2
+    return samples, max(int(np.ceil(cycles * samples * columns / MOST_NUMBERS)), 1)

@@ -1,0 +1,214 @@
+"""A schedule simulated cycle by cycle; of each cycle only what is reported is kept."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Scene
+from fcm.simulate.cycle import Cycle
+from fcm.simulate.energy import Energy, energy
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.measure import measure
+from fcm.simulate.motion import Motion, dof_rows
+from fcm.simulate.plan import Plan
+from fcm.simulate.run import Progress, cycles_from
+from fcm.simulate.settling import unsettled
+from fcm.simulate.state import State
+from fcm.simulate.system import System
+
+LETTERS = "SEPN"  # a sampled state is the index of its letter
+NOT_REACHED = -1
+SETTLED = 1e-3  # relative change of the amplitudes that is still to come
+MOST_TRANSITIONS = 1_000_000  # kept with their times; all are counted
+INTERRUPTED = "interrupted"
+NOT_BEGUN = "interrupted before it was simulated"
+
+ByteArray = npt.NDArray[np.int8]
+
+
+@dataclass(frozen=True)
+class PhaseResult:
+    """What one phase of a schedule came to; displacements are of its last whole cycle."""
+
+    frequency: float  # [rad/s]
+    cycles: float  # that were simulated
+    amplitude: FloatArray  # (dof,) half the peak-to-peak
+    mean: FloatArray  # (dof,) time average
+    states: tuple[str, ...]  # (contact,) their sequence
+    transitions: int  # in all the phase
+    unsettled: float  # relative change of the amplitudes that is still to come, estimated; nan if unknown
+    energy: Energy
+
+    @property
+    def settled(self) -> bool:
+        """Whether the motion is shown to have become periodic."""
+        return self.unsettled <= SETTLED
+
+
+@dataclass
+class Record:
+    """One schedule of one curve; NaN and -1 stand for what was not reached."""
+
+    parameters: dict[str, float]
+    amplitude: FloatArray  # (cycle, dof) half the peak-to-peak
+    mean: FloatArray  # (cycle, dof)
+    greatest: FloatArray  # (cycle, dof)
+    least: FloatArray  # (cycle, dof)
+    displacement: FloatArray  # (instant, dof)
+    state: ByteArray  # (instant, contact) index into LETTERS
+    transition_time: FloatArray  # (transition,) [s]
+    transition_contact: ByteArray  # (transition,)
+    transition_state: ByteArray  # (transition,) index into LETTERS of the state that begins
+    phases: list[PhaseResult]
+    end: State  # from which another schedule can go on
+    reason: str  # why it is not complete, else ''
+    seconds: float
+
+    @property
+    def complete(self) -> bool:
+        """Whether the schedule was simulated to its end."""
+        return not self.reason
+
+    @property
+    def cycles(self) -> float:
+        """Cycles that were simulated."""
+        return sum(phase.cycles for phase in self.phases)
+
+    @property
+    def energy(self) -> Energy:
+        """The energy balance of the whole schedule."""
+        return total([phase.energy for phase in self.phases])
+
+
+def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = None) -> Record:
+    """Simulate the schedule of a scene, and keep what is reported of it.
+
+    An interruption, or contacts that chatter without end, leave it incomplete with a reason.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> done = record(fcm.load_scene("yang1998-jump"))
+    >>> [round(float(phase.amplitude[0]), 2) for phase in done.phases], done.complete
+    ([14.72, 1.73, 1.75], True)
+    """
+    begin, state = time.perf_counter(), State.start(scene)
+    plan = plan or Plan(scene.schedule, len(scene.modal.dofs))
+    recorder, reason = _Recorder(scene, plan, state), ""
+    try:
+        for number, phase in enumerate(scene.schedule):
+            for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, recorder.end):
+                recorder.add(number, cycle, end)
+                if progress is not None:
+                    progress(recorder.done / plan.phase.size, f"phase {number + 1}, cycle {recorder.done}")
+    except KeyboardInterrupt:
+        reason = INTERRUPTED
+    except SimulationError as error:
+        reason = str(error)
+    made = recorder.record(reason)
+    made.seconds = time.perf_counter() - begin
+    return made
+
+
+def unfinished(scene: Scene, plan: Plan) -> Record:
+    """The record of a curve that was not begun."""
+    return _Recorder(scene, plan, State.start(scene)).record(NOT_BEGUN)
+
+
+def total(parts: Sequence[Energy]) -> Energy:
+    """The balance of successive motions."""
+    work, slip, damping, stored = (sum(part[i] for part in parts) for i in range(4))
+    turnover = sum(part.turnover - abs(part.stored) for part in parts) + abs(stored)
+    return Energy(work, slip, damping, stored, turnover)
+
+
+@dataclass
+class _Tally:
+    """What is counted in a phase."""
+
+    first: int  # its first cycle
+    energies: list[Energy] = field(default_factory=list)
+    transitions: int = 0
+    whole: Cycle | None = None  # the last whole cycle
+
+
+class _Recorder:
+    def __init__(self, scene: Scene, plan: Plan, start: State) -> None:
+        dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
+        self.scene, self.plan, self.end, self.done = scene, plan, start, 0
+        self.measures = np.full((4, plan.phase.size, dofs), np.nan)
+        self.displacement = np.full((plan.instants, dofs), np.nan)
+        self.state = np.full((plan.instants, contacts), NOT_REACHED, dtype=np.int8)
+        self.transitions: list[tuple[float, int, int]] = []
+        self.tallies: list[_Tally] = []
+        self.letters = ""
+
+    def add(self, phase: int, cycle: Cycle, end: State) -> None:
+        """Keep what is reported of the next cycle; nothing of it if that is interrupted."""
+        if phase == len(self.tallies):
+            self.tallies.append(_Tally(self.done))
+        found = measure(cycle, dof_rows(cycle.system))
+        balance = energy(Motion(self.scene, (cycle,), end))
+        self._sample(cycle)
+        tally = self.tallies[phase]
+        tally.transitions += self._count(cycle)
+        tally.energies.append(balance)
+        if self.plan.part[self.done] == 1.0 or tally.whole is None:
+            tally.whole = cycle
+        self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
+        self.end, self.done = end, self.done + 1
+
+    def _sample(self, cycle: Cycle) -> None:
+        first, count = int(self.plan.first[self.done]), int(self.plan.sampled[self.done])
+        times = cycle.system.period / self.plan.samples * np.arange(count, dtype=np.float64)
+        if self.done + 1 == self.plan.phase.size:
+            times = np.append(times, cycle.duration)
+        if times.size == 0:
+            return
+        chosen = slice(first, first + times.size)
+        self.displacement[chosen] = cycle.values(dof_rows(cycle.system), times)
+        starts = [segment.start for segment in cycle.segments[1:]]
+        codes = np.array([_codes(segment.states) for segment in cycle.segments], dtype=np.int8)
+        self.state[chosen] = codes[np.searchsorted(starts, times, side="right")]
+
+    def _count(self, cycle: Cycle) -> int:
+        """Transitions of the cycle; their times are kept while there is room."""
+        count, start = 0, float(self.plan.start[self.done])
+        for segment in cycle.segments:
+            for j, (before, after) in enumerate(zip(self.letters, segment.states, strict=False)):
+                if before != after:
+                    count += 1
+                    if len(self.transitions) < MOST_TRANSITIONS:
+                        self.transitions.append((start + segment.start, j, LETTERS.index(after)))
+            self.letters = segment.states
+        return count
+
+    def record(self, reason: str) -> Record:
+        amplitude, mean, greatest, least = self.measures
+        columns = np.array(self.transitions, dtype=np.float64).reshape(-1, 3).T
+        return Record(
+            self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
+            columns[0], columns[1].astype(np.int8), columns[2].astype(np.int8),
+            [self._phase(i) for i in range(len(self.tallies))], self.end, reason, 0.0,
+        )  # fmt: skip
+
+    def _phase(self, number: int) -> PhaseResult:
+        tally = self.tallies[number]
+        last = self.tallies[number + 1].first if number + 1 < len(self.tallies) else self.done
+        parts = self.plan.part[tally.first : last]
+        whole = slice(tally.first, tally.first + max(int((parts == 1.0).sum()), 1))
+        amplitude, mean = self.measures[:2, whole]
+        assert tally.whole is not None
+        return PhaseResult(
+            self.scene.schedule[number].frequency, float(parts.sum()), amplitude[-1], mean[-1],
+            tally.whole.states, tally.transitions, unsettled(amplitude), total(tally.energies),
+        )  # fmt: skip
+
+
+def _codes(states: str) -> list[int]:
+    return [LETTERS.index(letter) for letter in states]
