@@ -29,15 +29,15 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     peaks = [text for dof in dofs for text in (f"peak {dof}", f"at {unit}")]
     header = [*names, *peaks, "points", "time [s]", f"folds at {unit}", ""]
-    return _aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)
+    return aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)
 
 
 def _curve_row(curve: Curve, dofs: list[str]) -> list[str]:
     cells = _swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
-        cells += [_number(peak.get("amplitude")), _number(peak.get("frequency"))]
-    folds = "  ".join(_number(fold) for fold in curve["folds"]) or "none"
+        cells += [number(peak.get("amplitude")), number(peak.get("frequency"))]
+    folds = "  ".join(number(fold) for fold in curve["folds"]) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
 
@@ -48,16 +48,16 @@ def _jumps(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str
     rows = [[*names, f"jump at {unit}", *moves, "sweep"]]
     for curve in curves:
         for jump in curve.get("jumps", ()):
-            moves = [_number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
-            rows.append([*_swept(curve), _number(jump["frequency"]), *moves, jump["sweep"]])
-    return _aligned(rows, left=1)
+            moves = [number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
+            rows.append([*_swept(curve), number(jump["frequency"]), *moves, jump["sweep"]])
+    return aligned(rows, left=1)
 
 
 def _swept(curve: Curve) -> list[str]:
     return [f"{value:.6g}" for value in curve["parameters"].values()]
 
 
-def _aligned(rows: Sequence[Sequence[str]], left: int) -> str:
+def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
     """Columns of equal width: numbers to the right, the last ``left`` to the left."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     right = len(widths) - left
@@ -106,6 +106,6 @@ def _worst(curves: Sequence[Curve], key: str) -> float | None:
     return max((curve[key] for curve in curves if curve.get(key) is not None), default=None)
 
 
-def _number(value: float | None) -> str:
+def number(value: float | None) -> str:
     """Six digits, or a dash for a number that does not exist."""
     return "-" if value is None else f"{value:#.6g}"
