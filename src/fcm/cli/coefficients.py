@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli.drawing import angles, save_picture
 from fcm.cli.files import output_option
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.plot import ENDINGS
-from fcm.files import replacing
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from fcm.contact.surface import Plane
 
 MOST_PANELS = 8
@@ -24,21 +21,6 @@ FARTHEST = 1e6  # of a range that is drawn; beyond, nothing changes that could b
 NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401
 LONGEST_NAME = 50  # characters
 SPACE_STEPS = (100, 40)  # of a surface in space; finer ones can not be seen
-
-
-def _phases(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
-    return tuple(map(_phase, texts))
-
-
-def _phase(text: str) -> float:
-    """A number of radians, or of degrees: 0.5, 15deg."""
-    try:
-        number = float(text.removesuffix("deg"))
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise click.BadParameter(f"{text!r} is no angle; it is a number of radians, or of degrees as 15deg.")
-    return math.radians(number) if text.endswith("deg") else number
 
 
 def _range(_ctx: click.Context, _param: click.Parameter, value: tuple[float, float]) -> tuple[float, float]:
@@ -69,7 +51,7 @@ def _over_the_plane(output: str, phase: str) -> Callable[[Any], Any]:
             help="Mean force, stiffness or damping; may be repeated.",
         ),
         click.option(
-            "--phi", "phases", multiple=True, default=(phase,), callback=_phases,
+            "--phi", "phases", multiple=True, default=(phase,), callback=angles,
             show_default=True, metavar="ANGLE",
             help="Phase of the normal motion before the tangential, in radians or as 15deg; may be repeated.",
         ),
@@ -110,13 +92,6 @@ def _panels(
     return [(name, plane) for plane in planes for name in coefficients]
 
 
-def _save(figure: Figure, output: Path) -> None:
-    from fcm.plot import save
-
-    with replacing(output) as partial:
-        save(figure, partial)
-
-
 @click.command()
 @_over_the_plane("surface.png", phase="0")
 @click.option(
@@ -153,7 +128,7 @@ def surface(
         figure = draw_contours(surfaces, [regions(plane) for _, plane in shown])
     else:
         figure = draw_surfaces(surfaces)
-    _save(figure, output)
+    save_picture(figure, output)
     messages.info(f"wrote {output}: from {table or 'the closed form'}")
 
 
@@ -183,7 +158,7 @@ def error(
     opened = _opened(table)
     maps = [error_map(name, plane, opened) for name, plane in shown]
     name = "the shipped table" if table is None else Path(table).name
-    _save(draw_errors(maps, f"Error of {_shorten(name)}"), output)
+    save_picture(draw_errors(maps, f"Error of {_shorten(name)}"), output)
     worst = max(maps, key=lambda one: one.largest)
     n0, b = worst.worst
     messages.info(
@@ -206,7 +181,7 @@ def normal(messages: Messages, output: Path) -> None:
     from fcm.plot.normal import draw_normal
 
     n0_star = np.linspace(*NORMAL_RANGE, NORMAL_POINTS)
-    _save(draw_normal(n0_star, *normal_coefficients(n0_star)), output)
+    save_picture(draw_normal(n0_star, *normal_coefficients(n0_star)), output)
     messages.info(f"wrote {output}")
 
 

@@ -1,0 +1,206 @@
+"""``fcm plot loop``: hysteresis loops of given parameters, or of the contacts of a response."""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from fcm.cli.drawing import angles, save_picture
+from fcm.cli.files import check_output, output_option
+from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.plot import ENDINGS
+
+if TYPE_CHECKING:
+    from fcm.cli.loop_cases import Case
+
+MOST_LOOPS = 12
+OF_FILE = ("curves", "at", "contact", "solution", "dimensionless")
+OF_RATIOS = ("n0_bars", "b_bars")
+OF_CONTACT = ("mu", "k_u", "k_v", "n_0", "a", "b")
+LARGEST = 1e6  # of a ratio that is drawn; beyond, nothing changes that could be seen
+
+
+def _number(low: float | None, strict: bool = False) -> Callable[..., Any]:
+    """A callback: finite numbers, none below (or at) a limit."""
+
+    def check(_ctx: click.Context, _param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
+        for value in values:
+            if not math.isfinite(value):
+                raise click.BadParameter(f"{value} is not a finite number.")
+            if low is not None and (value < low or (strict and value == low)):
+                raise click.BadParameter(f"{value:g} is not {'above' if strict else 'at least'} {low:g}.")
+        return tuple(dict.fromkeys(values))
+
+    return check
+
+
+def _ratio(low: float) -> Callable[..., Any]:
+    def check(_ctx: click.Context, _param: click.Parameter, values: tuple[float, ...]) -> tuple[float, ...]:
+        for value in values:
+            if not low <= value <= LARGEST:
+                raise click.BadParameter(f"{value:g} is not between {low:g} and {LARGEST:g}.")
+        return tuple(dict.fromkeys(values))
+
+    return check
+
+
+def _several(name: str, field: str, check: Callable[..., Any], text: str, **more: Any) -> Callable[..., Any]:
+    return click.option(
+        name, field, type=float, multiple=True, metavar="X", callback=check, help=text, **more
+    )
+
+
+def _parameters(command: Any) -> Any:
+    """The options that give a contact without a file."""
+    positive, amplitude = _number(0.0, strict=True), _number(0.0)
+    options = (
+        _several("--n0-bar", "n0_bars", _ratio(-LARGEST), "Preload mu n_0 / (k_u a).  [default: 0.8]"),
+        _several("--b-bar", "b_bars", _ratio(0.0), "Load variation mu k_v b / (k_u a).  [default: 1]"),
+        click.option(
+            "--phi", "phases", multiple=True, default=("45deg",), callback=angles,
+            show_default=True, metavar="ANGLE",
+            help="Phase of the normal motion before the tangential, in radians or as 15deg.",
+        ),
+        _several("--mu", "mu", positive, "Instead of the ratios: the friction coefficient,"),
+        _several("--k-u", "k_u", positive, "the tangential stiffness,"),
+        _several("--k-v", "k_v", amplitude, "the normal stiffness,"),
+        _several("--n0", "n_0", _number(None), "the preload, negative for a gap,"),
+        _several("--a", "a", positive, "the amplitude of the tangential motion,"),
+        _several("--b", "b", amplitude, "and that of the normal motion."),
+    )  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+@click.command()
+@click.argument(
+    "file", required=False, type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path)
+)
+@output_option(
+    "-o", "--output", endings=ENDINGS,
+    help="The picture to write: .png, .svg or .pdf.  [default: loop.png, or FILE with the ending -loop.png]",
+)  # fmt: skip
+@_parameters
+@click.option(
+    "--curve", "curves", type=click.IntRange(min=0), multiple=True, metavar="N",
+    help="Of FILE: the number of the curve, from 0.  [default: the only one]",
+)  # fmt: skip
+@click.option(
+    "--at", type=float, multiple=True, metavar="FREQUENCY", callback=_number(0.0),
+    help="Of FILE: the frequency; the nearest points are drawn, on a folded curve all.  [default: the peak]",
+)  # fmt: skip
+@click.option("--contact", metavar="NAME", help="Of FILE: the contact.  [default: the only one]")
+@click.option(
+    "--solution", type=click.IntRange(min=1), metavar="K",
+    help="On a folded curve only the K-th, that of the greatest amplitude being 1.",
+)  # fmt: skip
+@click.option("--dimensionless", is_flag=True, help="Divide displacements by a and forces by k_u a.")
+@click.option(
+    "--units", nargs=2, metavar="LENGTH FORCE", help="Units to write at the axes, as in --units mm N."
+)
+@click.option("--cosine", is_flag=True, help="Count angles from the greatest displacement, u = a cos(theta).")
+@click.option("--json", "to_json", is_flag=True, help="Print sequences, transitions and coefficients.")
+@click.pass_context
+@pass_messages
+def loop(
+    messages: Messages,
+    ctx: click.Context,
+    /,
+    file: Path | None,
+    output: Path | None,
+    units: tuple[str, str] | None,
+    cosine: bool,
+    to_json: bool,
+    **options: Any,
+) -> None:
+    """Draw hysteresis loops, as figures 5, 6 and 8: friction force over tangential displacement.
+
+    The contact is given by ratios, or by its stiffness, friction, preload and motion; any of them may be
+    repeated, and every combination is drawn. Or it is a contact of FILE, the netCDF file of `fcm respond -o
+    FILE`, at a point of a curve; its displacement counts from its mean.
+
+    Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
+    """
+    begin = time.perf_counter()
+    cases = _cases(ctx, file, options)
+    if len(cases) > MOST_LOOPS:
+        raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {MOST_LOOPS}.")
+    if output is None:
+        output = Path("loop.png") if file is None else file.with_name(f"{file.stem}-loop.png")
+        check_output(output, ENDINGS)
+    scaled = not options["dimensionless"] and (file is not None or bool(options["mu"]))
+    if units is not None and not scaled:
+        raise click.UsageError("--units is of no use: the axes have no dimension.")
+    _draw(cases, output, scaled, units, cosine)
+    if to_json:
+        click.echo(json.dumps({"loops": [case.record(cosine) for case in cases]}, indent=2, allow_nan=False))
+    for case in cases:
+        messages.info(_sentence(case, cosine))
+    seconds = time.perf_counter() - begin
+    messages.info(f"wrote {output}: from the closed form, in {seconds:.2f} s")
+
+
+def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> list[Case]:
+    """The loops of the one way, of three, in which they are given."""
+    from fcm.cli.loop_cases import of_contact, of_file, of_ratios
+
+    given = {name for name in options if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    if file is not None:
+        _useless(given, (*OF_RATIOS, *OF_CONTACT, "phases"), "with a FILE: its points have their own")
+        return of_file(
+            file,
+            options["curves"] or [None],
+            options["contact"],
+            options["at"] or [None],
+            options["solution"],
+        )
+    if given.intersection(OF_CONTACT):
+        _useless(given, OF_FILE[:-1], "without a FILE")
+        _useless(given, OF_RATIOS, "beside --mu, --k-u, --k-v, --n0, --a and --b")
+        missing = [_option(name) for name in OF_CONTACT if name not in given]
+        if missing:
+            raise click.UsageError(f"the contact is not complete: {', '.join(missing)} missing.")
+        return of_contact({name: options[name] for name in OF_CONTACT}, options["phases"])
+    _useless(given, OF_FILE, "without a FILE")
+    return of_ratios(options["n0_bars"] or (0.8,), options["b_bars"] or (1.0,), options["phases"])
+
+
+def _useless(given: set[str], names: tuple[str, ...], why: str) -> None:
+    wrong = [_option(name) for name in names if name in given]
+    if wrong:
+        raise click.UsageError(f"{', '.join(wrong)} is of no use {why}.")
+
+
+def _option(name: str) -> str:
+    return {"n_0": "--n0", "phases": "--phi"}.get(name, "--" + name.removesuffix("s").replace("_", "-"))
+
+
+def _draw(cases: list[Case], output: Path, scaled: bool, units: tuple[str, str] | None, cosine: bool) -> None:
+    from fcm.cli.loop_cases import titles
+    from fcm.plot.loop import DrawnLoop, LoopAxes, draw_loops
+
+    common, panels = titles(cases)
+    drawn = [
+        DrawnLoop(case.loop, title, case.amplitude, case.force) if scaled else DrawnLoop(case.loop, title)
+        for case, title in zip(cases, panels, strict=True)
+    ]
+    axes = LoopAxes.with_units(units, cosine) if scaled else LoopAxes(from_greatest=cosine)
+    save_picture(draw_loops(drawn, axes, common), output)
+
+
+def _sentence(case: Case, cosine: bool) -> str:
+    """The states of a loop and where each begins."""
+    from fcm.contact.sampled import shown_degrees, transitions
+
+    found = transitions(case.loop)
+    where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
+    names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
+    return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"

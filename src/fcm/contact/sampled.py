@@ -1,0 +1,79 @@
+"""A hysteresis loop as points: each state of the cycle, and the transitions between them, for a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.contact.loop import Loop
+
+STEPS = 720  # of a whole cycle
+
+
+@dataclass(frozen=True)
+class Part:
+    """One state of the cycle from its beginning to its end; forces divided by k_u a.
+
+    Angles run on from where the state begins, in [0, 2 pi), and may pass 2 pi.
+    """
+
+    state: str  # E stick, P positive slip, N negative slip, S separation
+    theta: FloatArray  # (i,) [rad]
+    displacement: FloatArray  # (i,) u / a [-]
+    force: FloatArray  # (i,) f / (k_u a) [-]
+    limit: FloatArray  # (i,) mu n / (k_u a) [-]
+
+
+@dataclass(frozen=True)
+class Transition:
+    """Where one state of the cycle ends and the next begins."""
+
+    states: str  # both letters, the one that ends first
+    theta: float  # in [0, 2 pi] [rad]
+    displacement: float  # u / a [-]
+    force: float  # f / (k_u a) [-]
+
+
+def parts(loop: Loop, steps: int = STEPS) -> list[Part]:
+    """The states of a cycle in order, sampled.
+
+    >>> from fcm.contact.loop import hysteresis_loop
+    >>> [(part.state, round(float(part.theta[0]), 3)) for part in parts(hysteresis_loop(0.5, 0.0, 0.0))]
+    [('E', 4.712), ('P', 0.0), ('E', 1.571), ('N', 3.142)]
+    """
+    if loop.angles.size == 0:
+        return [_part(loop, loop.sequence, 0.0, 2.0 * np.pi, steps)]
+    length = np.mod(np.diff(loop.angles, append=loop.angles[0]), 2.0 * np.pi)
+    return [
+        _part(loop, state, float(begin), float(turn), steps)
+        for state, begin, turn in zip(loop.sequence, loop.angles, length, strict=True)
+    ]
+
+
+def _part(loop: Loop, state: str, begin: float, length: float, steps: int) -> Part:
+    count = max(int(np.ceil(steps * length / (2.0 * np.pi))), 1)
+    theta = begin + np.linspace(0.0, length, count + 1)
+    return Part(state, theta, np.sin(theta), loop.force(theta), loop.normal_load(theta))
+
+
+def shown_degrees(theta: float, from_greatest: bool = False) -> float:
+    """An angle [rad] in degrees in [0, 360), counted from the greatest displacement if that is asked for.
+
+    >>> shown_degrees(0.5 * np.pi), shown_degrees(0.5 * np.pi, from_greatest=True)
+    (90.0, 0.0)
+    """
+    degrees = float(np.degrees(theta)) - (90.0 if from_greatest else 0.0)
+    return degrees % 360.0
+
+
+def transitions(loop: Loop) -> list[Transition]:
+    """Every transition of a cycle, in the order of the sequence; none where there is one state only."""
+    force = loop.force(loop.angles)
+    return [
+        Transition(
+            loop.sequence[i - 1] + loop.sequence[i], float(theta), float(np.sin(theta)), float(force[i])
+        )
+        for i, theta in enumerate(loop.angles)
+    ]

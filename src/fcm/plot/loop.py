@@ -1,0 +1,217 @@
+"""Hysteresis loops beside one another, as figures 5, 6 and 8: the states coloured, the transitions marked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fcm.contact.loop import Loop
+from fcm.contact.sampled import Part, Transition, parts, shown_degrees, transitions
+from fcm.plot.loop_marks import name_marks
+from fcm.plot.style import house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+STATES: dict[str, tuple[str, dict[str, Any]]] = {  # name, and a look that survives colour blindness and grey
+    "E": ("E stick", {"color": "black", "linestyle": "-", "linewidth": 1.0}),
+    "P": ("P positive slip", {"color": "#d55e00", "linestyle": "-", "linewidth": 2.2}),
+    "N": ("N negative slip", {"color": "#0072b2", "linestyle": (0, (2.4, 0.9)), "linewidth": 2.2}),
+    "S": ("S separation", {"color": "0.45", "linestyle": (0, (0.9, 0.9)), "linewidth": 2.2}),
+}
+_LIMIT: dict[str, Any] = {"color": "0.6", "linewidth": 0.7, "linestyle": (0, (5, 2))}
+_MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
+_SINGLE, _DOUBLE = 85.0 / 25.4, 170.0 / 25.4  # [inch] one and two columns of a journal
+_LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
+_MOST_COLUMNS = 4
+_SMALL = 7  # [point]
+_ROOM = 0.18  # beside a loop, relative to its extent
+_NARROWEST = 11.0  # [degree] a state shorter than this has no letter
+
+
+@dataclass(frozen=True)
+class DrawnLoop:
+    """A loop with its title; displacement and force of its axes are multiples of these."""
+
+    loop: Loop
+    title: str
+    amplitude: float = 1.0  # a
+    force: float = 1.0  # k_u a
+
+
+@dataclass(frozen=True)
+class LoopAxes:
+    """What the axes are called, and where their angle begins."""
+
+    displacement: str = "Displacement $u/a$ (–)"
+    force: str = "Friction force $f/k_u a$ (–)"
+    limit: str = r"slip limits $\pm\mu n/k_u a$"
+    from_greatest: bool = False  # angles count from the greatest displacement, u = a cos(theta)
+
+    @classmethod
+    def with_units(cls, units: tuple[str, str] | None, from_greatest: bool) -> LoopAxes:
+        """Axes of displacement and force in units of length and force, named if they are known."""
+        length, force = (f" ({_plain(unit)})" for unit in units) if units else ("", "")
+        return cls(
+            f"Displacement $u${length}",
+            f"Friction force $f${force}",
+            r"slip limits $\pm\mu n$",
+            from_greatest,
+        )
+
+    def degrees(self, theta: float) -> float:
+        """The angle as it is shown, in [0, 360)."""
+        return shown_degrees(theta, self.from_greatest)
+
+
+def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: str = "") -> Figure:
+    """Of each loop the force over the displacement, and below it over the angle with the slip limits."""
+    axes = axes or LoopAxes()
+    columns = min(len(loops), _MOST_COLUMNS)
+    rows = -(-len(loops) // columns)
+    with house_style():
+        height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + 0.35) + 0.75 + (0.2 if title else 0.0)
+        figure = new_figure(_SINGLE if len(loops) == 1 else _DOUBLE, height * (1.25 if columns == 1 else 1.0))
+        grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_LOOP_HEIGHT, _TIME_HEIGHT] * rows)
+        shared = _same_scale(loops)
+        above: list[Axes] = []
+        below: list[Axes] = []
+        for i, drawn in enumerate(loops):
+            row, column = divmod(i, columns)
+            one = figure.add_subplot(grid[2 * row, column])
+            two = figure.add_subplot(grid[2 * row + 1, column])
+            _draw_loop(one, drawn)
+            _draw_over_angle(two, drawn, axes)
+            one.set_title(drawn.title, fontsize=8)
+            _label(one, two, axes, first=column == 0 or not shared, left=column == 0)
+            above.append(one)
+            below.append(two)
+        _limits(above, below, loops, shared)
+        _legend(figure, loops, axes)
+        if title:
+            figure.suptitle(title, fontsize=8)
+        figure.draw_without_rendering()  # the panels take their places
+        for one, drawn in zip(above, loops, strict=True):
+            _mark_transitions(one, drawn, axes)
+    return figure
+
+
+def _same_scale(loops: Sequence[DrawnLoop]) -> bool:
+    """Whether all loops have the same amplitude and stiffness, and are to be compared."""
+    return len({(drawn.amplitude, drawn.force) for drawn in loops}) == 1
+
+
+def _plain(text: str) -> str:
+    """Text of the user's, none of it read as mathematics."""
+    return text.replace("$", r"\$")
+
+
+def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
+    axes.axhline(0.0, color="0.85", linewidth=0.5, zorder=0)
+    axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
+    for part in parts(drawn.loop):
+        look = STATES[part.state][1]
+        axes.plot(drawn.amplitude * part.displacement, drawn.force * part.force, **look)
+        if part.state in "PN":
+            _arrow(axes, drawn, part, look["color"])
+
+
+def _arrow(axes: Axes, drawn: DrawnLoop, part: Part, colour: str) -> None:
+    """The direction in which the cycle runs, in the middle of a slip."""
+    middle = part.theta.size // 2
+    if part.theta[-1] - part.theta[0] < 0.5 or middle + 1 >= part.theta.size:
+        return
+    start, end = (
+        (drawn.amplitude * part.displacement[i], drawn.force * part.force[i])
+        for i in (middle - 1, middle + 1)
+    )
+    head = {"arrowstyle": "-|>", "color": colour, "mutation_scale": 8, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", end, start, arrowprops=head)
+
+
+def _draw_over_angle(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
+    """Force and slip limits over one turn; a part that passes its end is drawn again at its beginning."""
+    axes.axhline(0.0, color="0.85", linewidth=0.5, zorder=0)
+    for part in parts(drawn.loop):
+        first = names.degrees(float(part.theta[0]))
+        angle = first + np.degrees(part.theta - part.theta[0])
+        for turn in (angle, angle - 360.0):
+            for sign in (-1.0, 1.0):
+                axes.plot(turn, sign * drawn.force * part.limit, label="_limit", **_LIMIT)
+            axes.plot(turn, drawn.force * part.force, **STATES[part.state][1])
+            _name_state(axes, part.state, turn)
+    for transition in transitions(drawn.loop):
+        axes.axvline(names.degrees(transition.theta), color="0.3", linewidth=0.4, zorder=0)
+    axes.set_xlim(0.0, 360.0)
+    axes.set_xticks([0, 90, 180, 270, 360])
+
+
+def _name_state(axes: Axes, state: str, angle: Any) -> None:
+    """The letter above the panel, in the middle of what is seen of the state."""
+    low, high = max(angle[0], 0.0), min(angle[-1], 360.0)
+    if high - low >= _NARROWEST:
+        axes.text(
+            0.5 * (low + high), 1.02, state, transform=axes.get_xaxis_transform(),
+            ha="center", va="bottom", fontsize=_SMALL, color=STATES[state][1]["color"],
+        )  # fmt: skip
+
+
+def _label(one: Axes, two: Axes, names: LoopAxes, first: bool, left: bool) -> None:
+    one.set_xlabel(names.displacement, fontsize=8)
+    two.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
+    for axes in (one, two):
+        axes.tick_params(labelsize=_SMALL, labelleft=first)
+        if left:
+            axes.set_ylabel(names.force if axes is one else "Force", fontsize=8)
+
+
+def _limits(above: list[Axes], below: list[Axes], loops: Sequence[DrawnLoop], shared: bool) -> None:
+    """Room around the loops for their marks; slip limits far beyond the force are cut off."""
+    extents = [_extent(drawn) for drawn in loops]
+    for i, (one, two) in enumerate(zip(above, below, strict=True)):
+        width, low, high = np.array(extents if shared else extents[i : i + 1]).T
+        room = _ROOM * (high.max() - low.min() or 1.0)
+        one.set_xlim(-(1.0 + _ROOM) * width.max(), (1.0 + _ROOM) * width.max())
+        one.set_ylim(low.min() - room, high.max() + room)
+        far = max(high.max(), -low.min()) + room
+        two.set_ylim(-far, far)
+
+
+def _extent(drawn: DrawnLoop) -> tuple[float, float, float]:
+    """Greatest displacement, least and greatest force."""
+    force = np.concatenate([part.force for part in parts(drawn.loop)])
+    return drawn.amplitude or 1.0, drawn.force * float(force.min()), drawn.force * float(force.max())
+
+
+def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None:
+    from matplotlib.lines import Line2D
+
+    found = {state for drawn in loops for state in drawn.loop.sequence}
+    handles = [Line2D([], [], label=name, **look) for state, (name, look) in STATES.items() if state in found]
+    handles.append(Line2D([], [], label=names.limit, **_LIMIT))
+    handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
+    columns = 2 if len(loops) == 1 else len(handles)
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=columns, fontsize=_SMALL,
+        handlelength=2.4, columnspacing=1.0,
+    )  # fmt: skip
+
+
+def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
+    """A ring at each transition, and its angle where there is room."""
+    found: list[Transition] = transitions(drawn.loop)
+    points = [(drawn.amplitude * t.displacement, drawn.force * t.force) for t in found]
+    texts = [f"{names.degrees(t.theta):.1f}°" for t in found]
+    curve = np.concatenate(
+        [
+            np.column_stack((drawn.amplitude * p.displacement, drawn.force * p.force))
+            for p in parts(drawn.loop)
+        ]
+    )
+    for x, y in points:
+        axes.plot([x], [y], color="black", linestyle="", zorder=3, **_MARK)
+    name_marks(axes, points, texts, curve, _SMALL)

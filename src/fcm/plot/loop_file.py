@@ -1,0 +1,139 @@
+"""The loops in a response file: the points of a curve at a frequency, and the loop of a contact there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fcm.plot.errors import PlotError
+from fcm.plot.read import FloatArray, floats, read_response
+
+_PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
+
+
+@dataclass(frozen=True)
+class LoopPoint:
+    """One contact at one point of a curve."""
+
+    curve: int
+    parameters: dict[str, float]  # the swept values of the curve
+    contact: str
+    frequency: float  # of the point, in the file's unit
+    solution: int  # 1 for that of the greatest tangential amplitude
+    solutions: int  # how many the curve has near this frequency
+    stable: bool | None  # None where the file does not know
+    n0_bar: float
+    b_bar: float
+    phi: float  # [rad]
+    amplitude: float  # a, of the tangential motion
+    force: float  # k_u a
+
+
+@dataclass(frozen=True)
+class LoopFile:
+    """What a response file has on the loops of its contacts."""
+
+    path: Path
+    unit: str
+    contacts: tuple[str, ...]
+    parameters: tuple[dict[str, float], ...]  # (curve,)
+    frequency: FloatArray  # (curve, point) in the file's unit
+    stable: FloatArray  # (curve, point) 1, 0 or NaN
+    loop: FloatArray  # (5, curve, point, contact)
+
+
+def read_loops(path: Path) -> LoopFile:
+    """Read what ``fcm respond -o`` has written; PlotError if the file holds no loops."""
+    from netCDF4 import Dataset
+
+    response = read_response(path)
+    with Dataset(str(path)) as data:
+        missing = [name for name in (*_PARTS, "contact") if name not in data.variables]
+        if missing:
+            raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
+        contacts = tuple(str(name) for name in np.atleast_1d(data["contact"][:]))
+        frequency = floats(data["frequency"])
+        stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
+        parts = [floats(data[name]) for name in _PARTS]
+    shape = (*frequency.shape, len(contacts))
+    if any(part.shape != shape for part in parts):
+        raise PlotError(f"{path}: holds no loops: {_PARTS[0]} has shape {parts[0].shape}, not {shape}")
+    swept = tuple(curve.parameters for curve in response.curves)
+    return LoopFile(path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts))
+
+
+def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
+    """The points of a curve nearest to a frequency, one for each solution there, greatest amplitude first.
+
+    Without a frequency it is the point of the greatest tangential amplitude.
+
+    Raises
+    ------
+    PlotError
+        If the curve, the contact or the frequency is not in the file.
+    """
+    row, column = _row(file, curve), _column(file, contact)
+    frequency, amplitude = file.frequency[row], file.loop[3, row, :, column]
+    if not np.isfinite(amplitude).any():
+        raise PlotError(
+            f"{file.path}: curve {row} holds no loops: no points at all, or exact motions, not harmonic ones"
+        )
+    if at is None:
+        found = [int(np.nanargmax(amplitude))]
+    else:
+        found = _solutions(frequency, at)
+        found.sort(key=lambda k: -amplitude[k])
+    if not found:
+        low, high = np.nanmin(frequency), np.nanmax(frequency)
+        raise PlotError(
+            f"{file.path}: curve {row} goes from {low:.6g} to {high:.6g} {file.unit}, not to {at:.6g}"
+        )
+    return [_point(file, row, column, k, i + 1, len(found)) for i, k in enumerate(found)]
+
+
+def _solutions(frequency: FloatArray, at: float) -> list[int]:
+    """The nearer end of every segment of the curve that crosses the frequency."""
+    start, end = frequency[:-1] - at, frequency[1:] - at
+    crossing = np.flatnonzero(start * end <= 0.0)
+    nearer = np.where(np.abs(start[crossing]) <= np.abs(end[crossing]), crossing, crossing + 1)
+    if frequency.size == 1 and frequency[0] == at:
+        return [0]
+    return sorted(set(nearer.tolist()))
+
+
+def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutions: int) -> LoopPoint:
+    n0_bar, b_bar, phi, amplitude, force = file.loop[:, row, k, column].tolist()
+    frequency, stable = float(file.frequency[row, k]), float(file.stable[row, k])
+    name = file.contacts[column]
+    if not amplitude > 0.0:
+        raise PlotError(
+            f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
+        )
+    return LoopPoint(
+        row, file.parameters[row], name, frequency, solution, solutions,
+        None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
+    )  # fmt: skip
+
+
+def _row(file: LoopFile, curve: int | None) -> int:
+    count = len(file.parameters)
+    if curve is None and count > 1:
+        raise PlotError(f"{file.path}: has {count} curves; say which by --curve 0 to --curve {count - 1}")
+    row = 0 if curve is None else curve
+    if row >= count:
+        has = f"{count} curves, 0 to {count - 1}" if count > 1 else f"{count} curve"
+        raise PlotError(f"{file.path}: there is no curve {row}; it has {has}")
+    return row
+
+
+def _column(file: LoopFile, contact: str | None) -> int:
+    names = ", ".join(file.contacts)
+    if not file.contacts:
+        raise PlotError(f"{file.path}: its scene has no contact, and so no loop")
+    if contact is None and len(file.contacts) > 1:
+        raise PlotError(f"{file.path}: has several contacts; say which by --contact: {names}")
+    if contact is not None and contact not in file.contacts:
+        raise PlotError(f"{file.path}: there is no contact {contact!r}; it has {names}")
+    return 0 if contact is None else file.contacts.index(contact)

@@ -1,0 +1,102 @@
+"""Angles written beside the marks of a loop, where they touch neither each other nor the loop."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.plot.read import FloatArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.text import Annotation
+    from matplotlib.transforms import Bbox
+
+_DISTANCES = (5.0, 9.0, 14.0, 20.0, 27.0, 35.0)  # [point] from the mark to the nearer side of its text
+_DIRECTIONS = 16
+_LEADER_FROM = 9.0  # [point] a text this far from its mark has a thin line to it
+_LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 2.0}
+_MARGIN = 2.0  # [pixel] around a text, at 100 to the inch
+
+
+def name_marks(
+    axes: Axes, points: Sequence[tuple[float, float]], texts: Sequence[str], curve: FloatArray, size: float
+) -> None:
+    """Write each text beside its point (x, y); one that finds no room is written where least is covered.
+
+    The panel has its final size; curve (i, 2) is what the texts should not touch.
+    """
+    if not points:
+        return
+    pixels = axes.transData.transform(_dense(curve))
+    marks = axes.transData.transform(np.array(points))
+    centre = 0.5 * (pixels.min(axis=0) + pixels.max(axis=0))
+    taken: list[Bbox] = []
+    for point, mark, text in zip(points, marks, texts, strict=True):
+        outward = float(np.arctan2(*(mark - centre)[::-1]))
+        taken.append(_write(axes, point, text, outward, taken, np.concatenate((pixels, marks)), size))
+
+
+def _write(
+    axes: Axes,
+    point: tuple[float, float],
+    text: str,
+    outward: float,
+    taken: list[Bbox],
+    pixels: FloatArray,
+    size: float,
+) -> Bbox:
+    """The text at the first place that is free, nearest first and outward first; its box."""
+    best, least = _offset(outward, _DISTANCES[0]), np.inf
+    for offset in (_offset(outward + turn, d) for d in _DISTANCES for turn in _turns()):
+        trial = _text(axes, point, text, offset, size, leader=False)
+        cost = _covered(trial.get_window_extent().padded(_MARGIN), axes, taken, pixels)
+        trial.remove()
+        if cost < least:
+            best, least = offset, cost
+        if cost == 0.0:
+            break
+    far = float(np.hypot(*best)) > _LEADER_FROM
+    return _text(axes, point, text, best, size, leader=far).get_window_extent().padded(_MARGIN)
+
+
+def _turns() -> list[float]:
+    """Angles from the outward direction, the smallest first."""
+    half = [k * 2.0 * np.pi / _DIRECTIONS for k in range(_DIRECTIONS // 2 + 1)]
+    return [0.0, *(sign * turn for turn in half[1:] for sign in (1.0, -1.0))]
+
+
+def _offset(direction: float, distance: float) -> tuple[float, float]:
+    return distance * float(np.cos(direction)), distance * float(np.sin(direction))
+
+
+def _text(
+    axes: Axes, point: tuple[float, float], text: str, offset: tuple[float, float], size: float, leader: bool
+) -> Annotation:
+    """The text with the side towards its point at the offset."""
+    across, up = offset
+    steep = abs(up) > 2.5 * abs(across)
+    return axes.annotate(
+        text, point, offset, textcoords="offset points", fontsize=size,
+        ha="center" if steep else "left" if across > 0.0 else "right",
+        va="center" if abs(across) > 2.5 * abs(up) else "bottom" if up > 0.0 else "top",
+        arrowprops=_LEADER if leader else None,
+    )  # fmt: skip
+
+
+def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
+    """How much a text at a box would cover: points of the loop, other texts, the frame."""
+    frame = axes.get_window_extent()
+    outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
+    inside = ((pixels > (box.x0, box.y0)) & (pixels < (box.x1, box.y1))).all(axis=1)
+    others = sum(bool(box.overlaps(other)) for other in taken)
+    return 1e6 * outside + 1e4 * others + float(inside.sum())
+
+
+def _dense(curve: FloatArray) -> FloatArray:
+    """Points between those of a loop, so close that none of its pieces jumps over a text."""
+    at = np.linspace(0, len(curve) - 1, 4 * (len(curve) - 1) + 1)
+    nodes = np.arange(len(curve))
+    return np.column_stack([np.interp(at, nodes, curve[:, i]) for i in (0, 1)])
