@@ -33,7 +33,7 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
 
 
 def _curve_row(curve: Curve, dofs: list[str]) -> list[str]:
-    cells = _swept(curve)
+    cells = swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
         cells += [number(peak.get("amplitude")), number(peak.get("frequency"))]
@@ -49,11 +49,11 @@ def _jumps(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str
     for curve in curves:
         for jump in curve.get("jumps", ()):
             moves = [number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
-            rows.append([*_swept(curve), number(jump["frequency"]), *moves, jump["sweep"]])
+            rows.append([*swept(curve), number(jump["frequency"]), *moves, jump["sweep"]])
     return aligned(rows, left=1)
 
 
-def _swept(curve: Curve) -> list[str]:
+def swept(curve: Curve) -> list[str]:
     return [f"{value:.6g}" for value in curve["parameters"].values()]
 
 

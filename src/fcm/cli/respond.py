@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli import schedule
 from fcm.cli.files import output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
@@ -31,8 +32,9 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 
 @click.command()
 @click.argument("scene", metavar="SCENE")
-@output_option("-o", "--output", endings=(".nc",), help="Write the curves as netCDF.")
-@output_option("--csv", endings=(".csv",), help="Write the curves as CSV.")
+@output_option("-o", "--output", endings=(".nc",), help="Write the curves, and the motion, as netCDF.")
+@output_option("--csv", endings=(".csv",), help="Write the curves as CSV; without any, the motion.")
+@output_option("--history-csv", endings=(".csv",), help="Write the motion of the schedule as CSV.")
 @click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table.")
 @click.option(
     "--method", type=click.Choice(["table", "closed-form"]), default="table", show_default=True,
@@ -61,6 +63,7 @@ def respond(
     scene: str,
     output: Path | None,
     csv: Path | None,
+    history_csv: Path | None,
     to_json: bool,
     method: str,
     table: str | None,
@@ -72,7 +75,9 @@ def respond(
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
 
-    The peaks, folds and errors of every curve are printed; the curves go to files.
+    The peaks, folds and errors of every curve are printed; the curves go to files. A [[schedule]] of the
+    scene is then simulated in time, without a time step; the amplitudes of its phases are printed, the
+    motion goes to the same file.
     """
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
@@ -83,35 +88,47 @@ def respond(
 
     keep = None if output is None else output.with_name(f"{output.name}.unfinished")
     options = {"jobs": jobs, "tolerance": None if keep_all else tolerance, "keep": keep, "resume": resume}
-    response = _traced(messages, scene, method, table, max_step, options)
+    loaded = _loaded(scene, max_step, history_csv)
+    if loaded.has_range:
+        response = _traced(messages, loaded, method, table, options)
+    else:
+        response = _without_curves(loaded)
+    if loaded.schedule:
+        response.histories = schedule.simulated(messages, loaded, response)
     result = summary(response)
     unit = response.frequency_unit
     try:
-        _write(messages, response, output, csv)
+        _write(messages, response, output, csv, history_csv)
     finally:  # a full disk does not take the result away
-        click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else as_table(result, unit))
+        click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, unit))
     if keep is not None and interrupted(response):
         messages.warning(f"interrupted; what is finished is kept in {keep}: continue with --resume")
     _close(messages, result)
 
 
-def _traced(
-    messages: Messages,
-    scene: str,
-    method: str,
-    table: str | None,
-    max_step: float | None,
-    options: dict[str, Any],
-) -> Response:
-    from fcm.response import trace
+def _loaded(scene: str, max_step: float | None, history_csv: Path | None) -> Scene:
     from fcm.scene import load_scene
 
     loaded = load_scene(scene)
-    if max_step is not None:
-        loaded = _with_step(loaded, max_step)
-    messages.detail(f"{loaded.title or scene}: curves to trace: {len(loaded.each_curve())}, method: {method}")
+    schedule.check_options(loaded, history_csv)
+    return loaded if max_step is None else _with_step(loaded, max_step)
+
+
+def _without_curves(scene: Scene) -> Response:
+    from fcm.response import Response
+
+    return Response.without_curves(scene)
+
+
+def _traced(
+    messages: Messages, scene: Scene, method: str, table: str | None, options: dict[str, Any]
+) -> Response:
+    from fcm.response import trace
+
+    count = len(scene.each_curve())
+    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     opened = _opened(table)
-    response = trace(loaded, method=method, table=opened, progress=messages.progress, **options)
+    response = trace(scene, method=method, table=opened, progress=messages.progress, **options)
     messages.clear()
     if outside := getattr(opened, "outside", 0):
         messages.info(
@@ -133,20 +150,33 @@ def _with_step(scene: Scene, max_step: float) -> Scene:
     return replace(scene, max_step=max_step, curves=curves)
 
 
-def _write(messages: Messages, response: Response, output: Path | None, csv: Path | None) -> None:
+def _write(
+    messages: Messages, response: Response, output: Path | None, csv: Path | None, history_csv: Path | None
+) -> None:
     from fcm.response.output import write_csv, write_netcdf
 
-    for path, write in ((output, write_netcdf), (csv, write_csv)):
+    table = write_csv if response.curves else schedule.write_csv
+    for path, write in ((output, write_netcdf), (csv, table), (history_csv, schedule.write_csv)):
         if path is not None:
             write(response, path)
             messages.info(f"wrote {path}")
+
+
+def _tables(result: dict[str, Any], unit: str) -> str:
+    """The curves, then the phases of the schedule."""
+    parts = [as_table(result, unit)] if result["curves"] or "histories" not in result else []
+    return "\n\n".join(parts + [schedule.as_table(result["histories"], unit)] * ("histories" in result))
 
 
 def _close(messages: Messages, result: dict[str, Any]) -> None:
     """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
     for text in result["left_out"]:
         messages.info(f"left out: {text}")
-    messages.info(cost_and_error(result))
-    if stopped := incomplete(result):
+    if result["curves"]:
+        messages.info(cost_and_error(result))
+    histories = result.get("histories", [])
+    if histories:
+        messages.info(schedule.cost_and_error(histories))
+    if stopped := " and ".join(filter(None, (incomplete(result), schedule.incomplete(histories)))):
         messages.error(f"error: {stopped}; what was traced is reported and written")
         click.get_current_context().exit(DEFECT if all_lost_to_defects(result) else NOT_COMPLETED)

@@ -53,8 +53,7 @@ def histories(scene: Scene, progress: Progress | None = None) -> Histories:
     """
     if not scene.schedule:
         raise SimulationError("the scene has no [[schedule]]; give it one, or simulate one frequency")
-    begin, curves = time.perf_counter(), scene.each_curve()
-    plan = Plan(scene.schedule, len(scene.modal.dofs) * len(curves))
+    begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene)
     records: list[Record] = []
     for number, curve in enumerate(curves):
         made = record(curve, plan, _share(progress, number, len(curves)))
@@ -72,3 +71,13 @@ def _share(progress: Progress | None, number: int, count: int) -> Progress | Non
     if progress is None or count == 1:
         return progress
     return lambda part, text: progress((number + part) / count, f"curve {number + 1}, {text}")
+
+
+def not_begun(scene: Scene) -> Histories:
+    """The histories of a calculation that was interrupted before their turn."""
+    plan = _plan(scene)
+    return Histories(scene, plan, [unfinished(curve, plan) for curve in scene.each_curve()], 0.0)
+
+
+def _plan(scene: Scene) -> Plan:
+    return Plan(scene.schedule, len(scene.modal.dofs) * len(scene.each_curve()))

@@ -1,0 +1,134 @@
+"""The schedule of a scene in ``fcm respond``: simulated, reported, and what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from fcm.cli.messages import Messages
+from fcm.cli.report import aligned, number, swept
+
+if TYPE_CHECKING:
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+    from fcm.simulate import Histories
+
+Summary = Mapping[str, Any]  # one of the summary's "histories"
+
+_MOST_DOFS, _MOST_CONTACTS = 4, 3  # that fit beside each other on a line
+_OF_CURVES = {  # options that mean nothing without a range of frequencies
+    "method": "--method", "at": "--at", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
+    "resume": "--resume", "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
+}  # fmt: skip
+
+
+def check_options(scene: Scene, history_csv: Path | None) -> None:
+    """Refuse options that concern curves where the scene has none, or motion where it has none."""
+    if history_csv is not None and not scene.schedule:
+        raise click.UsageError(f"--history-csv is of no use: {scene.name} has no [[schedule]].")
+    if scene.has_range:
+        return
+    context = click.get_current_context()
+    given = [
+        option
+        for name, option in _OF_CURVES.items()
+        if name in context.params and context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+    ]
+    if given:
+        raise click.UsageError(
+            f"{given[0]} is of no use: {scene.name} has a [[schedule]] and no [response], so no curve."
+        )
+
+
+def simulated(messages: Messages, scene: Scene, response: Response) -> Histories:
+    """The motion through the schedule, after the curves; an interruption does not take those away."""
+    from fcm.response.sweep import interrupted
+    from fcm.simulate.histories import histories, not_begun
+
+    if interrupted(response):
+        return not_begun(scene)
+    try:
+        found = histories(scene, messages.progress)
+    except KeyboardInterrupt:
+        if not response.curves:
+            raise
+        found = not_begun(scene)
+    messages.clear()
+    return found
+
+
+def write_csv(response: Response, path: Path) -> None:
+    """Write the motion as CSV."""
+    from fcm.simulate.output import write_csv
+
+    if response.histories is not None:
+        write_csv(response.histories, path)
+
+
+def as_table(histories: Sequence[Summary], unit: str) -> str:
+    """One line for each phase of each curve: amplitudes, states, whether the motion has settled."""
+    from fcm.plot.labels import short_names
+
+    first = next((one["phases"][0] for one in histories if one["phases"]), None)
+    if first is None:
+        return "no cycle of the schedule"
+    dofs, contacts = list(first["amplitude"])[:_MOST_DOFS], list(first["regime"])[:_MOST_CONTACTS]
+    names = list(short_names(histories[0]["parameters"]).values())
+    amplitudes = [f"amplitude {dof}" for dof in dofs]
+    header = [*names, "phase", unit, "cycles", *amplitudes, "transitions", *contacts, "settled", ""]
+    rows = [row for one in histories for row in _rows(one, dofs, contacts)]
+    return aligned([header, *rows], left=len(contacts) + 2)
+
+
+def _rows(one: Summary, dofs: list[str], contacts: list[str]) -> list[list[str]]:
+    rows = [
+        [
+            *swept(one),
+            str(i),
+            f"{phase['frequency']:.6g}",
+            f"{phase['cycles']:g}",
+            *(number(phase["amplitude"][dof]) for dof in dofs),
+            str(phase["transitions"]),
+            *(phase["regime"][contact] for contact in contacts),
+            _settled(phase),
+            "",
+        ]
+        for i, phase in enumerate(one["phases"], 1)
+    ]
+    rows = rows or [[*swept(one), *["-"] * (4 + len(dofs) + len(contacts) + 1), ""]]
+    if not one["complete"]:
+        rows[-1][-1] = f"NOT COMPLETE: {one['reason']}"
+    return rows
+
+
+def _settled(phase: Mapping[str, Any]) -> str:
+    left = phase["unsettled"]
+    return "yes" if phase["settled"] else "no" if left is None else f"no, by {left:.1g}"
+
+
+def cost_and_error(histories: Sequence[Summary]) -> str:
+    """What the simulation cost, how wrong it is, and what of it is kept."""
+    cycles = sum(one["cycles"] for one in histories)
+    transitions = sum(one["transitions"] for one in histories)
+    every = histories[0]["cycles_per_sampled_cycle"]
+    seconds = sum(one["seconds"] for one in histories)
+    error = max(one["energy"]["error"] for one in histories)
+    of = "every cycle" if every == 1 else f"every {every}th cycle"
+    lines = [
+        f"schedule: {cycles:g} cycles, {transitions} transitions in {seconds:.2f} s",
+        f"largest relative error of the energy balance: {error:.1e}",
+        f"kept: {histories[0]['samples_per_cycle']} displacements of {of}; extremes and mean of all cycles",
+    ]
+    if dropped := transitions - sum(one["transitions_with_times"] for one in histories):
+        lines.append(f"not kept: the times of the last {dropped} transitions")
+    return "\n".join(lines)
+
+
+def incomplete(histories: Sequence[Summary]) -> str:
+    """How many schedules stopped early; empty if none."""
+    stopped = sum(not one["complete"] for one in histories)
+    return f"{stopped} of {len(histories)} schedules not complete" if stopped else ""
