@@ -57,6 +57,11 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     metavar="X", help="Greatest relative change of the response by what is left out.",
 )  # fmt: skip
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
+@click.option(
+    "--compare",
+    is_flag=True,
+    help="Run the scene by every method: error against run time, instead of curves.",
+)
 @pass_messages
 def respond(
     messages: Messages,
@@ -72,6 +77,7 @@ def respond(
     resume: bool,
     tolerance: float,
     keep_all: bool,
+    compare: bool,
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
 
@@ -79,6 +85,12 @@ def respond(
     scene is then simulated in time, without a time step; the amplitudes of its phases are printed, the
     motion goes to the same file.
     """
+    if compare:
+        from fcm.cli.compare import refuse_other_options, write_comparison
+
+        refuse_other_options()
+        write_comparison(messages, _loaded(scene, max_step, None), table, tolerance, output, to_json)
+        return
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
     if resume and output is None:
@@ -164,8 +176,9 @@ def _write(
 
 def _tables(result: dict[str, Any], unit: str) -> str:
     """The curves, then the phases of the schedule."""
-    parts = [as_table(result, unit)] if result["curves"] or "histories" not in result else []
-    return "\n\n".join(parts + [schedule.as_table(result["histories"], unit)] * ("histories" in result))
+    histories = result.get("histories", [])
+    parts = [as_table(result, unit)] if result["curves"] or not histories else []
+    return "\n\n".join([*parts, schedule.as_table(histories, unit)] if histories else parts)
 
 
 def _close(messages: Messages, result: dict[str, Any]) -> None:

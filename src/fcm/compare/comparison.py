@@ -1,0 +1,193 @@
+"""A scene by every method: references, a run of each method at each resolution, parts of the error."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from fcm.compare.errors import Errors, Reference, Shown, reference, worst
+from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, with_step
+from fcm.compare.startup import Startup, startup
+from fcm.response.leave_out import TOLERANCE
+from fcm.response.sweep import trace
+from fcm.scene.model import Scene
+from fcm.table import open_table
+from fcm.table.store import DEFAULT
+
+STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
+STEPS_EXACT = (4.0, 2.0, 1.0)
+FINEST, FINEST_EXACT = 1.0 / 16.0, 0.25  # of the references
+FLOOR = {CLOSED_FORM: 1e-9, EXACT: 1e-8}  # to which points are solved and peaks located, relative
+_REFERENCES = (  # name, finest and coarser steps, and when it begins and ends, in shares of the time
+    (CLOSED_FORM, FINEST, 4.0 * FINEST, 0.0, 0.1),
+    (EXACT, FINEST_EXACT, 1.0, 0.1, 0.4),
+)
+Progress = Callable[[float, str], None]
+
+
+@dataclass
+class Comparison:
+    """Every run with its errors against both references; each list of errors is in the order of the runs."""
+
+    scene: Scene
+    references: dict[str, Reference] = field(default_factory=dict)
+    startups: dict[str, Startup] = field(default_factory=dict)
+    runs: list[Run] = field(default_factory=list)
+    errors: dict[str, list[Errors]] = field(default_factory=lambda: {EXACT: [], CLOSED_FORM: []})
+    left_out: list[str] = field(default_factory=list)
+    seconds: float = 0.0
+    interrupted: bool = False
+
+    @property
+    def parameters(self) -> list[dict[str, float]]:
+        """What was swept, of each curve."""
+        return [scene.parameters for scene in self.scene.each_curve()]
+
+    @property
+    def without_exact(self) -> list[str]:
+        """Why some curves have no exact reference, a sentence for each."""
+        lines = self.references[EXACT].lines
+        names = [", ".join(f"{k} = {v:g}" for k, v in p.items()) or "the curve" for p in self.parameters]
+        return [
+            f"{name}: {line.reason or 'no periodic solution'}"
+            for name, line in zip(names, lines, strict=True)
+            if not line.complete
+        ]
+
+    def add(self, one: Run) -> None:
+        """A run and its errors."""
+        errors = {name: reference.errors(one.lines) for name, reference in self.references.items()}
+        self.runs.append(one)
+        for name, values in errors.items():
+            self.errors[name].append(values)
+
+    def shown(self, against: str, number: int, measure: str) -> Shown:
+        """The greatest error of a run over the curves, or a limit below which it is."""
+        own = self.references[against].own
+        return worst(self.errors[against][number][measure], own[measure])
+
+    def find(
+        self, method: str, corrected: bool = True, left_out: bool = True, share: float = 1.0
+    ) -> int | None:
+        """The number of a run, if it was made."""
+        step = with_step(self.scene, share).max_step
+        for number, one in enumerate(self.runs):
+            if (one.method, one.corrected, one.left_out, one.max_step) == (method, corrected, left_out, step):
+                return number
+        return None
+
+
+def compare(
+    scene: Scene,
+    table: Path | None = None,
+    progress: Progress | None = None,
+    tolerance: float = TOLERANCE,
+) -> Comparison:
+    """Run a scene by every method and measure error against run time.
+
+    The methods are harmonic balance with the default table, the fast one and the closed form, and the exact
+    periodic motion; each over a range of longest steps, and with and without what the scene does not need.
+    The errors are those of peaks, folds and whole curves (`fcm.compare.errors.MEANINGS`), against two
+    references: exact, and the closed form with the shortest steps, which has the same single harmonic.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`; every curve of its sweep is compared.
+    table : Path, optional
+        Another table to compare.
+    progress : optional
+        Called with the finished fraction and a text.
+    tolerance : float
+        Of what is left out, as in `fcm.response.trace`.
+
+    Raises
+    ------
+    ResponseError, TableError
+        If the scene cannot be solved, or a table not be read.
+    KeyboardInterrupt
+        If it is interrupted before both references are there; after that, what is done is returned.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.5, 1.7), max_step=0.4)
+    >>> comparison = compare(scene)
+    >>> str(comparison.shown("closed form", comparison.find("fast table"), "peak"))
+    '< 1e-08'
+    """
+    begin = time.perf_counter()
+    out = Comparison(scene)
+    show = progress or (lambda _share, _text: None)
+    tables = {"default table": DEFAULT, "fast table": DEFAULT.with_name("fast.nc")}
+    if table is not None:
+        tables[f"table {table.name}"] = table
+    methods = [Method(name, open_table(path)) for name, path in tables.items()]
+    methods += [Method(CLOSED_FORM), Method(EXACT)]
+    out.left_out = trace(with_step(scene, max(STEPS)), tolerance=tolerance).left_out
+    jobs = list(_jobs(methods, tolerance))
+    _references(out, show)
+    try:
+        for number, (method, share, kept) in enumerate(jobs):
+            show(0.4 + 0.6 * number / len(jobs), f"{method.name}, max_step x {share:g}")
+            out.add(_same(out, method, share) or run(method, with_step(scene, share), kept))
+        for one in methods:
+            out.startups[one.name] = startup(one.name, tables.get(one.name))
+    except KeyboardInterrupt:
+        out.interrupted = True
+    out.seconds = time.perf_counter() - begin
+    return out
+
+
+def _same(out: Comparison, method: Method, share: float) -> Run | None:
+    """The exact run that is there already, if there is nothing to leave out of it."""
+    number = out.find(EXACT, left_out=False, share=share) if method.name == EXACT else None
+    return None if number is None or out.left_out else replace(out.runs[number], left_out=True)
+
+
+def _jobs(methods: list[Method], tolerance: float) -> Iterator[tuple[Method, float, float | None]]:
+    """Method, share of the longest step, tolerance of what is left out; the most wanted first."""
+    for method in methods:
+        yield method, 1.0, tolerance
+        if method.name != EXACT:  # of exact it is there already
+            yield method, 1.0, None
+    for method in methods:
+        for share in STEPS_EXACT if method.name == EXACT else STEPS:
+            if share != 1.0:
+                yield method, share, tolerance
+            if method.table is not None:
+                yield Method(method.name, method.table, corrected=False), share, None
+
+
+def _references(out: Comparison, show: Progress) -> None:
+    """Both references, each with its own error from a run with longer steps."""
+    made = []
+    for name, finest, coarse, begins, ends in _REFERENCES:
+        middle = 0.6 * begins + 0.4 * ends
+        coarser = run(Method(name), with_step(out.scene, coarse), None, _part(show, begins, middle, name))
+        finer = run(Method(name), with_step(out.scene, finest), None, _part(show, middle, ends, name))
+        out.references[name] = reference(name, finer.max_step, finer.lines, coarser.lines, FLOOR[name])
+        made.append(coarser)
+    for one in made:
+        out.add(one)
+
+
+def _part(show: Progress, begins: float, ends: float, name: str) -> Progress:
+    """Progress of the reference of this name, which takes a part of the whole time."""
+    return lambda share, text: show(begins + (ends - begins) * share, f"reference: {name}, {text}")
+
+
+def contributions(out: Comparison) -> dict[str, tuple[str, int | None]]:
+    """What an error consists of: against which reference, and the run that shows it."""
+    rows: dict[str, tuple[str, int | None]] = {}
+    tables = [name for name in dict.fromkeys(one.method for one in out.runs) if "table" in name]
+    for name in tables:
+        rows[f"{name}, as it is"] = CLOSED_FORM, out.find(name, corrected=False, left_out=False)
+        rows[f"{name}, corrected"] = CLOSED_FORM, out.find(name, left_out=False)
+    rows["step and tolerance"] = CLOSED_FORM, out.find(CLOSED_FORM, left_out=False)
+    rows["what was left out"] = CLOSED_FORM, out.find(CLOSED_FORM)
+    rows["single harmonic"] = EXACT, out.find(CLOSED_FORM, left_out=False, share=4.0 * FINEST)
+    return rows

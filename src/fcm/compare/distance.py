@@ -1,0 +1,109 @@
+"""Distance of a response curve from a reference, as fair at folds and on steep flanks as elsewhere.
+
+An error of amplitude at equal frequency is without bound where a curve is steep, and has no meaning between
+folds. So curves are compared as sets of points (ln omega, X_1, ..., X_n): d is the square root of
+
+    (difference of ln omega)^2 + mean over the degrees of freedom of (difference of X_j / max X_j)^2,
+
+from each point of the one curve to the nearest of the other. It is dimensionless, and does not depend on
+the range of frequencies, on units or on where the points lie along the curves.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import Akima1DInterpolator
+from scipy.spatial import cKDTree
+
+from fcm.compare.lines import FloatArray, Line
+
+FINE = 16  # points on a piece between two neighbours
+SAME = 1e-13  # distance below which two neighbours are one point
+
+
+class Shape:
+    """A line as a fine chain of points in the coordinates of distance.
+
+    smooth : by local cubics, which do not overshoot at corners (Akima); else straight, as lines are drawn.
+    """
+
+    def __init__(self, line: Line, size: FloatArray, smooth: bool) -> None:
+        parts = [_coordinates(w, a, size) for w, a in line.branches()]
+        self.points = np.concatenate([*parts, np.empty((0, size.size + 1))])
+        self.chains = [_fine(part, smooth) for part in parts]
+        chain = np.concatenate([*self.chains, np.empty((0, size.size + 1))])
+        self.chain = chain
+        if chain.size:
+            lengths = [part.shape[0] for part in self.chains]
+            # the piece after each point; at the end of a chain, none
+            step = np.vstack((np.diff(chain, axis=0), np.zeros(chain.shape[1])))
+            step[np.cumsum(lengths) - 1] = 0.0
+            self._step, self._tree = step, cKDTree(chain)
+
+    def from_(self, points: FloatArray) -> FloatArray:
+        """Distance of each of the points (point, 1 + dof) from this chain."""
+        if self.chain.size == 0:
+            return np.full(points.shape[0], np.nan)
+        _, nearest = self._tree.query(points)
+        before = np.maximum(nearest - 1, 0)
+        return np.minimum(self._from_piece(points, nearest), self._from_piece(points, before))
+
+    def _from_piece(self, points: FloatArray, first: np.ndarray) -> FloatArray:
+        start, step = self.chain[first], self._step[first]
+        square = (step * step).sum(axis=1)
+        along = ((points - start) * step).sum(axis=1) / np.where(square > 0.0, square, 1.0)
+        foot = start + np.clip(along, 0.0, 1.0)[:, None] * step
+        return np.asarray(np.sqrt(((points - foot) ** 2).sum(axis=1)))
+
+
+def size_of(line: Line) -> FloatArray:
+    """Greatest amplitude of each degree of freedom, the unit of its errors: (dof,)."""
+    greatest = np.nanmax(np.where(np.isfinite(line.amplitude), line.amplitude, 0.0), axis=0, initial=0.0)
+    return np.where(greatest > 0.0, greatest, 1.0)
+
+
+def of_points(shape: Shape, reference: Shape) -> float:
+    """Greatest distance of a line's own points from the reference: what is wrong with the points."""
+    return _greatest(reference.from_(shape.points))
+
+
+def of_curve(shape: Shape, reference: Shape) -> float:
+    """Greatest distance of either from the other: what is wrong, missing, or too coarse to be drawn."""
+    return max(_greatest(reference.from_(shape.chain)), _greatest(shape.from_(reference.chain)))
+
+
+def resolution(line: Line, size: FloatArray) -> float:
+    """Error of a smooth line between its points: by how much it misses every other one when left out.
+
+    With twice the spacing the error is at least twice as large, at a corner, and eight times elsewhere;
+    so half of what is missed is a bound of what the whole line misses.
+    """
+    worst = 0.0
+    for w, a in line.branches():
+        keep = np.arange(w.size) % 2 == 0
+        keep[-1] = True
+        thinned = Line(w[keep], a[keep], {}, (), True)
+        left_out = _coordinates(w[~keep], a[~keep], size)
+        worst = max(worst, 0.5 * _greatest(Shape(thinned, size, smooth=True).from_(left_out)))
+    return worst
+
+
+def _coordinates(frequency: FloatArray, amplitude: FloatArray, size: FloatArray) -> FloatArray:
+    return np.column_stack((np.log(frequency), amplitude / (size * np.sqrt(size.size))))
+
+
+def _fine(points: FloatArray, smooth: bool) -> FloatArray:
+    length = np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1))
+    kept = points[np.concatenate(([True], length > SAME))]
+    if kept.shape[0] < 2:
+        return kept
+    arc = np.concatenate(([0.0], np.cumsum(np.sqrt((np.diff(kept, axis=0) ** 2).sum(axis=1)))))
+    share = np.arange(FINE) / FINE
+    at = np.append((arc[:-1, None] + share * np.diff(arc)[:, None]).ravel(), arc[-1])
+    if smooth and kept.shape[0] > 2:
+        return np.asarray(Akima1DInterpolator(arc, kept)(at))
+    return np.column_stack([np.interp(at, arc, column) for column in kept.T])
+
+
+def _greatest(distance: FloatArray) -> float:
+    return float(distance.max()) if distance.size else float("nan")

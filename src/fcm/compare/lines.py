@@ -1,0 +1,52 @@
+"""What every method yields, in one form: curves as lines through points, their peaks and their folds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.response.result import Curve
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Line:
+    """One response curve: the amplitude of the fundamental against frequency.
+
+    Branches that do not hang together follow one another, with a point of NaN between them.
+    """
+
+    frequency: FloatArray  # (point,) [rad/s]
+    amplitude: FloatArray  # (point, dof)
+    peaks: Mapping[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
+    folds: Sequence[float]  # [rad/s] in the order along the curve
+    complete: bool
+    reason: str = ""
+    truncation: Mapping[str, float] = field(default_factory=dict)  # estimate at each peak [-]
+
+    @property
+    def points(self) -> int:
+        """Number of points."""
+        return int(np.isfinite(self.frequency).sum())
+
+    def branches(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Frequency and amplitude of each part that hangs together."""
+        gaps = np.flatnonzero(np.isnan(self.frequency))
+        parts = zip(np.split(self.frequency, gaps), np.split(self.amplitude, gaps), strict=True)
+        known = ((w[np.isfinite(w)], a[np.isfinite(w)]) for w, a in parts)
+        return [(w, a) for w, a in known if w.size]
+
+
+def line_of(curve: Curve) -> Line:
+    """A curve of harmonic balance."""
+    estimate: dict[str, float] = {}
+    if curve.points:
+        highest = np.nan_to_num(curve.amplitude, nan=-1.0).argmax(axis=0)
+        estimate = {d: float(curve.truncation_error[k]) for d, k in zip(curve.peaks, highest, strict=True)}
+    return Line(
+        curve.frequency, curve.amplitude, curve.peaks, curve.folds, curve.complete, curve.reason, estimate
+    )

@@ -1,0 +1,198 @@
+"""A comparison as a summary for programs and as a netCDF file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fcm
+from fcm.compare.comparison import Comparison, contributions
+from fcm.compare.errors import MARGIN, MEANINGS, MEASURES, Shown
+from fcm.compare.methods import CLOSED_FORM, EXACT, Run
+from fcm.files import replacing
+from fcm.response.result import UNIT
+
+LAYOUT = "fcm comparison 1"  # changes when a reader of older files would misread
+Json = dict[str, Any]
+
+
+def summary(out: Comparison) -> Json:
+    """What ``fcm respond --compare --json`` prints; a number that does not exist is None.
+
+    Of each error that is less than ten times the reference's own only a limit is given, under `below`.
+    """
+    return {
+        "title": out.scene.title,
+        "frequency_unit": out.scene.frequency_unit,
+        "curves": out.parameters,
+        "references": {name: _reference(out, name) for name in (EXACT, CLOSED_FORM)},
+        "without_exact": out.without_exact,
+        "left_out": out.left_out,
+        "runs": [_run(out, number, one) for number, one in enumerate(out.runs)],
+        "contributions": {
+            what: {"against": against, **_split(_measures(out, against, number))}
+            for what, (against, number) in contributions(out).items()
+            if number is not None
+        },
+        "peaks": peaks(out),
+        "complete": not out.interrupted,
+        "seconds": out.seconds,
+    }
+
+
+def peaks(out: Comparison) -> list[Json]:
+    """Of each curve and degree of freedom the exact peak, that of harmonic balance, and its estimate."""
+    unit = UNIT[out.scene.frequency_unit]
+    exact, harmonic = (out.references[name].lines for name in (EXACT, CLOSED_FORM))
+    rows = []
+    for parameters, one, other in zip(out.parameters, exact, harmonic, strict=True):
+        for dof in one.peaks if one.complete and other.points else ():
+            (true, at), (found, found_at) = one.peaks[dof], other.peaks[dof]
+            if true > 0.0:
+                rows.append(
+                    {
+                        "parameters": parameters,
+                        "dof": dof,
+                        "exact": {"amplitude": true, "frequency": at / unit},
+                        "harmonic": {"amplitude": found, "frequency": found_at / unit},
+                        "error": found / true - 1.0,
+                        "frequency_error": found_at / at - 1.0,
+                        "truncation_error": other.truncation.get(dof),
+                    }
+                )
+    return rows
+
+
+def _reference(out: Comparison, name: str) -> Json:
+    one = out.references[name]
+    return {
+        "max_step": one.max_step,
+        "points": sum(line.points for line in one.lines),
+        "complete": all(line.complete for line in one.lines),
+        "own_error": {measure: _greatest(values) for measure, values in one.own.items()},
+    }
+
+
+def _run(out: Comparison, number: int, one: Run) -> Json:
+    start = out.startups.get(one.method)
+    shown = {name: _measures(out, name, number) for name in out.references}
+    return {
+        "method": one.method,
+        "corrected": one.corrected,
+        "left_out": one.left_out,
+        "max_step": one.max_step,
+        "points": one.points,
+        "folds": [len(line.folds) for line in one.lines],
+        "complete": all(line.complete for line in one.lines),
+        "seconds": one.seconds,
+        "start_seconds": _number(start.total) if start else None,
+        "table_seconds": _number(start.table) if start else None,
+        "calls": one.calls,
+        "evaluations": one.evaluations,
+        "against": {name: _split(values) for name, values in shown.items()},
+    }
+
+
+def _measures(out: Comparison, against: str, number: int) -> dict[str, Shown]:
+    return {measure: out.shown(against, number, measure) for measure in MEASURES}
+
+
+def _split(shown: dict[str, Shown]) -> Json:
+    return {
+        "errors": {measure: one.value for measure, one in shown.items()},
+        "below": {measure: one.below for measure, one in shown.items() if one.below is not None},
+    }
+
+
+def _greatest(values: Any) -> float | None:
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else None
+
+
+def _number(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def write_netcdf(out: Comparison, path: str | Path) -> None:
+    """Write the comparison as netCDF-4; the file appears only when it is complete."""
+    import netCDF4
+
+    references = list(out.references)
+    with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+        file.title, file.layout = out.scene.title, LAYOUT
+        file.source = f"fcm {fcm.__version__}, respond --compare"
+        file.frequency_unit = out.scene.frequency_unit
+        file.summary = json.dumps(summary(out), allow_nan=False)
+        sizes = {"run": len(out.runs), "curve": len(out.parameters)}
+        sizes |= {"reference": len(references), "measure": len(MEASURES)}
+        for name, size in sizes.items():
+            file.createDimension(name, size)
+
+        def put(name: str, dims: tuple[str, ...], values: Any, **attrs: str) -> None:
+            array = np.asarray(values)
+            kind: Any = str if array.dtype.kind == "U" else array.dtype
+            variable = file.createVariable(name, kind, dims)
+            variable[...] = array.astype(object) if array.dtype.kind == "U" else array
+            variable.setncatts(attrs)
+
+        put("reference", ("reference",), references, long_name="what the errors are measured against")
+        meaning = "; ".join(f"{name}: {text}" for name, text in MEANINGS.items())
+        put("measure", ("measure",), list(MEASURES), long_name=f"which error; {meaning}")
+        for key in out.parameters[0]:
+            values = [parameters[key] for parameters in out.parameters]
+            put(key, ("curve",), values, long_name=f"swept value of {key}")
+        for name, values, attrs in _of_runs(out):
+            put(name, ("run",), values, **attrs)
+        own = [[out.references[name].own[measure] for measure in MEASURES] for name in references]
+        put("own_error", ("reference", "measure", "curve"), own, long_name="error of the reference itself")
+        errors = [[[e[measure] for e in out.errors[name]] for measure in MEASURES] for name in references]
+        meaning = f"error against the reference; unknown where it is below {MARGIN:g} times own_error"
+        put("error", ("reference", "measure", "run", "curve"), errors, long_name=meaning, units="1")
+        folds = [[len(line.folds) for line in one.lines] for one in out.runs]
+        put("folds", ("run", "curve"), folds, long_name="number of folds", units="1")
+
+
+def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
+    """One value for each run."""
+    runs, none = out.runs, (float("nan"), float("nan"))
+    starts = [out.startups.get(one.method, none) for one in runs]
+    seconds = {"units": "s"}
+    return [
+        ("method", [one.method for one in runs], {"long_name": "method"}),
+        (
+            "corrected",
+            np.array([one.corrected for one in runs], dtype=np.int8),
+            {"long_name": "1 where points found with a table are corrected with the closed form"},
+        ),
+        (
+            "left_out",
+            np.array([one.left_out for one in runs], dtype=np.int8),
+            {"long_name": "1 where what the scene does not need was left out"},
+        ),
+        (
+            "max_step",
+            [one.max_step for one in runs],
+            {"long_name": "longest step, relative to the extent of a curve", "units": "1"},
+        ),
+        ("points", [one.points for one in runs], {"long_name": "points of all curves", "units": "1"}),
+        ("seconds", [one.seconds for one in runs], {"long_name": "time to solve all curves", **seconds}),
+        (
+            "start_seconds",
+            [s[0] for s in starts],
+            {"long_name": "time to begin and end a program", **seconds},
+        ),
+        ("table_seconds", [s[1] for s in starts], {"long_name": "of it, to open the table", **seconds}),
+        (
+            "calls",
+            [float("nan") if one.calls is None else float(one.calls) for one in runs],
+            {"long_name": "calls for contact forces, each for many points", "units": "1"},
+        ),
+        (
+            "evaluations",
+            [float("nan") if one.evaluations is None else float(one.evaluations) for one in runs],
+            {"long_name": "evaluations of the force of one contact", "units": "1"},
+        ),
+    ]

@@ -1,0 +1,47 @@
+"""What a program pays before it solves anything: the interpreter, the imports, the table."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+REPEATS = 3
+TIMEOUT = 60.0  # [s]
+_IMPORTS = {"exact": "import fcm.scene, fcm.simulate"}
+_PROGRAM = """
+import time
+{imports}
+begin = time.perf_counter()
+{opening}
+print(time.perf_counter() - begin)
+"""
+
+
+class Startup(NamedTuple):
+    """Times [s]; not a number where they could not be measured."""
+
+    total: float  # from the start of the interpreter to its end
+    table: float  # of these, to open the table
+
+
+def startup(method: str, table: Path | None) -> Startup:
+    """Least times of some programs that begin as one with this method does, and then end."""
+    imports = _IMPORTS.get(method, "import fcm.scene, fcm.response")
+    opening = f"import fcm; fcm.open_table({str(table)!r})" if table else "pass"
+    program = _PROGRAM.format(imports=imports, opening=opening)
+    tries = [_one(program) for _ in range(REPEATS)]
+    return min(tries)
+
+
+def _one(program: str) -> Startup:
+    begin = time.perf_counter()
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=TIMEOUT, check=True
+        )
+        return Startup(time.perf_counter() - begin, float(done.stdout))
+    except (subprocess.SubprocessError, OSError, ValueError):
+        return Startup(float("nan"), float("nan"))
