@@ -13,7 +13,7 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
-from fcm.response.newton import amplitudes, scales
+from fcm.response.newton import CLOSE, amplitudes, scales
 from fcm.response.path import COMPLETE, RETURNED, STALLED, Progress, Trace, follow
 from fcm.response.start import linear_starts, starting_points
 from fcm.response.structure import BoolArray, IntArray
@@ -30,14 +30,18 @@ class Branches:
     status: IntArray  # (branch,)
 
 
-def all_branches(balance: Balance, max_step: FloatArray, progress: Progress | None) -> Branches:
-    """Follow the curves of a group from both ends of their ranges."""
-    return _Explorer(balance, max_step, progress).run()
+def all_branches(
+    balance: Balance, max_step: FloatArray, progress: Progress | None, close: float = CLOSE
+) -> Branches:
+    """Follow the curves of a group from both ends of their ranges; close is that of `path.follow`."""
+    return _Explorer(balance, max_step, progress, close).run()
 
 
 class _Explorer:
-    def __init__(self, balance: Balance, max_step: FloatArray, progress: Progress | None) -> None:
-        self.balance, self.max_step, self.progress = balance, max_step, progress
+    def __init__(
+        self, balance: Balance, max_step: FloatArray, progress: Progress | None, close: float
+    ) -> None:
+        self.balance, self.max_step, self.progress, self.close = balance, max_step, progress, close
         shape = max_step.shape
         self.low, self.high = (
             np.broadcast_to(f, shape).copy() for f in (balance.group.low, balance.group.high)
@@ -64,7 +68,8 @@ class _Explorer:
             return
         low, high = self.low[curve], self.high[curve]
         z = np.column_stack((x, low if from_low else high))
-        path = follow(self.balance.take(curve), z, low, high, self.max_step[curve], self.progress)
+        equations, step = self.balance.take(curve), self.max_step[curve]
+        path = follow(equations, z, low, high, step, self.progress, close=self.close)
         bounds = np.searchsorted(path.curve, np.arange(curve.size + 1))
         for i, number in enumerate(curve):
             part = slice(bounds[i], bounds[i + 1])

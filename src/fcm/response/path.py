@@ -25,6 +25,8 @@ Progress = Callable[[float, str], None]  # finished fraction and a text
 
 SAME_DIRECTION = 0.94  # cosine: a smooth step turns by less than 20 degrees
 GENTLE_TURN = 0.25  # [rad] the turn that the step size aims at
+CORNER_BEND = 0.1  # two pieces that miss each other by less than this of their length meet in a corner
+AIM_SHORT = 0.98  # of the distance to a corner
 CORNER = 1e-4  # a step this short may turn by any angle below a right angle: it crosses a corner
 POINT = 1e-7  # a corner known to this is a point from which the curve may turn back
 CORNER_TRIES = 16  # directions around a corner in which its regimes are looked for
@@ -67,6 +69,7 @@ class _Front:
     bend: FloatArray  # change of the tangent per arc
     orientation: FloatArray
     step: FloatArray
+    resume: FloatArray  # step before a corner came near, 0 if none has
 
     def take(self, keep: BoolArray) -> _Front:
         return replace(self, **{name: value[keep] for name, value in vars(self).items()})
@@ -80,9 +83,13 @@ def follow(
     max_step: FloatArray | float,
     progress: Progress | None = None,
     boundless: float = BOUNDLESS,
+    close: float = CLOSE,
 ) -> Trace:
-    """Trace every curve from z, where the parameter is low or high, until it leaves the range."""
-    return _Follower(equations, z, low, high, max_step, progress, boundless).run()
+    """Trace every curve from z, where the parameter is low or high, until it leaves the range.
+
+    close is the error, estimated and relative, within which a point between the ends is one of the curve.
+    """
+    return _Follower(equations, z, low, high, max_step, progress, boundless, close).run()
 
 
 class _Follower:
@@ -95,9 +102,10 @@ class _Follower:
         max_step: FloatArray | float,
         progress: Progress | None,
         boundless: float,
+        close: float,
     ) -> None:
         curves = z.shape[0]
-        self.all_equations, self.progress = equations, progress
+        self.all_equations, self.progress, self.close = equations, progress, close
         self.low, self.high = np.broadcast_to(low, (curves,)), np.broadcast_to(high, (curves,))
         self.max_step = np.broadcast_to(max_step, (curves,))
         self.status = np.full(curves, RUNNING)
@@ -117,7 +125,7 @@ class _Follower:
         first = correct(self.all_equations, z, scale, inward)
         self.front = _Front(
             np.arange(curves), first.z, scale, largest, first.tangent, np.zeros_like(z),
-            first.determinant, np.minimum(FIRST_STEP, self.max_step),
+            first.determinant, np.minimum(FIRST_STEP, self.max_step), np.zeros(curves),
         )  # fmt: skip
         self.equations = self.all_equations
         self.front.z[:, -1] = self.start
@@ -141,7 +149,7 @@ class _Follower:
         front = self.front
         h = front.step[:, None]
         guess = front.z + front.scale * (h * front.tangent + 0.5 * h * h * front.bend)
-        close = np.minimum(CLOSE, 1e-4 * front.step)
+        close = np.minimum(self.close, 1e-4 * front.step)
         new = correct(self.equations, guess, front.scale, front.tangent, close, reach=front.step)
         self.ticks += 1
         turn = (new.tangent * front.tangent).sum(axis=1)
@@ -149,13 +157,16 @@ class _Follower:
         short, tiny = front.step <= CORNER, front.step <= POINT
         kept = new.determinant == front.orientation
         kept |= short & (turn > STRAIGHT)  # a branch point: straight on, with the other orientation
-        good = new.converged & kept & (missed < 0.5)
-        good &= (turn > SAME_DIRECTION) | short
+        found = new.converged & kept
+        good = found & (missed < 0.5) & ((turn > SAME_DIRECTION) | short)
+        corner, at = self._corner(new, turn) if not good.all() else (good, front.step)
+        good |= found & corner & short
         outside = good & ((new.z[:, -1] > self.high[front.curve]) | (new.z[:, -1] < self.low[front.curve]))
         landed = self._land(outside, new) if outside.any() else outside
         accepted = good & ~outside
+        shorter = self._shorter(found & corner & ~good, at)
+        front.step = np.where(accepted | landed, front.step, shorter)
         self._advance(accepted, new, turn, missed)
-        front.step = np.where(accepted | landed, front.step, 0.25 * front.step)
         front.bend[~accepted] = np.where(short[~accepted, None], 0.0, front.bend[~accepted])
         stuck = ~accepted & ~landed & tiny
         turned = self._turn_corners(stuck) if stuck.any() else stuck
@@ -166,6 +177,25 @@ class _Follower:
         status[stuck & ~turned] = STALLED
         status[front.largest.max(axis=1, initial=0.0) > self.too_large[front.curve]] = UNBOUNDED
         self._retire(status)
+
+    def _corner(self, new: Newton, turn: FloatArray) -> tuple[BoolArray, FloatArray]:
+        """Whether two nearly straight pieces lead to new, and the length of the first, up to the corner."""
+        front = self.front
+        chord = (new.z - front.z) / front.scale
+        before, beyond = (chord * front.tangent).sum(axis=1), (chord * new.tangent).sum(axis=1)
+        square = np.maximum(1.0 - turn * turn, 1e-6)
+        s, r = (before - turn * beyond) / square, (beyond - turn * before) / square
+        off = chord - s[:, None] * front.tangent - r[:, None] * new.tangent
+        corner = (np.minimum(s, r) > 0.0) & (s < front.step)
+        corner &= np.sqrt((off * off).sum(axis=1)) < CORNER_BEND * (s + r)
+        return corner, s
+
+    def _shorter(self, corner: BoolArray, at: FloatArray) -> FloatArray:
+        """The step to try next: to the corner, and at last across it; a quarter where there is none."""
+        front = self.front
+        front.resume = np.where(corner, np.maximum(front.resume, front.step), front.resume)
+        to_corner = np.where(at < 0.5 * CORNER, CORNER, AIM_SHORT * at)
+        return np.where(corner, np.minimum(to_corner, 0.9 * front.step), 0.25 * front.step)
 
     def _advance(self, accepted: BoolArray, new: Newton, turn: FloatArray, missed: FloatArray) -> None:
         """Move the accepted curves to their new points and choose their next steps."""
@@ -186,6 +216,9 @@ class _Follower:
         bend -= tangent * (tangent * bend).sum(axis=1, keepdims=True)
         growth = np.minimum(GENTLE_TURN / np.maximum(angle, 1e-9), np.sqrt(0.03 / np.maximum(missed, 1e-9)))
         step = np.minimum(front.step * np.clip(0.9 * growth, 0.4, 2.5), self.max_step[front.curve])
+        crossed = accepted & ~smooth[:, 0]
+        step = np.where(crossed, np.maximum(step, 0.5 * front.resume), step)
+        front.resume[crossed | (accepted & (step >= front.resume))] = 0.0
         pick = accepted[:, None]
         front.z = np.where(pick, new.z, front.z)
         front.scale = np.where(pick, scale, front.scale)

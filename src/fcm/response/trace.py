@@ -11,12 +11,14 @@ from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
 from fcm.response.branches import all_branches
 from fcm.response.law import ClosedForm, Coefficients
+from fcm.response.newton import CLOSE
 from fcm.response.path import Progress
 from fcm.response.points import corrected, refined, with_folds
 from fcm.response.result import Curve, Response
 from fcm.response.structure import IntArray, group_of, with_contact
 from fcm.scene.model import Scene
 
+TO_BE_CORRECTED = 1e-6  # error of a traced point that the correction of the table's error removes as well
 METHODS = ("table", "closed-form")
 
 
@@ -42,7 +44,8 @@ def trace_group(
     exact_balance = Balance(group, exact or ClosedForm())
     by_table = method == "table" and not isinstance(table, ClosedForm)
     used = Balance(group, table or _default_table()) if by_table else exact_balance
-    branches = all_branches(used, np.array([c.max_step for c in curves]), progress)
+    steps = np.array([c.max_step for c in curves])
+    branches = all_branches(used, steps, progress, TO_BE_CORRECTED if by_table else CLOSE)
     points = corrected(exact_balance, branches)
     found = np.bincount(branches.curve[branches.trace.curve], minlength=len(curves))
     uncorrected = found - np.bincount(points.curve, minlength=len(curves))
@@ -71,11 +74,11 @@ def _without_table(
     uncorrected: IntArray,
     progress: Progress | None,
 ) -> None:
-    """Trace again, with the closed form, the curves on which the correction of the table's error fails.
+    """Trace again, with the closed form, the curves that stop early or whose correction fails.
 
-    The force of a contact much stiffer than the structure carries that error multiplied.
+    The force of a contact much stiffer than the structure carries the table's error multiplied.
     """
-    again = np.flatnonzero(uncorrected)
+    again = np.flatnonzero(uncorrected | ~np.array([curve.complete for curve in results]))
     if again.size == 0:
         return
     whole = replace(scene, curves=tuple(curves[i] for i in again))
