@@ -99,7 +99,8 @@ def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
     """Whether no curve came out, each for a defect of fcm: the program failed, and not the calculation."""
     from fcm.response.result import DEFECT
 
-    return all(curve.get("reason", "").startswith(DEFECT) for curve in summary["curves"])
+    curves = summary["curves"]
+    return bool(curves) and all(curve.get("reason", "").startswith(DEFECT) for curve in curves)
 
 
 def _worst(curves: Sequence[Curve], key: str) -> float | None:
