@@ -130,6 +130,7 @@ def loop(
     Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
     """
     begin = time.perf_counter()
+    options["phases"] = tuple(dict.fromkeys(options["phases"]))
     cases = _cases(ctx, file, options)
     if len(cases) > MOST_LOOPS:
         raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {MOST_LOOPS}.")

@@ -27,6 +27,8 @@ _LIMIT: dict[str, Any] = {"color": "0.6", "linewidth": 0.7, "linestyle": (0, (5,
 _MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
 _SINGLE, _DOUBLE = 85.0 / 25.4, 170.0 / 25.4  # [inch] one and two columns of a journal
 _LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
+_LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
+_ALONE = 1.25  # how much higher a loop alone is
 _MOST_COLUMNS = 4
 _SMALL = 7  # [point]
 _ROOM = 0.18  # beside a loop, relative to its extent
@@ -70,34 +72,37 @@ class LoopAxes:
 
 def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: str = "") -> Figure:
     """Of each loop the force over the displacement, and below it over the angle with the slip limits."""
-    axes = axes or LoopAxes()
-    columns = min(len(loops), _MOST_COLUMNS)
-    rows = -(-len(loops) // columns)
+    names = axes or LoopAxes()
+    shared = _same_scale(loops)
     with house_style():
-        height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + 0.35) + 0.75 + (0.2 if title else 0.0)
-        figure = new_figure(_SINGLE if len(loops) == 1 else _DOUBLE, height * (1.25 if columns == 1 else 1.0))
-        grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_LOOP_HEIGHT, _TIME_HEIGHT] * rows)
-        shared = _same_scale(loops)
-        above: list[Axes] = []
-        below: list[Axes] = []
-        for i, drawn in enumerate(loops):
-            row, column = divmod(i, columns)
-            one = figure.add_subplot(grid[2 * row, column])
-            two = figure.add_subplot(grid[2 * row + 1, column])
-            _draw_loop(one, drawn)
-            _draw_over_angle(two, drawn, axes)
-            one.set_title(drawn.title, fontsize=8)
-            _label(one, two, axes, first=column == 0 or not shared, left=column == 0)
-            above.append(one)
-            below.append(two)
-        _limits(above, below, loops, shared)
-        _legend(figure, loops, axes)
-        if title:
-            figure.suptitle(title, fontsize=8)
+        figure, panels = _panels(len(loops), bool(title))
+        for i, (drawn, (above, below)) in enumerate(zip(loops, panels, strict=True)):
+            _draw_loop(above, drawn)
+            _draw_over_angle(below, drawn, names)
+            _limit(above, below, loops if shared else [drawn])
+            left = i % _MOST_COLUMNS == 0
+            _label(above, below, names, left=left, numbers=left or not shared)
+            above.set_title(drawn.title, fontsize=8)
+        _legend(figure, loops, names)
+        figure.suptitle(title, fontsize=8)
         figure.draw_without_rendering()  # the panels take their places
-        for one, drawn in zip(above, loops, strict=True):
-            _mark_transitions(one, drawn, axes)
+        for drawn, (above, _) in zip(loops, panels, strict=True):
+            _mark_transitions(above, drawn, names)
     return figure
+
+
+def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """Two panels for each loop, one above the other; one loop alone is a column wide, several are two."""
+    columns = min(count, _MOST_COLUMNS)
+    rows = -(-count // columns)
+    height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + _LABELS) + _LEGEND + (_TITLE if titled else 0.0)
+    figure = new_figure(_SINGLE, _ALONE * height) if count == 1 else new_figure(_DOUBLE, height)
+    grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_LOOP_HEIGHT, _TIME_HEIGHT] * rows)
+    places = (divmod(i, columns) for i in range(count))
+    return figure, [
+        (figure.add_subplot(grid[2 * row, column]), figure.add_subplot(grid[2 * row + 1, column]))
+        for row, column in places
+    ]
 
 
 def _same_scale(loops: Sequence[DrawnLoop]) -> bool:
@@ -115,7 +120,10 @@ def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
     axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
     for part in parts(drawn.loop):
         look = STATES[part.state][1]
-        axes.plot(drawn.amplitude * part.displacement, drawn.force * part.force, **look)
+        u, f = drawn.amplitude * part.displacement, drawn.force * part.force
+        if part.state == "S":  # to and fro on one line, whose dashes would fill each other's gaps
+            u, f = np.array([u.min(), u.max()]), np.zeros(2)
+        axes.plot(u, f, **look)
         if part.state in "PN":
             _arrow(axes, drawn, part, look["color"])
 
@@ -160,25 +168,26 @@ def _name_state(axes: Axes, state: str, angle: Any) -> None:
         )  # fmt: skip
 
 
-def _label(one: Axes, two: Axes, names: LoopAxes, first: bool, left: bool) -> None:
-    one.set_xlabel(names.displacement, fontsize=8)
-    two.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
-    for axes in (one, two):
-        axes.tick_params(labelsize=_SMALL, labelleft=first)
+def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool) -> None:
+    """The axes' names; those of the forces at the left only, their numbers where they differ."""
+    above.set_xlabel(names.displacement, fontsize=8)
+    below.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
+    for axes, force in ((above, names.force), (below, "Force")):
+        axes.tick_params(labelsize=_SMALL, labelleft=numbers)
+        axes.xaxis.get_offset_text().set_fontsize(_SMALL)
+        axes.yaxis.get_offset_text().set_fontsize(_SMALL)
         if left:
-            axes.set_ylabel(names.force if axes is one else "Force", fontsize=8)
+            axes.set_ylabel(force, fontsize=8)
 
 
-def _limits(above: list[Axes], below: list[Axes], loops: Sequence[DrawnLoop], shared: bool) -> None:
+def _limit(above: Axes, below: Axes, loops: Sequence[DrawnLoop]) -> None:
     """Room around the loops for their marks; slip limits far beyond the force are cut off."""
-    extents = [_extent(drawn) for drawn in loops]
-    for i, (one, two) in enumerate(zip(above, below, strict=True)):
-        width, low, high = np.array(extents if shared else extents[i : i + 1]).T
-        room = _ROOM * (high.max() - low.min() or 1.0)
-        one.set_xlim(-(1.0 + _ROOM) * width.max(), (1.0 + _ROOM) * width.max())
-        one.set_ylim(low.min() - room, high.max() + room)
-        far = max(high.max(), -low.min()) + room
-        two.set_ylim(-far, far)
+    width, low, high = np.array([_extent(drawn) for drawn in loops]).T
+    room = _ROOM * (high.max() - low.min() or 1.0)
+    above.set_xlim(-(1.0 + _ROOM) * width.max(), (1.0 + _ROOM) * width.max())
+    above.set_ylim(low.min() - room, high.max() + room)
+    far = max(high.max(), -low.min()) + room
+    below.set_ylim(-far, far)
 
 
 def _extent(drawn: DrawnLoop) -> tuple[float, float, float]:
@@ -193,7 +202,8 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None
     found = {state for drawn in loops for state in drawn.loop.sequence}
     handles = [Line2D([], [], label=name, **look) for state, (name, look) in STATES.items() if state in found]
     handles.append(Line2D([], [], label=names.limit, **_LIMIT))
-    handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
+    if any(drawn.loop.angles.size for drawn in loops):
+        handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
     columns = 2 if len(loops) == 1 else len(handles)
     figure.legend(
         handles=handles, loc="outside lower center", ncols=columns, fontsize=_SMALL,

@@ -18,6 +18,7 @@ _DISTANCES = (5.0, 9.0, 14.0, 20.0, 27.0, 35.0)  # [point] from the mark to the 
 _DIRECTIONS = 16
 _LEADER_FROM = 9.0  # [point] a text this far from its mark has a thin line to it
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 2.0}
+_STEEP = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
 _MARGIN = 2.0  # [pixel] around a text, at 100 to the inch
 
 
@@ -49,17 +50,30 @@ def _write(
     size: float,
 ) -> Bbox:
     """The text at the first place that is free, nearest first and outward first; its box."""
-    best, least = _offset(outward, _DISTANCES[0]), np.inf
+    trial = _text(axes, point, text, (0.0, 0.0), size)
+    extent = trial.get_window_extent()
+    trial.remove()
+    mark = axes.transData.transform(point)
+    best, least = (0.0, 0.0), np.inf
     for offset in (_offset(outward + turn, d) for d in _DISTANCES for turn in _turns()):
-        trial = _text(axes, point, text, offset, size, leader=False)
-        cost = _covered(trial.get_window_extent().padded(_MARGIN), axes, taken, pixels)
-        trial.remove()
+        cost = _covered(_box(axes, mark, offset, extent), axes, taken, pixels)
         if cost < least:
             best, least = offset, cost
         if cost == 0.0:
             break
-    far = float(np.hypot(*best)) > _LEADER_FROM
-    return _text(axes, point, text, best, size, leader=far).get_window_extent().padded(_MARGIN)
+    _text(axes, point, text, best, size)
+    return _box(axes, mark, best, extent)
+
+
+def _box(axes: Axes, mark: FloatArray, offset: tuple[float, float], extent: Bbox) -> Bbox:
+    """Where a text of an extent is [pixel] when it is written at an offset [point] from a mark."""
+    from matplotlib.transforms import Bbox
+
+    across, up = _alignment(offset)
+    x, y = mark + np.array(offset) * axes.figure.dpi / 72.0
+    left = x - {"left": 0.0, "center": 0.5, "right": 1.0}[across] * extent.width
+    bottom = y - {"bottom": 0.0, "center": 0.5, "top": 1.0}[up] * extent.height
+    return Bbox.from_bounds(left, bottom, extent.width, extent.height).padded(_MARGIN)
 
 
 def _turns() -> list[float]:
@@ -72,18 +86,22 @@ def _offset(direction: float, distance: float) -> tuple[float, float]:
     return distance * float(np.cos(direction)), distance * float(np.sin(direction))
 
 
-def _text(
-    axes: Axes, point: tuple[float, float], text: str, offset: tuple[float, float], size: float, leader: bool
-) -> Annotation:
-    """The text with the side towards its point at the offset."""
+def _alignment(offset: tuple[float, float]) -> tuple[str, str]:
+    """The side of a text that is towards its mark."""
     across, up = offset
-    steep = abs(up) > 2.5 * abs(across)
+    horizontal = "center" if abs(up) > _STEEP * abs(across) else "left" if across > 0.0 else "right"
+    vertical = "center" if abs(across) > _STEEP * abs(up) else "bottom" if up > 0.0 else "top"
+    return horizontal, vertical
+
+
+def _text(
+    axes: Axes, point: tuple[float, float], text: str, offset: tuple[float, float], size: float
+) -> Annotation:
+    ha, va = _alignment(offset)
+    leader = _LEADER if np.hypot(*offset) > _LEADER_FROM else None
     return axes.annotate(
-        text, point, offset, textcoords="offset points", fontsize=size,
-        ha="center" if steep else "left" if across > 0.0 else "right",
-        va="center" if abs(across) > 2.5 * abs(up) else "bottom" if up > 0.0 else "top",
-        arrowprops=_LEADER if leader else None,
-    )  # fmt: skip
+        text, point, offset, textcoords="offset points", fontsize=size, ha=ha, va=va, arrowprops=leader
+    )
 
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
