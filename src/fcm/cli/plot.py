@@ -15,6 +15,7 @@ ENDINGS = (".png", ".svg", ".pdf")
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
+    "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "surface": ("fcm.cli.coefficients:surface", "Friction coefficients over preload and load variation."),
     "error": ("fcm.cli.coefficients:error", "Error of a table over the same plane."),
