@@ -1,0 +1,163 @@
+"""Error against run time: one line a method, over its longest step."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from fcm.plot.errors import PlotError
+from fcm.plot.style import house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLUMN, HEIGHT = 3.35, 5.0  # [inch]: 85 mm, the column of a journal
+LOOK = {  # of each method: marker and colour (Okabe and Ito's, safe for the colour-blind)
+    "exact": ("D", "#000000"),
+    "closed form": ("^", "#009e73"),
+    "default table": ("o", "#0072b2"),
+    "fast table": ("s", "#d55e00"),
+}
+OTHER = ("P", "#cc79a7")  # a table of the user's own
+TITLES = {
+    "exact": "against the exact periodic motion",
+    "closed form": "against single-harmonic balance itself",
+}
+QUANTITIES = {
+    "curve": "Error of the curve (–)",
+    "points": "Error of the points (–)",
+    "peak": "Error of the peaks (–)",
+    "peak_frequency": "Error of the peaks' frequencies (–)",
+    "fold": "Error of the folds' frequencies (–)",
+}
+
+
+class Mark(NamedTuple):
+    """One run: time [s], error, and whether the error is only known to be below that."""
+
+    seconds: float
+    error: float
+    below: bool
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Runs against one reference: of each method its marks, from long steps to short ones."""
+
+    reference: str
+    own_error: float | None
+    max_step: float  # of the reference
+    lines: Mapping[tuple[str, bool], list[Mark]]  # by the method and whether its points are corrected
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What a picture shows."""
+
+    title: str
+    quantity: str
+    panels: tuple[Panel, ...]
+
+
+def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
+    """Read what ``fcm respond --compare -o`` has written; PlotError if the file is something else."""
+    from netCDF4 import Dataset
+
+    try:
+        if not path.is_file():
+            raise OSError
+        with Dataset(str(path)) as file:
+            layout, text = getattr(file, "layout", ""), getattr(file, "summary", "{}")
+    except (OSError, ValueError) as error:
+        raise PlotError(f"{path}: not a netCDF file that can be read") from error
+    if not str(layout).startswith("fcm comparison"):
+        raise PlotError(f"{path}: not a comparison; `fcm respond SCENE --compare -o FILE.nc` writes one")
+    try:
+        summary = json.loads(text)
+        panels = [_panel(summary, name, quantity) for name in ("exact", "closed form")]
+    except (ValueError, KeyError, TypeError) as error:
+        raise PlotError(f"{path}: not a sound comparison: {error!r}") from error
+    known = tuple(panel for panel in panels if panel.lines)
+    if not known:
+        raise PlotError(f"{path}: it has no error of that kind: {quantity}")
+    return Accuracy(str(summary["title"]), quantity, known)
+
+
+def _panel(summary: Any, reference: str, quantity: str) -> Panel:
+    lines: dict[tuple[str, bool], list[Mark]] = {}
+    for run in sorted(summary["runs"], key=lambda run: -run["max_step"]):
+        if run["corrected"] and not run["left_out"]:
+            continue  # the same line once more
+        if reference == "closed form" and run["method"] == "exact":
+            continue  # its difference from harmonic balance is not its error
+        if reference == "exact" and not run["corrected"]:
+            continue  # there the harmonic hides what the table does
+        shown = run["against"][reference]
+        error, below = shown["errors"][quantity], shown["below"].get(quantity)
+        if error or below:
+            mark = Mark(float(run["seconds"]), float(error or below), error is None)
+            lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
+    one = summary["references"][reference]
+    return Panel(reference, one["own_error"][quantity], float(one["max_step"]), lines)
+
+
+def draw_accuracy(accuracy: Accuracy) -> Figure:
+    """A panel for each reference, its own error a dotted line."""
+    with house_style():
+        figure = new_figure(COLUMN, HEIGHT if len(accuracy.panels) > 1 else 0.62 * HEIGHT)
+        all_axes = figure.subplots(len(accuracy.panels), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, panel in zip(all_axes, accuracy.panels, strict=True):
+            _draw_panel(axes, panel)
+            axes.set_ylabel(QUANTITIES[accuracy.quantity])
+        all_axes[-1].set_xlabel("Time to solve (s)")
+        handles: dict[str, Any] = {}
+        for axes in all_axes:
+            handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=2)
+        figure.suptitle(accuracy.title, fontsize=8, parse_math=False, wrap=True)
+    return figure
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    for (method, corrected), marks in panel.lines.items():
+        marker, colour = LOOK.get(method, OTHER)
+        label = method if corrected else f"{method}, as it is"
+        x, y = [mark.seconds for mark in marks], [mark.error for mark in marks]
+        fill = colour if corrected else "white"
+        style = "-" if corrected else "--"
+        axes.plot(x, y, style, color=colour, marker=marker, markersize=4.5, markerfacecolor=fill,
+                  linewidth=1.0, label=label)  # fmt: skip
+        limits = [mark for mark in marks if mark.below]
+        for mark in limits:
+            axes.annotate(
+                "", (mark.seconds, mark.error), (0, -9), textcoords="offset points",
+                arrowprops={"arrowstyle": "<-", "color": colour, "linewidth": 0.8},
+            )  # fmt: skip
+    axes.set(xscale="log", yscale="log")
+    axes.set_title(TITLES[panel.reference], fontsize=8)
+    if panel.own_error:
+        axes.axhline(panel.own_error, color="0.35", linestyle=":", linewidth=1.0)
+        text = f"error of the reference, {_power(panel.own_error)}"
+        axes.annotate(text, (0.98, panel.own_error), (0, 2), xycoords=("axes fraction", "data"),
+                      textcoords="offset points", ha="right", va="bottom", fontsize=7, color="0.35")  # fmt: skip
+        axes.set_ylim(bottom=panel.own_error / 2.0)
+    _plain_ticks(axes)
+
+
+def _plain_ticks(axes: Axes) -> None:
+    """Times as plain numbers."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axes.get_xlim()
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300.0 * low else (1,)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _power(value: float) -> str:
+    mantissa, exponent = f"{value:.0e}".split("e")
+    return rf"${mantissa} \times 10^{{{int(exponent)}}}$"
