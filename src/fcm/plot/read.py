@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -43,6 +45,13 @@ class DrawnResponse:
 
 def read_response(path: Path) -> DrawnResponse:
     """Read what ``fcm respond -o`` has written; PlotError if the file is something else."""
+    with opened(path, "a response file", _NEEDED) as dataset:
+        return _response(dataset)
+
+
+@contextmanager
+def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
+    """The open netCDF dataset; PlotError if it has not the variables needed, or they do not fit together."""
     from netCDF4 import Dataset
 
     try:
@@ -52,13 +61,15 @@ def read_response(path: Path) -> DrawnResponse:
     except (OSError, ValueError) as error:
         raise PlotError(f"{path}: not a netCDF file that can be read") from error
     with dataset:
-        missing = [name for name in _NEEDED if name not in dataset.variables]
+        missing = [name for name in needed if name not in dataset.variables]
         if missing:
-            raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
+            raise PlotError(f"{path}: not {kind}: it has no variable {', '.join(missing)}")
         try:
-            return _response(dataset)
+            yield dataset
+        except PlotError:
+            raise
         except (IndexError, RuntimeError, TypeError, ValueError) as error:
-            raise PlotError(f"{path}: not a response file: {error}") from error
+            raise PlotError(f"{path}: not {kind}: {error}") from error
 
 
 def _response(dataset: Any) -> DrawnResponse:
@@ -72,7 +83,7 @@ def _response(dataset: Any) -> DrawnResponse:
         for name in ("stable", "table_error", "truncation_error")
     )
     regime = variables["regime"][:] if "regime" in variables else None
-    swept = _swept(variables)
+    swept = swept_values(variables)
     curves = tuple(
         _curve(
             {name: float(values[i]) for name, values in swept.items()},
@@ -109,7 +120,7 @@ def _curve(
     )
 
 
-def _swept(variables: Any) -> dict[str, FloatArray]:
+def swept_values(variables: Any) -> dict[str, FloatArray]:
     """The swept values, by their full names: ``contact.shroud.n_0``."""
     return {
         name: floats(variable)
