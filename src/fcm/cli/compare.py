@@ -14,6 +14,7 @@ from fcm.cli.report import aligned, number
 
 if TYPE_CHECKING:
     from fcm.compare import Comparison
+    from fcm.compare.methods import Run
     from fcm.scene.model import Scene
 
 OF_NO_USE = {  # with --compare, and why
@@ -100,14 +101,11 @@ def _methods(comparison: Comparison) -> str:
     step = comparison.scene.each_curve()[0].max_step
     header = ["left out", "points", "solve [s]", "start [s]", "calls", "evaluations"]
     rows = [[f"against {against}", *header, *map(TITLES.get, MEASURES)]]
-    for i, one in enumerate(comparison.runs):
+    for i, one in _in_order(comparison):
         if one.max_step != step or not one.corrected:
             continue
         start = comparison.startups.get(one.method)
-        left_out = "nothing to" if not comparison.left_out else "yes" if one.left_out else "no"
-        if not comparison.left_out and not one.left_out:
-            left_out = "no"
-        shown = [str(comparison.shown(against, i, measure)) for measure in MEASURES]
+        left_out = "no" if not one.left_out else "yes" if comparison.left_out else "nothing to"
         cells = [
             left_out,
             str(one.points),
@@ -115,8 +113,21 @@ def _methods(comparison: Comparison) -> str:
             "-" if start is None else f"{start.total:.2f}",
         ]
         cells += ["-" if count is None else str(count) for count in (one.calls, one.evaluations)]
+        shown = [str(comparison.shown(against, i, measure)) for measure in MEASURES]
         rows.append([one.method, *cells, *shown])
     return aligned(_to_the_left(rows), left=0)
+
+
+def _in_order(comparison: Comparison) -> list[tuple[int, Run]]:
+    """The runs with their numbers, a method's together, from long steps to short ones; exact last."""
+
+    def place(pair: tuple[int, Run]) -> tuple[Any, ...]:
+        _, one = pair
+        return one.method == "exact", names.index(one.method), not one.corrected, -one.max_step, one.left_out
+
+    names = list(comparison.startups) or sorted({one.method for one in comparison.runs})
+    names += [one.method for one in comparison.runs]
+    return sorted(enumerate(comparison.runs), key=place)
 
 
 def _contributions(comparison: Comparison) -> str:
@@ -156,10 +167,7 @@ def _peaks(comparison: Comparison) -> str:
 def _steps(comparison: Comparison) -> str:
     against = _against(comparison)
     rows = [["over the steps", "max. step", "points", "solve [s]", f"curve, {against}", "curve, closed form"]]
-    for one, i in sorted(
-        ((run, i) for i, run in enumerate(comparison.runs)),
-        key=lambda pair: (pair[0].method, not pair[0].corrected, pair[0].left_out, -pair[0].max_step),
-    ):
+    for i, one in _in_order(comparison):
         if one.corrected and not one.left_out:
             continue
         name = one.method if one.corrected else f"{one.method}, as it is"

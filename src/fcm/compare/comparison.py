@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from fcm.compare.errors import Errors, Reference, Shown, reference, worst
-from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, with_step
+from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
 from fcm.response.leave_out import TOLERANCE
 from fcm.response.sweep import trace
@@ -168,8 +168,9 @@ def _references(out: Comparison, show: Progress) -> None:
     for name, finest, coarse, begins, ends in _REFERENCES:
         middle = 0.6 * begins + 0.4 * ends
         coarser = run(Method(name), with_step(out.scene, coarse), None, _part(show, begins, middle, name))
-        finer = run(Method(name), with_step(out.scene, finest), None, _part(show, middle, ends, name))
-        out.references[name] = reference(name, finer.max_step, finer.lines, coarser.lines, FLOOR[name])
+        scene = with_step(out.scene, finest)
+        lines = solve(Method(name), scene, None, _part(show, middle, ends, name))
+        out.references[name] = reference(name, scene.max_step, lines, coarser.lines, FLOOR[name])
         made.append(coarser)
     for one in made:
         out.add(one)
@@ -188,6 +189,7 @@ def contributions(out: Comparison) -> dict[str, tuple[str, int | None]]:
         rows[f"{name}, as it is"] = CLOSED_FORM, out.find(name, corrected=False, left_out=False)
         rows[f"{name}, corrected"] = CLOSED_FORM, out.find(name, left_out=False)
     rows["step and tolerance"] = CLOSED_FORM, out.find(CLOSED_FORM, left_out=False)
-    rows["what was left out"] = CLOSED_FORM, out.find(CLOSED_FORM)
+    if out.left_out:
+        rows["step, and what was left out"] = CLOSED_FORM, out.find(CLOSED_FORM)
     rows["single harmonic"] = EXACT, out.find(CLOSED_FORM, left_out=False, share=4.0 * FINEST)
     return rows

@@ -16,7 +16,7 @@ from fcm.response.trace import trace_group
 from fcm.scene.model import Scene
 
 CLOSED_FORM, EXACT = "closed form", "exact"
-REPEATS = 2  # a run is repeated, and its least time counts
+REPEATS = 3  # a run is repeated, and its least time counts
 LONG = 0.5  # [s], after which it is not repeated
 
 
@@ -68,7 +68,7 @@ def run(method: Method, scene: Scene, tolerance: float | None, progress: Progres
     tolerance : of what is left out; None for leaving nothing out.
     """
     calls = evaluations = None
-    lines, seconds = _timed(lambda: _lines(method, scene, tolerance, progress))
+    lines, seconds = _timed(lambda: solve(method, scene, tolerance, progress))
     if method.name != EXACT:
         calls, evaluations = _counted(method, scene, tolerance)
     step, left_out = scene.each_curve()[0].max_step, tolerance is not None
@@ -81,7 +81,10 @@ def with_step(scene: Scene, share: float) -> Scene:
     return replace(scene, max_step=curves[0].max_step, curves=curves)
 
 
-def _lines(method: Method, scene: Scene, tolerance: float | None, progress: Progress | None) -> list[Line]:
+def solve(
+    method: Method, scene: Scene, tolerance: float | None, progress: Progress | None = None
+) -> list[Line]:
+    """The curves of a scene by a method; the arguments are those of `run`."""
     if method.name == EXACT:
         return exact_lines(_lighter(scene, tolerance), progress)
     if not method.corrected:

@@ -129,10 +129,11 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         x, y = [mark.seconds for mark in marks], [mark.error for mark in marks]
         fill = colour if corrected else "white"
         style = "-" if corrected else "--"
-        axes.plot(x, y, style, color=colour, marker=marker, markersize=4.5, markerfacecolor=fill,
-                  linewidth=1.0, label=label)  # fmt: skip
-        limits = [mark for mark in marks if mark.below]
-        for mark in limits:
+        axes.plot(
+            x, y, style, color=colour, marker=marker, markersize=4.5, markerfacecolor=fill,
+            linewidth=1.0, label=label,
+        )  # fmt: skip
+        for mark in (mark for mark in marks if mark.below):
             axes.annotate(
                 "", (mark.seconds, mark.error), (0, -9), textcoords="offset points",
                 arrowprops={"arrowstyle": "<-", "color": colour, "linewidth": 0.8},
@@ -141,9 +142,11 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
     axes.set_title(TITLES[panel.reference], fontsize=8)
     if panel.own_error:
         axes.axhline(panel.own_error, color="0.35", linestyle=":", linewidth=1.0)
-        text = f"error of the reference, {_power(panel.own_error)}"
-        axes.annotate(text, (0.98, panel.own_error), (0, 2), xycoords=("axes fraction", "data"),
-                      textcoords="offset points", ha="right", va="bottom", fontsize=7, color="0.35")  # fmt: skip
+        axes.annotate(
+            f"error of the reference, {_power(panel.own_error)}", (0.98, panel.own_error), (0, 2),
+            xycoords=("axes fraction", "data"), textcoords="offset points",
+            ha="right", va="bottom", fontsize=7, color="0.35",
+        )  # fmt: skip
         axes.set_ylim(bottom=panel.own_error / 2.0)
     _plain_ticks(axes)
 
