@@ -16,7 +16,9 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.response.law import FORCES, UNKNOWNS, Coefficients, Law
-from fcm.response.structure import AnyArray, Group, IntArray, modal_compliance, receptance, to_ports
+from fcm.response.springs import seen
+from fcm.response.static import Static, static_of
+from fcm.response.structure import AnyArray, Group, IntArray
 
 
 @dataclass(frozen=True)
@@ -31,16 +33,23 @@ class Evaluation:
 class Balance:
     """The balanced equations of a group of curves."""
 
-    def __init__(self, group: Group, coefficients: Coefficients) -> None:
+    def __init__(self, group: Group, coefficients: Coefficients, static: Static | None = None) -> None:
         self.group = group
         self.coefficients = coefficients
         self.law = Law(group.mu, group.k_u, group.k_v, group.n_0, coefficients)
-        static = receptance(group, 1.0 / (group.mass * group.frequency**2))
-        self.static = static.real
+        self.static = static_of(group) if static is None else static
 
     def take(self, index: IntArray) -> Balance:
         """The same equations for some of the curves."""
-        return Balance(self.group.take(index), self.coefficients)
+        return Balance(self.group.take(index), self.coefficients, self.static.take(index))
+
+    def forces(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Forces of the contacts and their tangent, as `Law.forces`, less those counted to the structure."""
+        force, tangent = self.law.forces(x)
+        if self.static.counted is not None:
+            force[..., 5] -= self.static.counted * x[..., 4]
+            tangent[..., 5, 4] -= self.static.counted
+        return force, tangent
 
     def evaluate(self, x: FloatArray, omega: FloatArray, load: FloatArray | float = 1.0) -> Evaluation:
         """Residual, Jacobian and derivative by omega at x (curve, 5 contacts), omega (curve,).
@@ -48,16 +57,13 @@ class Balance:
         load multiplies the external force.
         """
         curves, contacts = x.shape[0], self.group.contacts
-        force, tangent = self.law.forces(x.reshape(curves, contacts, UNKNOWNS))
-        compliance, slope = modal_compliance(self.group, omega)
-        G, dG = receptance(self.group, compliance), receptance(self.group, slope)
-        scaled = self.group.force * np.asarray(load).reshape(-1, 1)
-        external = to_ports(self.group, compliance * scaled)
-        d_external = to_ports(self.group, slope * scaled)
+        force, tangent = self.forces(x.reshape(curves, contacts, UNKNOWNS))
+        G, dG, external, d_external = seen(self.group, omega)
+        factor = np.asarray(load).reshape(-1, 1)
         flat = force.reshape(curves, contacts * FORCES)
         matrix = self.real_matrix(G)
-        residual = x + (matrix @ flat[..., None])[..., 0] - _real_vector(external, contacts)
-        by_omega = self._harmonic_force(dG, force) - _real_vector(d_external, contacts)
+        residual = x + (matrix @ flat[..., None])[..., 0] - _real_vector(factor * external, contacts)
+        by_omega = self._harmonic_force(dG, force) - _real_vector(factor * d_external, contacts)
         blocks = matrix.reshape(curves, contacts * UNKNOWNS, contacts, FORCES).swapaxes(1, 2) @ tangent
         jacobian = blocks.swapaxes(1, 2).reshape(curves, x.shape[1], x.shape[1])
         jacobian += np.eye(x.shape[1])
@@ -65,15 +71,12 @@ class Balance:
 
     def by_load(self, omega: FloatArray) -> FloatArray:
         """Derivative of the residual by the load factor."""
-        compliance, _ = modal_compliance(self.group, omega)
-        return -_real_vector(to_ports(self.group, compliance * self.group.force), self.group.contacts)
+        return -_real_vector(seen(self.group, omega).external, self.group.contacts)
 
     def linear(self, omega: FloatArray, stuck: FloatArray) -> FloatArray:
         """Response with springs for contacts: the fraction stuck (curve, contact) of k_u and k_v acts."""
         contacts = self.group.contacts
-        compliance, _ = modal_compliance(self.group, omega)
-        G = receptance(self.group, compliance)
-        external = to_ports(self.group, compliance * self.group.force)
+        G, _, external, _ = seen(self.group, omega)
         springs = np.stack((self.group.k_u * stuck, self.group.k_v * stuck), axis=-1)
         matrix = np.eye(2 * contacts) + G * springs.reshape(springs.shape[0], 1, -1)
         ports = np.linalg.solve(matrix, external[..., None])[..., 0]
@@ -83,7 +86,7 @@ class Balance:
         """G as a real matrix from the six forces of each contact to its five unknowns."""
         contacts = self.group.contacts
         G = G.reshape(-1, contacts, 2, contacts, 2)
-        static = self.static.reshape(-1, contacts, 2, contacts, 2)
+        static = self.static.receptance.reshape(-1, contacts, 2, contacts, 2)
         matrix = np.zeros((G.shape[0], contacts, UNKNOWNS, contacts, FORCES))
         matrix[:, :, 0:4:2, :, 0:4:2] = matrix[:, :, 1:4:2, :, 1:4:2] = G.real
         matrix[:, :, 1:4:2, :, 0:4:2] = G.imag

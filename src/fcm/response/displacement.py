@@ -7,18 +7,18 @@ import numpy as np
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.law import UNKNOWNS
+from fcm.response.springs import modal_answer
 from fcm.response.structure import AnyArray, ComplexArray, modal_compliance
 
 
 def displacements(balance: Balance, x: FloatArray, omega: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Amplitude of the fundamental, x(t) = Im(X exp(i omega t)), and mean; both (point, dof)."""
-    force, _ = balance.law.forces(x.reshape(x.shape[0], balance.group.contacts, UNKNOWNS))
+    force, _ = balance.forces(x.reshape(x.shape[0], balance.group.contacts, UNKNOWNS))
     compliance, _ = modal_compliance(balance.group, omega)
     fundamental, mean = _modal_contact_force(balance, force)
     group = balance.group
-    amplitude = compliance * (group.force - fundamental)
-    static = -mean / (group.mass * group.frequency**2)
-    return _to_dofs(balance, amplitude), _to_dofs(balance, static)
+    amplitude = modal_answer(group, compliance, group.force - fundamental)
+    return _to_dofs(balance, amplitude), _to_dofs(balance, balance.static.answer(-mean))
 
 
 def displacement_rates(
@@ -35,10 +35,11 @@ def displacement_rates(
     compliance, slope = modal_compliance(balance.group, omega)
     fundamental, _ = _modal_contact_force(balance, force)
     d_fundamental, _ = _modal_contact_force(balance, d_force)
-    load = balance.group.force - fundamental
-    X = _to_dofs(balance, compliance * load)
-    dX = _to_dofs(balance, slope * direction[:, -1:] * load - compliance * d_fundamental)
-    return X, dX
+    group = balance.group
+    modal = modal_answer(group, compliance, group.force - fundamental)
+    # of stiffness times modal = load the derivative, where the stiffness is 1 / compliance
+    d_load = slope / compliance**2 * modal * direction[:, -1:] - d_fundamental
+    return _to_dofs(balance, modal), _to_dofs(balance, modal_answer(group, compliance, d_load))
 
 
 def amplitude_growth(balance: Balance, z: FloatArray, direction: FloatArray) -> FloatArray:

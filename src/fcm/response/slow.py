@@ -14,6 +14,7 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.response.balance import Balance
+from fcm.response.law import ClosedForm
 from fcm.response.structure import Group, modal_compliance, receptance
 
 FAR = 6.0  # times the excitation: modes above follow without delay
@@ -31,13 +32,13 @@ def following(group: Group, omega: FloatArray) -> BoolArray:
 
 def some_modes(group: Group, which: BoolArray) -> Group:
     """The structure with some of its modes."""
-    names = ("mass", "frequency", "damping", "shapes", "ports", "force")
+    names = ("mass", "frequency", "damping", "shapes", "ports", "force", "adrift", "springs")
     return replace(group, **{name: getattr(group, name)[:, which] for name in names})
 
 
-def with_followers(balance: Balance, far: BoolArray, omega: FloatArray, tangent: FloatArray) -> FloatArray:
+def with_followers(group: Group, far: BoolArray, omega: FloatArray, tangent: FloatArray) -> FloatArray:
     """Tangent of the contact forces (point, 6 contacts, 5 contacts) by the motion of the others alone."""
-    fast = Balance(some_modes(balance.group, far), balance.coefficients)
+    fast = Balance(some_modes(group, far), ClosedForm())
     compliance, _ = modal_compliance(fast.group, omega)
     flexibility = fast.real_matrix(receptance(fast.group, compliance))
     size = tangent.shape[1]

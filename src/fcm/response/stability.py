@@ -19,6 +19,7 @@ from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.law import UNKNOWNS
 from fcm.response.slow import dense, following, some_modes, with_followers
+from fcm.response.springs import among_contacts
 from fcm.response.structure import BoolArray, Group
 
 GROWTH = 1e-9  # a growth rate counts as positive above this fraction of the frequency
@@ -48,11 +49,12 @@ def _by_exponents(balance: Balance, z: FloatArray) -> BoolArray:
 
 def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     """Greatest real part of the exponents at each point, (point,) [1/s in the scene's units]."""
-    group, omega, points = balance.group, z[:, -1], z.shape[0]
-    _, each = balance.law.forces(z[:, :-1].reshape(points, group.contacts, UNKNOWNS))
+    omega, points = z[:, -1], z.shape[0]
+    _, each = balance.law.forces(z[:, :-1].reshape(points, balance.group.contacts, UNKNOWNS))
+    group, each = among_contacts(balance.group, each)
     tangent, far = dense(each), following(group, omega)
     if far.any():
-        tangent, group = with_followers(balance, far, omega, tangent), some_modes(group, ~far)
+        tangent, group = with_followers(group, far, omega, tangent), some_modes(group, ~far)
     modes = group.frequency.shape[1]
     stiffness = _modal_tangent(group, tangent).reshape(points, modes, 3, modes, 3)
     damping = np.zeros((points, modes, 3, modes, 3))
@@ -61,6 +63,7 @@ def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     for part in range(3):
         damping[:, i, part, i, part] = rate
         stiffness[:, i, part, i, part] += group.frequency**2 - (omega[:, None] ** 2 if part < 2 else 0.0)
+    _let_drift(group, stiffness, damping, omega)
     # d/dt of Im(d exp(i omega t)) is Im((d' + i omega d) exp(i omega t)); i turns (Re, Im) by a right angle
     for row, column, sign in ((0, 1, -1.0), (1, 0, 1.0)):
         damping[:, i, row, i, column] = 2.0 * sign * omega[:, None]
@@ -76,6 +79,16 @@ def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     slow = np.abs(exponents.imag) <= ZONE
     growth: FloatArray = np.where(slow, exponents.real, -np.inf).max(axis=1) * omega
     return growth
+
+
+def _let_drift(group: Group, stiffness: FloatArray, damping: FloatArray, omega: FloatArray) -> None:
+    """Nothing depends on the mean of a mode adrift: it is given exponents that decay, and no effect."""
+    if not group.adrift.any():
+        return
+    stiffness[..., 2] = np.where(group.adrift[:, None, None, :], 0.0, stiffness[..., 2])
+    i = np.arange(group.adrift.shape[1])
+    stiffness[:, i, 2, i, 2] += np.where(group.adrift, omega[:, None] ** 2, 0.0)
+    damping[:, i, 2, i, 2] += np.where(group.adrift, omega[:, None], 0.0)
 
 
 def _modal_tangent(group: Group, tangent: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.response.rigid import settled
 from fcm.scene.model import Contact, FloatArray, Scene
 
 AnyArray = npt.NDArray[Any]  # real or complex
@@ -36,6 +37,9 @@ class Group:
     k_u: FloatArray
     k_v: FloatArray
     n_0: FloatArray
+    adrift: BoolArray  # (curve, mode) rigid-body modes that no closed contact holds
+    springs: FloatArray  # (curve, mode, 2 held): modes on contacts that act as springs, as in ports
+    k_springs: FloatArray  # (curve, 2 held)
     low: FloatArray  # (curve,) the frequency range
     high: FloatArray
 
@@ -51,17 +55,23 @@ class Group:
 
 def group_of(scenes: Sequence[Scene]) -> Group:
     """Stack scenes that have the same modes, degrees of freedom and contacts by name."""
+    modals, adrift = zip(*(settled(s) for s in scenes), strict=True)
+    scenes = [s if s.modal is m else replace(s, modal=m) for s, m in zip(scenes, modals, strict=True)]
+    modes = modals[0].frequency.size
     return Group(
-        mass=_stack([s.modal.mass for s in scenes]),
-        frequency=_stack([s.modal.frequency for s in scenes]),
-        damping=_stack([s.modal.damping for s in scenes]),
-        shapes=_stack([s.modal.shapes for s in scenes]),
+        mass=_stack([m.mass for m in modals]),
+        frequency=_stack([m.frequency for m in modals]),
+        damping=_stack([m.damping for m in modals]),
+        shapes=_stack([m.shapes for m in modals]),
         ports=_stack([_ports(s) for s in scenes]),
         force=_stack([_modal_force(s) for s in scenes]),
         mu=_stack([np.array([c.mu for c in s.contacts]) for s in scenes]),
         k_u=_stack([np.array([c.k_u for c in s.contacts]) for s in scenes]),
         k_v=_stack([np.array([c.k_v for c in s.contacts]) for s in scenes]),
         n_0=_stack([np.array([c.n_0 for c in s.contacts]) for s in scenes]),
+        adrift=_stack(list(adrift)),
+        springs=np.zeros((1, modes, 0)),
+        k_springs=np.zeros((1, 0)),
         low=_stack([np.array(s.frequency_range[0]) for s in scenes]),
         high=_stack([np.array(s.frequency_range[1]) for s in scenes]),
     )
@@ -109,7 +119,12 @@ def modal_compliance(group: Group, omega: FloatArray) -> tuple[ComplexArray, Com
 
 def receptance(group: Group, weights: AnyArray) -> AnyArray:
     """Sum of the modes' weights over the contact ports, (curve, port, port)."""
-    total: AnyArray = (group.ports.swapaxes(1, 2) * weights[:, None, :]) @ group.ports
+    return between(group.ports, weights, group.ports)
+
+
+def between(left: AnyArray, weights: AnyArray, right: AnyArray) -> AnyArray:
+    """Sum of the modes' weights (curve, mode) between directions (curve, mode, left or right)."""
+    total: AnyArray = (left.swapaxes(1, 2) * weights[:, None, :]) @ right
     return total
 
 
