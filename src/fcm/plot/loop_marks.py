@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.read import FloatArray
+from fcm.plot.read import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +18,8 @@ _DISTANCES = (5.0, 9.0, 14.0, 20.0, 27.0, 35.0)  # [point] from the mark to the 
 _DIRECTIONS = 16
 _LEADER_FROM = 9.0  # [point] a text this far from its mark has a thin line to it
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 2.0}
+_LEADER_POINTS = 12  # at which it may touch a text
+_OUTSIDE, _TOUCHED, _CROSSED = 1e6, 1e4, 1e2  # cost: beyond the panel, a text on one, a leader on one
 _STEEP = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
 _MARGIN = 2.0  # [pixel] around a text, at 100 to the inch
 
@@ -34,10 +36,13 @@ def name_marks(
     pixels = axes.transData.transform(_dense(curve))
     marks = axes.transData.transform(np.array(points))
     centre = 0.5 * (pixels.min(axis=0) + pixels.max(axis=0))
+    pixels = np.concatenate((pixels, marks))
     taken: list[Bbox] = []
     for point, mark, text in zip(points, marks, texts, strict=True):
         outward = float(np.arctan2(*(mark - centre)[::-1]))
-        taken.append(_write(axes, point, text, outward, taken, np.concatenate((pixels, marks)), size))
+        box, leader = _write(axes, point, text, outward, taken, pixels, size)
+        taken.append(box)
+        pixels = np.concatenate((pixels, leader))
 
 
 def _write(
@@ -48,21 +53,31 @@ def _write(
     taken: list[Bbox],
     pixels: FloatArray,
     size: float,
-) -> Bbox:
-    """The text at the first place that is free, nearest first and outward first; its box."""
+) -> tuple[Bbox, FloatArray]:
+    """The text at the first place that is free, nearest first and outward first; its box and leader."""
     trial = _text(axes, point, text, (0.0, 0.0), size)
     extent = trial.get_window_extent()
     trial.remove()
     mark = axes.transData.transform(point)
     best, least = (0.0, 0.0), np.inf
     for offset in (_offset(outward + turn, d) for d in _DISTANCES for turn in _turns()):
-        cost = _covered(_box(axes, mark, offset, extent), axes, taken, pixels)
+        box, leader = _box(axes, mark, offset, extent), _leader(axes, mark, offset)
+        cost = _covered(box, axes, taken, pixels) + _CROSSED * sum(_inside(b, leader).any() for b in taken)
         if cost < least:
             best, least = offset, cost
         if cost == 0.0:
             break
     _text(axes, point, text, best, size)
-    return _box(axes, mark, best, extent)
+    return _box(axes, mark, best, extent), _leader(axes, mark, best)
+
+
+def _leader(axes: Axes, mark: FloatArray, offset: tuple[float, float]) -> FloatArray:
+    """Points [pixel] of the line from a mark to a text, (i, 2); none where the text is near enough."""
+    if np.hypot(*offset) <= _LEADER_FROM:
+        return np.empty((0, 2))
+    way = np.array(offset) * axes.figure.dpi / 72.0
+    line: FloatArray = mark + np.linspace(0.2, 1.0, _LEADER_POINTS)[:, None] * way
+    return line
 
 
 def _box(axes: Axes, mark: FloatArray, offset: tuple[float, float], extent: Bbox) -> Bbox:
@@ -105,12 +120,16 @@ def _text(
 
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
-    """How much a text at a box would cover: points of the loop, other texts, the frame."""
+    """How much a text at a box would cover: other texts, the frame, and points of the loop at 1 each."""
     frame = axes.get_window_extent()
     outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
-    inside = ((pixels > (box.x0, box.y0)) & (pixels < (box.x1, box.y1))).all(axis=1)
     others = sum(bool(box.overlaps(other)) for other in taken)
-    return 1e6 * outside + 1e4 * others + float(inside.sum())
+    return _OUTSIDE * outside + _TOUCHED * others + float(_inside(box, pixels).sum())
+
+
+def _inside(box: Bbox, pixels: FloatArray) -> BoolArray:
+    within = (pixels > (box.x0, box.y0)) & (pixels < (box.x1, box.y1))
+    return np.logical_and(within[:, 0], within[:, 1])
 
 
 def _dense(curve: FloatArray) -> FloatArray:

@@ -1,0 +1,141 @@
+"""``fcm plot loop``: loops of given parameters and of a response file, or one message and exit code 2."""
+
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+CONTACT = ("--mu", 0.4, "--k-u", 1, "--k-v", 1, "--n0", 0.8, "--a", 1, "--b", 1)
+
+
+@pytest.fixture(scope="module")
+def folded(tmp_path_factory):
+    """The paper's curve at n_0 = 5, which folds, beside one that does not."""
+    from fcm import load_scene
+    from fcm.response import trace
+    from fcm.response.output import write_netcdf
+
+    path = tmp_path_factory.mktemp("loop") / "a.nc"
+    scene = load_scene("yang1998")
+    from dataclasses import replace
+
+    write_netcdf(trace(replace(scene, curves=scene.curves[3:5])), path)
+    return path
+
+
+def loops(done):
+    assert done.code == 0, done.err
+    return json.loads(done.out)["loops"]
+
+
+def test_every_combination_is_drawn_once(fcm, tmp_path):
+    args = ("--n0-bar", 0.4, "--n0-bar", 2, "--b-bar", 0.3, "--phi", "20deg", "--phi", 1, "--phi", "20deg")
+    found = loops(fcm("plot", "loop", *args, "-o", "a.svg", "--json"))
+    assert [(one["n0_bar"], round(one["phi"], 6)) for one in found] == [
+        (0.4, 0.349066), (0.4, 1.0), (2.0, 0.349066), (2.0, 1.0),
+    ]  # fmt: skip
+    assert [one["sequence"] for one in found] == ["EPEN", "EPEN", "E", "E"]
+    assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
+
+
+def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm):
+    scaled = ("--mu", 0.4, "--k-u", 2e4, "--k-v", 1e4, "--n0", 16.0, "--a", 1e-3, "--b", 2e-3)
+    (one,) = loops(fcm("plot", "loop", *scaled, "--json", "--units", "m", "N"))
+    (other,) = loops(fcm("plot", "loop", *CONTACT, "--json"))
+    for key in ("degrees", "displacement", "force"):
+        first, second = ([t[key] for t in case["transitions"]] for case in (one, other))
+        assert first == pytest.approx(second) and len(first) == 5
+    assert (one["n0_bar"], one["b_bar"]) == pytest.approx((0.32, 0.4))
+    (ratios,) = loops(fcm("plot", "loop", "--n0-bar", 0.32, "--b-bar", 0.4, "--json"))
+    assert ratios["sequence"] == other["sequence"]
+
+
+def test_the_angle_may_begin_at_the_greatest_displacement(fcm):
+    sine, cosine = (loops(fcm("plot", "loop", "--json", *more))[0] for more in ((), ("--cosine",)))
+    turned = [(one["degrees"] - 90.0) % 360.0 for one in sine["transitions"]]
+    assert [one["degrees"] for one in cosine["transitions"]] == pytest.approx(turned)
+
+
+def test_all_solutions_of_a_folded_curve(fcm, folded):
+    done = fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--json")
+    found = loops(done)
+    assert [(one["solution"], one["solutions"], one["stable"]) for one in found] == [
+        (1, 3, True), (2, 3, False), (3, 3, True),
+    ]  # fmt: skip
+    assert found[0]["a"] > found[1]["a"] > found[2]["a"]
+    assert all(abs(one["frequency"] - 1.2) < 0.01 for one in found)
+    assert "rad/s, 2 of 3, unstable: SPEN" in done.err
+    with netCDF4.Dataset(folded) as data:  # the loops are those of the file's regimes
+        frequency, regime = data["frequency"][1], data["regime"][1, :, 0]
+        for one in found:
+            assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
+
+
+def test_one_of_them(fcm, folded):
+    (one,) = loops(fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--solution", 2, "--json"))
+    assert one["solution"] == 2 and not one["stable"]
+
+
+def test_without_a_frequency_it_is_the_peak(fcm, folded, tmp_path):
+    found = loops(fcm("plot", "loop", folded, "--curve", 0, "--curve", 1, "--json", "-o", "a.png"))
+    assert [one["a"] for one in found] == pytest.approx([6.236, 15.83], rel=1e-3)
+    assert [one["parameters"]["contact.shroud.n_0"] for one in found] == [10.0, 5.0]
+
+
+def test_the_picture_is_beside_the_file(fcm, folded):
+    assert fcm("plot", "loop", folded, "--curve", 0, "--dimensionless").code == 0
+    assert folded.with_name("a-loop.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (("--n0-bar", "nan"), "nan is not between"),
+        (("--b-bar", -1), "-1 is not between 0"),
+        (("--phi", "15grad"), "is no angle"),
+        (CONTACT[:6], "--n0, --a, --b missing"),
+        (("--a", 1), "--mu, --k-u, --k-v, --n0, --b missing"),
+        ((*CONTACT, "--mu", 0), "0 is not above 0"),
+        ((*CONTACT, "--b", -1), "-1 is not at least 0"),
+        ((*CONTACT, "--n0", "inf"), "inf is not a finite number"),
+        ((*CONTACT, "--n0-bar", 1), "--n0-bar is of no use beside"),
+        ((*CONTACT, "--k-u", 1e-300, "--a", 1e-300), "have to be finite"),
+        (("--at", 1), "--at is of no use without a FILE"),
+        (("--units", "m", "N"), "the axes have no dimension"),
+        (("--n0-bar", 1, *(x for phi in range(13) for x in ("--phi", phi))), "13 loops are too many"),
+        (("-o", "a.txt"), "has to end in"),
+    ],
+)
+def test_nonsense_is_said(fcm, tmp_path, args, said):
+    done = fcm("plot", "loop", *args)
+    assert done.code == 2 and said in done.err and done.out == ""
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        ((), "has 2 curves; say which by --curve 0 to --curve 1"),
+        (("--curve", 2), "there is no curve 2; it has 2 curves, 0 to 1"),
+        (("--curve", 0, "--at", 3), "curve 0 goes from 0.7 to 1.7 rad/s, not to 3"),
+        (("--curve", 0, "--contact", "blade"), "there is no contact 'blade'; it has shroud"),
+        (("--curve", 0, "--at", 1, "--solution", 2), "there are 1 at this frequency"),
+        (("--curve", 0, "--phi", 1), "--phi is of no use with a FILE"),
+    ],
+)
+def test_what_the_file_has_not_is_said(fcm, folded, args, said):
+    done = fcm("plot", "loop", folded, *args)
+    assert done.code == 2 and said in done.err and done.out == ""
+
+
+def test_a_file_without_loops(fcm, folded, tmp_path):
+    (tmp_path / "b.nc").write_bytes(folded.read_bytes())
+    with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
+        data.renameVariable("phi", "psi")
+    done = fcm("plot", "loop", "b.nc")
+    assert (done.code, done.err) == (2, "fcm: error: b.nc: holds no loops: it has no variable phi\n")
+    with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
+        data.renameVariable("psi", "phi")
+        data["tangential_amplitude"][:] = np.nan
+    assert "exact motions" in fcm("plot", "loop", "b.nc", "--curve", 0).err
