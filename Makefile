@@ -22,7 +22,7 @@ demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and thei
 picture: demo  ## the same, and its picture as the one of README.md
 	cp $(DEMO)/figure13.png .github/figure13.png
 
-figures: $(PAPER)/figure10.png $(PAPER)/figure11.png $(PAPER)/figure12.png  ## figures 10, 11 and 12 of the paper, in build/paper
+figures: $(PAPER)/figure10.png $(PAPER)/figure11.png $(PAPER)/figure12.png $(PAPER)/figure15.png  ## figures 10, 11, 12 and 15 of the paper, in build/paper
 
 $(PAPER)/figure10.png: WHAT := surface --coefficient F_s --coefficient F_c --phi 0
 $(PAPER)/figure11.png: WHAT := surface --coefficient F_c --phi 15deg --phi 30deg
@@ -31,6 +31,13 @@ $(PAPER)/figure12.png: WHAT := normal
 $(PAPER)/figure%.png: $(DRAWN) $(VENV)/installed
 	@mkdir -p $(@D)
 	$(BIN)/fcm plot $(WHAT) -o $@
+
+$(PAPER)/figure15.nc: src/fcm/scenes/yang1998-jump.toml $(wildcard src/fcm/simulate/*.py) $(VENV)/installed
+	@mkdir -p $(@D)
+	$(BIN)/fcm respond yang1998-jump -o $@
+
+$(PAPER)/figure15.png: $(PAPER)/figure15.nc $(DRAWN)
+	$(BIN)/fcm plot history $< -o $@
 
 test: check  ## format, lint, types, then all tests
 	$(BIN)/python -m pytest -n 2

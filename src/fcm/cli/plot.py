@@ -14,6 +14,7 @@ from fcm.files import replacing
 ENDINGS = (".png", ".svg", ".pdf")
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
+    "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
     "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),

@@ -63,13 +63,21 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
     with dataset:
         missing = [name for name in needed if name not in dataset.variables]
         if missing:
-            raise PlotError(f"{path}: not {kind}: it has no variable {', '.join(missing)}")
+            names = ", ".join(missing[:3]) + (", ..." if len(missing) > 3 else "")
+            raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
         try:
             yield dataset
         except PlotError:
             raise
         except (IndexError, RuntimeError, TypeError, ValueError) as error:
             raise PlotError(f"{path}: not {kind}: {error}") from error
+
+
+def _hint(dataset: Any) -> str:
+    """Which command draws the file, if one does."""
+    kinds = {"displacement": "history", "amplitude": "response"}
+    found = next((what for name, what in kinds.items() if name in dataset.variables), "")
+    return f"; try fcm plot {found}" if found else ""
 
 
 def _response(dataset: Any) -> DrawnResponse:
