@@ -3,16 +3,17 @@
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
+OTHERS := build/bench-others
 DEMO   := build/demo
 PAPER  := build/paper
 DRAWN  := $(wildcard src/fcm/contact/*.py src/fcm/plot/*.py src/fcm/cli/coefficients.py)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo picture figures test check tables clean bench study
+.PHONY: help bench-others demo picture figures test check tables clean bench study
 
 help:  ## this list
-	@sed -n 's/^\([a-z]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
+	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
 
 demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and their picture, in build/demo
 	@mkdir -p $(DEMO)
@@ -57,6 +58,9 @@ study: $(VENV)/installed  ## two hundred random scenes, each with three step lim
 bench: $(VENV)/installed  ## run times beside one another: closed form, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
 
+bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
+	OPENBLAS_NUM_THREADS=1 $(OTHERS)/bin/python tests/benchmarks/pyharm.py
+
 clean:  ## remove what was made, but for the environment
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -64,6 +68,12 @@ clean:  ## remove what was made, but for the environment
 $(VENV)/installed: pyproject.toml
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(OTHERS)/installed: pyproject.toml
+	@mkdir -p $(@D)
+	test -x $(OTHERS)/bin/python || $(PYTHON) -m venv $(OTHERS)
+	$(OTHERS)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[benchmark]'
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
