@@ -6,11 +6,22 @@ BIN    := $(VENV)/bin
 OTHERS := build/bench-others
 DEMO   := build/demo
 PAPER  := build/paper
-DRAWN  := $(wildcard src/fcm/contact/*.py src/fcm/plot/*.py src/fcm/cli/coefficients.py)
+
+# What the pictures are made of, so that a change redoes only what it touches.
+CONTACT    := $(wildcard src/fcm/contact/*.py)
+SOLVER     := $(CONTACT) $(wildcard src/fcm/scene/*.py src/fcm/table/*.py src/fcm/response/*.py) tables/default.nc
+SIMULATION := $(SOLVER) $(wildcard src/fcm/simulate/*.py)
+LOOK       := src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
+LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
+SURFACES   := $(CONTACT) $(LOOK) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py
+NORMAL     := $(CONTACT) $(LOOK) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
+CURVES     := $(LOOK) $(addprefix src/fcm/plot/,place.py response.py error_panel.py) src/fcm/cli/plot.py
+HISTORIES  := $(LOOK) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
+FIGURES    := $(foreach number,5 6 8 10 11 12 13 15,$(PAPER)/figure$(number).png)
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help bench-others demo picture figures test check tables clean bench study
+.PHONY: help bench-others demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -23,22 +34,51 @@ demo: $(VENV)/installed  ## figure 13 of the paper: its response curves and thei
 picture: demo  ## the same, and its picture as the one of README.md
 	cp $(DEMO)/figure13.png .github/figure13.png
 
-figures: $(PAPER)/figure10.png $(PAPER)/figure11.png $(PAPER)/figure12.png $(PAPER)/figure15.png  ## figures 10, 11, 12 and 15 of the paper, in build/paper
+paper: $(PAPER)/index.html  ## the figures of the paper on a page, build/paper/index.html, with its numbers and ours
 
-$(PAPER)/figure10.png: WHAT := surface --coefficient F_s --coefficient F_c --phi 0
-$(PAPER)/figure11.png: WHAT := surface --coefficient F_c --phi 15deg --phi 30deg
-$(PAPER)/figure12.png: WHAT := normal
+$(PAPER)/index.html: $(FIGURES) $(wildcard src/fcm/report/*.py)
+	$(BIN)/python -m fcm.report paper $(PAPER)
 
-$(PAPER)/figure%.png: $(DRAWN) $(VENV)/installed
+figures: $(FIGURES)  ## the pictures of that page only
+
+# $(call fcm,ARGUMENTS): run the program, and keep the command for the page
+define fcm
 	@mkdir -p $(@D)
-	$(BIN)/fcm plot $(WHAT) -o $@
+	$(BIN)/fcm $(1)
+	@echo 'fcm $(1)' > $@.command
+endef
 
-$(PAPER)/figure15.nc: src/fcm/scenes/yang1998-jump.toml $(wildcard src/fcm/simulate/*.py) $(VENV)/installed
-	@mkdir -p $(@D)
-	$(BIN)/fcm respond yang1998-jump -o $@
+FIGURE_6 := --mu 0.4 --k-u 1 --k-v 1 --a 1 --b 1 --phi 0 --phi 45deg --phi 90deg --phi 135deg
 
-$(PAPER)/figure15.png: $(PAPER)/figure15.nc $(DRAWN)
-	$(BIN)/fcm plot history $< -o $@
+$(PAPER)/figure5.png: $(LOOPS) $(VENV)/installed
+	$(call fcm,plot loop --n0-bar 0.48 --b-bar 0.4 --phi 80.5deg --cosine -o $@ --json > $(@:.png=.json))
+
+$(PAPER)/figure6.png: $(LOOPS) $(VENV)/installed
+	$(call fcm,plot loop --n0 1.2 $(FIGURE_6) -o $@ --json > $(@:.png=.json))
+
+$(PAPER)/figure8.png: $(LOOPS) $(VENV)/installed
+	$(call fcm,plot loop --n0 0.8 $(FIGURE_6) -o $@ --json > $(@:.png=.json))
+
+$(PAPER)/figure10.png: $(SURFACES) $(VENV)/installed
+	$(call fcm,plot surface --coefficient F_s --coefficient F_c --phi 0 -o $@)
+
+$(PAPER)/figure11.png: $(SURFACES) $(VENV)/installed
+	$(call fcm,plot surface --coefficient F_c --phi 15deg --phi 30deg -o $@)
+
+$(PAPER)/figure12.png: $(NORMAL) $(VENV)/installed
+	$(call fcm,plot normal -o $@)
+
+$(PAPER)/figure13.nc: src/fcm/scenes/yang1998.toml $(SOLVER) $(VENV)/installed
+	$(call fcm,respond yang1998 -o $@)
+
+$(PAPER)/figure13.png: $(PAPER)/figure13.nc $(CURVES)
+	$(call fcm,plot response $< -o $@)
+
+$(PAPER)/figure15.nc: src/fcm/scenes/yang1998-jump.toml $(SIMULATION) $(VENV)/installed
+	$(call fcm,respond yang1998-jump -o $@)
+
+$(PAPER)/figure15.png: $(PAPER)/figure15.nc $(HISTORIES)
+	$(call fcm,plot history $< -o $@)
 
 test: check  ## format, lint, types, then all tests
 	$(BIN)/python -m pytest -n 2

@@ -1,10 +1,15 @@
 """``fcm plot loop``: loops of given parameters and of a response file, or one message and exit code 2."""
 
 import json
+from dataclasses import replace
 
 import netCDF4
 import numpy as np
 import pytest
+
+from fcm import load_scene
+from fcm.response import trace
+from fcm.response.output import write_netcdf
 
 CONTACT = ("--mu", 0.4, "--k-u", 1, "--k-v", 1, "--n0", 0.8, "--a", 1, "--b", 1)
 
@@ -12,14 +17,8 @@ CONTACT = ("--mu", 0.4, "--k-u", 1, "--k-v", 1, "--n0", 0.8, "--a", 1, "--b", 1)
 @pytest.fixture(scope="module")
 def folded(tmp_path_factory):
     """The paper's curve at n_0 = 5, which folds, beside one that does not."""
-    from fcm import load_scene
-    from fcm.response import trace
-    from fcm.response.output import write_netcdf
-
     path = tmp_path_factory.mktemp("loop") / "a.nc"
     scene = load_scene("yang1998")
-    from dataclasses import replace
-
     write_netcdf(trace(replace(scene, curves=scene.curves[3:5])), path)
     return path
 
