@@ -66,3 +66,18 @@ def test_boundaries_of_the_largest_variations(b):
 )
 def test_single_cases(case):
     assert_accurate(*(np.array([x]) for x in case))
+
+
+@pytest.mark.parametrize("load", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
+def test_relative_to_the_force_where_the_load_is_small(load):
+    """A stiff contact multiplies the coefficients by its stiffness, and their error with them."""
+    rng = np.random.default_rng(3)
+    b = load * rng.uniform(0.0, 1.0, 60)
+    n0, phi = load * rng.uniform(-1.0, 3.0, 60), rng.uniform(0.0, 2.0 * np.pi, 60)
+    n0[:10], b[5:15], n0[15:20] = -0.5 * b[:10], 0.0, b[15:20]
+    phi[::6] = 0.5 * np.pi * rng.integers(0, 4, 10)
+    exact = np.array([reference.coefficients(*x) for x in zip(n0, b, phi, strict=True)], dtype=float)
+    size = np.abs(exact).max(axis=1)
+    error = np.abs(np.array(fourier_coefficients(n0, b, phi)).T - exact).max(axis=1)
+    assert np.count_nonzero(size) > 40
+    assert np.all(error <= 1e-12 * size)

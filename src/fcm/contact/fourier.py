@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.cycle import OPEN, SLIPPING, STUCK, Cycle, Direction, Span, behaviour, cycle, stuck_force
+from fcm.contact.cycle import OPEN, SLIPPING, STUCK, Cycle, Direction, behaviour, cycle, stuck_force
+from fcm.contact.integrals import (
+    Slip,
+    load_gradient_integrals,
+    slip_motion_integrals,
+    stick_force_integrals,
+)
 from fcm.contact.limits import FloatArray, SlipLimits, slip_limits, within_range
 
 BLOCK = 8192  # points at a time, so that the intermediate arrays stay in the processor's cache
+LIGHT = 0.01  # loads below this are integrated as forces: u - w would lose as many digits as they are smaller
 
 
 def fourier_coefficients(
@@ -46,7 +51,9 @@ def fourier_coefficients(
     Notes
     -----
     Absolute error below 1e-12 for b_bar up to 1e3, below 1e-7 up to 1e300, boundary cases included; the
-    worst of 400 000 random and boundary points, against fifty digits, was 9e-16.
+    worst of 400 000 random and boundary points, against fifty digits, was 9e-16. Where n0_bar and b_bar are
+    small, as those of a stiff contact, the error is small against the force as well: below 1e-12 of the
+    greatest coefficient for loads from 1e-10 on.
     A contact that never slips carries the mean force nearest to zero, F_b = clip(0, ell_2 - n0_bar,
     n0_bar - ell_1). Source: Yang, Chu and Menq (1998), sections 3.4, 4.1 and appendix.
 
@@ -124,7 +131,7 @@ def _block(
     F[0, stuck], F[1, stuck], F[2, stuck] = stuck_force(n0_bar[stuck], b_bar[stuck], some), 1.0, 0.0
     slipping = np.flatnonzero(code == SLIPPING)
     path = cycle(n0_bar[slipping], b_bar[slipping], phi[slipping], SlipLimits(*(x[slipping] for x in limits)))
-    F[:, slipping] = _coefficients(path)
+    F[:, slipping] = _coefficients(path, n0_bar[slipping], b_bar[slipping])
     if gradients:
         dF[:, :, opened] = 0.0
         dF[:, :, stuck] = _stuck_gradients(n0_bar[stuck], b_bar[stuck], some)
@@ -132,30 +139,40 @@ def _block(
     return F, dF
 
 
-class _Slip(NamedTuple):
-    """Trigonometry of a slip of duration y, measured back from its end."""
-
-    begin: Direction
-    sin: FloatArray  # sin(y)
-    versine: FloatArray  # 1 - cos(y)
-    deficit: FloatArray  # y - sin(y)
-
-    @classmethod
-    def of(cls, span: Span) -> _Slip:
-        sin_half, cos_half = np.sin(0.5 * span.slip), np.cos(0.5 * span.slip)
-        sin, versine = 2.0 * sin_half * cos_half, 2.0 * sin_half * sin_half
-        square = span.slip * span.slip
-        series = span.slip * square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
-        deficit = np.where(span.slip < 0.02, series, span.slip - sin)
-        begin = Direction(
-            span.end.sin - span.end.sin * versine - span.end.cos * sin,
-            span.end.cos - span.end.cos * versine + span.end.sin * sin,
-        )
-        return cls(begin, sin, versine, deficit)
+def _coefficients(path: Cycle, n0_bar: FloatArray, b_bar: FloatArray) -> FloatArray:
+    """(27): integrals of the force times 1/2, sin(theta), cos(theta), over pi."""
+    light = np.maximum(np.abs(n0_bar), b_bar) < LIGHT
+    if light.all():
+        return _by_force(path, n0_bar, b_bar)
+    if not light.any():
+        return _by_motion(path)
+    return np.where(light, _by_force(path, n0_bar, b_bar), _by_motion(path))
 
 
-def _coefficients(path: Cycle) -> FloatArray:
-    """(27): integrals over the contact of u - w times 1/2, sin(theta), cos(theta), over pi."""
+def _by_force(path: Cycle, n0_bar: FloatArray, b_bar: FloatArray) -> FloatArray:
+    """The force itself integrated: +-n while slipping, and while sticking its change since the stick began.
+
+    The relative error is that of the arguments, however small they are against 1, the motion.
+    """
+
+    def load(at: Direction) -> FloatArray:
+        return n0_bar + b_bar * (at.sin * path.limits.cos_phi + at.cos * path.limits.sin_phi)
+
+    total = np.zeros((3, b_bar.size))
+    start, force = path.start, np.where(path.opens, 0.0, -load(path.start))
+    for span in path.spans:
+        slipping = load_gradient_integrals(span, Slip.of(span), path.limits, b_bar)
+        sticking = stick_force_integrals(start, force, span.length - span.slip)
+        for i in range(3):
+            total[i] += sticking[i] + span.side * (n0_bar * slipping[i][0] + b_bar * slipping[i][1])
+        start, slipped = span.end, span.side != 0.0
+        force = np.where(slipped, span.side * load(start), start.sin - span.w_end)
+    total[0] *= 0.5
+    return total / np.pi
+
+
+def _by_motion(path: Cycle) -> FloatArray:
+    """The difference u - w integrated over the contact, exact where the load is far above the force."""
     final = path.spans[2].end
     u_b = np.where(path.opens, path.start.cos - final.cos, 0.0)
     sin_cos = path.start.sin * path.start.cos - final.sin * final.cos
@@ -163,30 +180,10 @@ def _coefficients(path: Cycle) -> FloatArray:
     u_c = np.where(path.opens, 0.5 * (final.sin - path.start.sin) * (final.sin + path.start.sin), 0.0)
     start = path.start
     for span in path.spans:
-        w_b, w_s, w_c = _slip_motion_integrals(start, span, _Slip.of(span))
+        w_b, w_s, w_c = slip_motion_integrals(start, span, Slip.of(span))
         u_b, u_s, u_c = u_b - w_b, u_s - w_s, u_c - w_c
         start = span.end
     return np.stack((0.5 * u_b, u_s, u_c)) / np.pi
-
-
-def _slip_motion_integrals(
-    start: Direction, span: Span, slip: _Slip
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Integrals over a span of w, w sin(theta), w cos(theta).
-
-    In the slip, y before its end, w - w_end = -side (slope sin(y) + curvature (1 - cos(y))).
-    """
-    half_cube = 0.5 * slip.sin * slip.versine
-    g_1 = -span.curvature * slip.deficit - span.slope * slip.versine
-    g_cos = span.curvature * (0.5 * slip.deficit - half_cube) - 0.5 * span.slope * slip.sin**2
-    g_sin = -0.5 * span.curvature * slip.versine**2 - span.slope * (0.5 * slip.deficit + half_cube)
-    end, begin, w, w_end = span.end, slip.begin, span.w_start, span.w_end
-    w_b = w * (span.length - span.slip) + w_end * span.slip + span.side * g_1
-    w_s = w * (start.cos - begin.cos) + w_end * (begin.cos - end.cos)
-    w_c = w * (begin.sin - start.sin) + w_end * (end.sin - begin.sin)
-    w_s += span.side * (end.sin * g_cos - end.cos * g_sin)
-    w_c += span.side * (end.cos * g_cos + end.sin * g_sin)
-    return w_b, w_s, w_c
 
 
 def _gradients(path: Cycle, b_bar: FloatArray) -> FloatArray:
@@ -195,13 +192,13 @@ def _gradients(path: Cycle, b_bar: FloatArray) -> FloatArray:
     start = path.start
     remembered = -path.pull * _load_gradient(start, path, b_bar)  # dw/dx while sticking
     for span in path.spans:
-        slip = _Slip.of(span)
+        slip = Slip.of(span)
         stick = (
             span.length - span.slip,
             start.cos - slip.begin.cos,
             slip.begin.sin - start.sin,
         )
-        slipping = _load_gradient_integrals(span, slip, path.limits, b_bar)
+        slipping = load_gradient_integrals(span, slip, path.limits, b_bar)
         for i in range(3):
             dF[i] += span.side * slipping[i] - stick[i] * remembered
         at_end = _load_gradient(span.end, path, b_bar)
@@ -215,27 +212,6 @@ def _load_gradient(at: Direction, path: Cycle, b_bar: FloatArray) -> FloatArray:
     """dn/dx_j = 1, sin(theta + phi), b cos(theta + phi) at an angle."""
     s, c = path.limits.sin_phi, path.limits.cos_phi
     return np.stack((np.ones_like(b_bar), at.sin * c + at.cos * s, b_bar * (at.cos * c - at.sin * s)))
-
-
-def _load_gradient_integrals(
-    span: Span, slip: _Slip, limits: SlipLimits, b_bar: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Integrals over the slip of dn/dx_j times 1, sin(theta), cos(theta)."""
-    sin, cos = span.end
-    s, c = limits.sin_phi, limits.cos_phi
-    sin_2 = 0.5 * (slip.deficit + slip.sin * slip.versine)  # of sin(y)^2 over the slip
-    cos_2 = span.slip - sin_2
-    sin_cos = 0.5 * slip.sin * slip.sin
-    one_s = sin * slip.sin - cos * slip.versine
-    one_c = sin * slip.versine + cos * slip.sin
-    s_s = sin * sin * cos_2 + cos * cos * sin_2 - 2.0 * sin * cos * sin_cos
-    c_c = span.slip - s_s
-    s_c = sin * cos * (cos_2 - sin_2) + (sin - cos) * (sin + cos) * sin_cos
-    return (
-        np.stack((span.slip, c * one_s + s * one_c, b_bar * (c * one_c - s * one_s))),
-        np.stack((one_s, c * s_s + s * s_c, b_bar * (c * s_c - s * s_s))),
-        np.stack((one_c, c * s_c + s * c_c, b_bar * (c * c_c - s * s_c))),
-    )
 
 
 def _stuck_gradients(n0_bar: FloatArray, b_bar: FloatArray, limits: SlipLimits) -> FloatArray:
