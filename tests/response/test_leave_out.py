@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import ResponseError, leave_out, sweep, trace
+from fcm.response import leave_out, sweep, trace
 from fcm.response.slow import MANY
 from fcm.response.static_modes import condensed
 from fcm.scene import scene_from_dict
@@ -125,8 +125,6 @@ def test_idle_modes_and_contacts_have_no_effect():
 
 def test_the_regimes_of_contacts_left_out_are_those_of_contacts_kept():
     scene = oscillator()
-    modal = replace(scene.modal, frequency=np.array([1.0, 10.0, 5.0]))  # keeping all needs no rigid mode
-    scene = replace(scene, modal=modal)
     light, full = trace(scene, "closed-form"), trace(scene, "closed-form", tolerance=None)
     assert light.left_out and not full.left_out
     one, other = light.curves[0], full.curves[0]
@@ -143,12 +141,6 @@ def test_a_scene_whose_contacts_are_all_idle_is_linear():
     assert response.complete and curve.regime.shape[1] == 2 and (curve.regime != "").all()
     assert len(response.left_out) == 4  # the contacts, a mode, the table
     assert curve.peaks["u"][0] == pytest.approx(50.0, rel=1e-2)  # free resonance
-
-
-def test_a_rigid_mode_that_moves_is_refused():
-    contact = {"name": "c", "tangential": "u", "normal": "w", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
-    with pytest.raises(ResponseError, match="rigid-body mode"):
-        trace(oscillator(contact=[contact]))
 
 
 def test_no_table_is_opened_without_friction(monkeypatch):

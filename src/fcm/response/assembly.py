@@ -8,14 +8,15 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import sequences
+from fcm.response import drift
 from fcm.response.balance import Balance
 from fcm.response.branches import Branches, hang_together, outcome
 from fcm.response.displacement import amplitude_growth, displacements
 from fcm.response.extrema import locate, peak_rate
 from fcm.response.law import UNKNOWNS
-from fcm.response.path import REASONS
+from fcm.response.path import REASONS, STALLED
 from fcm.response.points import NEARLY_HIGHEST, Points
-from fcm.response.result import Curve
+from fcm.response.result import UNIT, Curve
 from fcm.response.stability import stable_points
 from fcm.response.structure import AnyArray, IntArray
 from fcm.response.truncation import truncation_error
@@ -35,6 +36,7 @@ class Assembly:
         self.truncation_error = truncation_error(at_points, z)
         linear = np.logical_and.reduce(np.isin(self.regime, ("E", "S")), axis=1)
         self.stable = stable_points(at_points, z, linear)
+        self.undetermined = drift.undetermined(at_points, z)
         self.same = hang_together(points.branch)
 
     def curves(self, scenes: tuple[Scene, ...], dofs: tuple[str, ...]) -> list[Curve]:
@@ -44,6 +46,9 @@ class Assembly:
         for i, scene in enumerate(scenes):
             part = self._with_gaps(bounds[i], bounds[i + 1])
             complete, status = outcome(self.branches, i)
+            reason = "" if complete else self._reason(i, status, scene)
+            if undetermined := self._undetermined(part[part >= 0], scene):
+                complete, reason = False, undetermined
             results.append(
                 Curve(
                     parameters=dict(scene.parameters),
@@ -57,7 +62,7 @@ class Assembly:
                     table_error=_pick(self.points.shift, part),
                     truncation_error=_pick(self.truncation_error, part),
                     complete=complete,
-                    reason="" if complete else self._reason(i, status),
+                    reason=reason,
                     peaks={d: (float(peaks[i, j, 0]), float(peaks[i, j, 1])) for j, d in enumerate(dofs)},
                     folds=self.z[part[self.points.fold[part] & (part >= 0)], -1].tolist(),
                     seconds=0.0,
@@ -70,12 +75,23 @@ class Assembly:
         part = np.arange(first, last)
         return np.insert(part, np.flatnonzero(~self.same[first : max(last - 1, first)]) + 1, -1)
 
-    def _reason(self, curve: int, status: int) -> str:
+    def _reason(self, curve: int, status: int, scene: Scene) -> str:
         branch = np.flatnonzero((self.branches.curve == curve) & (self.branches.status == status))
+        rigid = self.exact.group.frequency.min() == 0.0 and status == STALLED
+        why = "; rigid-body modes are at rest only while closed contacts hold them" if rigid else ""
         if branch.size == 0:
-            return "no solution was found at either end of the range; try another range"
+            return f"no solution was found at either end of the range; try another range{why}"
         last = self.branches.trace.z[self.branches.trace.curve == branch[0], -1][-1]
-        return f"stopped at {last:.8g} rad/s: {REASONS[status]}"
+        return f"stopped at {_in_unit(last, scene):.8g} {scene.frequency_unit}: {REASONS[status]}{why}"
+
+    def _undetermined(self, part: IntArray, scene: Scene) -> str:
+        """Where and why a curve's points are no steady states; empty if they are."""
+        for why, which in self.undetermined.items():
+            if which[part].any():
+                frequency = _in_unit(self.z[part[which[part]], -1], scene)
+                unit = scene.frequency_unit
+                return f"from {frequency.min():.5g} to {frequency.max():.5g} {unit} {drift.REASONS[why]}"
+        return ""
 
     def _peaks(self, bounds: IntArray) -> FloatArray:
         """(curve, dof, 2): amplitude and frequency of the greatest peak."""
@@ -107,6 +123,11 @@ class Assembly:
         near = np.maximum(size[:-1], size[1:]) > NEARLY_HIGHEST * highest[curve[:-1]]
         at, dof = np.nonzero(rises & near)
         return at, dof, growth[at, dof], growth[at + 1, dof]
+
+
+def _in_unit(omega: FloatArray, scene: Scene) -> FloatArray:
+    """Frequencies [rad/s] in the scene's unit."""
+    return omega / UNIT[scene.frequency_unit]
 
 
 def _pick(values: AnyArray, part: IntArray) -> AnyArray:

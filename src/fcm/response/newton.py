@@ -105,22 +105,25 @@ def correct(
     right = np.zeros((z.shape[0], size, 2))
     right[:, -1, 1] = 1.0
     before = np.broadcast_to(reach, (z.shape[0],))
-    done = np.zeros(z.shape[0], dtype=bool)
+    done, lost = np.zeros(z.shape[0], dtype=bool), np.zeros(z.shape[0], dtype=bool)
     matrix = np.empty((z.shape[0], size, size))
     tangent = row.copy()
     for _ in range(iterations):
         fill(matrix, equations.evaluate(z[:, :-1], z[:, -1]), scale, right)
         matrix[:, -1, :] = row
         solution = solve_each(matrix, right)
-        change = np.where(done[:, None], 0.0, solution[:, :, 0])
-        tangent = np.where(done[:, None], tangent, solution[:, :, 1])
+        lost |= ~np.isfinite(solution).all(axis=(1, 2))  # a singular matrix: it stays where it is
+        idle = (done | lost)[:, None]
+        change = np.where(idle, 0.0, solution[:, :, 0])
+        tangent = np.where(idle, tangent, solution[:, :, 1])
         z += scale * change
         length = np.sqrt((change * change).sum(axis=1))
         done |= (length * length < close * before) & (length < 0.1 * before)
         done |= length < 1e-2 * close
         before = length
-        if done.all() or not np.isfinite(length).any():
+        if (done | lost).all():
             break
+    done &= ~lost
     norm = np.sqrt((tangent * tangent).sum(axis=1, keepdims=True))
     sign = np.linalg.slogdet(np.where(np.isfinite(matrix), matrix, 0.0))[0]
     ok = done & np.isfinite(norm[:, 0]) & (norm[:, 0] > 0.0)

@@ -58,7 +58,7 @@ def trace(
     Raises
     ------
     ResponseError
-        If the method is unknown, or a rigid-body mode takes part.
+        If the method is unknown, or the scene has no range of frequencies.
     """
     if method not in METHODS:
         raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
@@ -82,7 +82,8 @@ def trace(
             response = sweep.run(lighter)
     response = restored(response, lighter)
     if uncorrected := sum(curve.uncorrected for curve in response.curves):
-        sentences.append(f"{uncorrected} points that could not be corrected with the closed form")
+        points = f"{uncorrected} point{'s' if uncorrected > 1 else ''}"
+        sentences.append(f"{points} that could not be corrected with the closed form")
     if stiff := sum(curve.without_table for curve in response.curves):
         which = f"{stiff} curve{'s' if stiff > 1 else ''}"
         sentences.append(f"the table, for {which} whose stiff contacts multiply its error: closed form")

@@ -39,7 +39,6 @@ def trace_group(
     """
     begin = time.perf_counter()
     curves = scene.each_curve()
-    _check(curves)
     group = group_of([with_contact(curve) for curve in curves])
     exact_balance = Balance(group, exact or ClosedForm())
     by_table = method == "table" and not isinstance(table, ClosedForm)
@@ -85,17 +84,6 @@ def _without_table(
     for i, curve in zip(again, trace_group(whole, "closed-form", None, progress).curves, strict=True):
         curve.without_table = True
         results[i] = curve
-
-
-def _check(curves: tuple[Scene, ...]) -> None:
-    """Refuse what the balanced equations cannot express."""
-    for curve in curves:
-        rigid = np.flatnonzero(curve.modal.frequency == 0.0)
-        if rigid.size:
-            raise ResponseError(
-                f"modal.frequency[{rigid[0]}] is 0: a rigid-body mode has no static equilibrium "
-                "without its contacts, and is not supported yet; give it a small frequency instead"
-            )
 
 
 def _default_table() -> Coefficients:

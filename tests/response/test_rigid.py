@@ -1,0 +1,104 @@
+"""Rigid-body modes: held by closed contacts, adrift along friction alone, or not at rest at all."""
+
+import numpy as np
+import pytest
+
+from fcm.response import trace
+from fcm.scene import scene_from_dict
+from fcm.simulate import periodic
+
+CONTACT = {"name": "c", "tangential": "x", "normal": "y", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+BODY = {  # free along x and along y, but for its contact
+    "dofs": ["x", "y"],
+    "mass": [1.0, 1.0],
+    "frequency": [0.0, 0.0],
+    "damping": 0.0,
+    "shapes": [[1.0, 0.0], [0.0, 1.0]],
+}
+JENKINS = BODY | {"frequency": [0.0, 3.0], "damping": [0.0, 0.02]}  # held along y, for a constant load
+
+
+def curve(modal, contact=CONTACT, forces=(("x", 1.0),), **more):
+    data = {
+        "modal": modal,
+        "contact": [CONTACT | contact] if contact else [],
+        "force": [{"dof": dof, "amplitude": amplitude} for dof, amplitude in forces],
+        "response": {"frequency": [0.3, 1.7], "max_step": 0.2},
+    }
+    scene = scene_from_dict(data | more)
+    return scene, trace(scene, "closed-form").curves[0]
+
+
+@pytest.mark.parametrize("n_0", [20.0, 2.0])
+def test_a_mode_held_by_the_contact_is_the_limit_of_one_with_a_small_frequency(n_0):
+    modal = BODY | {"damping": [0.02, 0.02], "shapes": [[0.8, 0.3], [-0.3, 0.9]]}
+    forces = (("x", 1.0), ("y", 0.5))
+    _, rigid = curve(modal | {"frequency": [0.0, 2.0]}, {"n_0": n_0}, forces)
+    _, nearly = curve(modal | {"frequency": [1e-5, 2.0]}, {"n_0": n_0}, forces)
+    assert rigid.complete and len(rigid.folds) == len(nearly.folds) > 0
+    assert rigid.folds == pytest.approx(nearly.folds, rel=1e-5)
+    assert np.nanmax(np.abs(rigid.mean)) > 1.0  # the static balance has something to do
+    for dof in "xy":
+        assert rigid.peaks[dof] == pytest.approx(nearly.peaks[dof], rel=1e-5)
+
+
+def test_the_static_balance_is_that_of_the_exact_motion():
+    """In the mean the normal force is the preload, and the friction vanishes: the mode takes up no force."""
+    modal = BODY | {"frequency": [0.0, 2.0], "damping": [0.02, 0.02], "shapes": [[0.8, 0.3], [-0.3, 0.9]]}
+    scene, found = curve(modal, {"n_0": 20.0}, (("x", 1.0), ("y", 0.5)))
+    at = int(found.amplitude[:, 0].argmax())
+    exact = periodic(scene, found.frequency[at]).measure
+    error = 3.0 * found.truncation_error[at]
+    assert set(found.regime[at]) == {"EPEN"} and 0.0 < error < 0.05
+    assert found.amplitude[at] == pytest.approx(exact.fundamental, rel=error)
+    assert found.mean[at] == pytest.approx(exact.mean, rel=0.05)
+
+
+def test_a_mass_on_a_friction_contact():
+    """Stuck it is an oscillator of natural frequency 1; its mean place, that nothing decides, is 0."""
+    scene, found = curve(JENKINS)
+    stuck = found.regime[:, 0] == "E"
+    assert (
+        found.complete and found.stable.all() and (found.mean == 0.0).all() and 10 < stuck.sum() < stuck.size
+    )
+    assert found.amplitude[stuck, 0] == pytest.approx(
+        1.0 / np.abs(1.0 - found.frequency[stuck] ** 2), rel=1e-9
+    )
+    at = int(found.amplitude[:, 0].argmax())
+    exact = periodic(scene, found.frequency[at]).measure
+    assert found.amplitude[at, 0] == pytest.approx(exact.fundamental[0], rel=3.0 * found.truncation_error[at])
+
+
+def test_the_basis_of_rigid_modes_does_not_matter():
+    """Free along x and y: the contact holds y, and x is adrift, whatever combinations the modes are."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    turned = BODY | {"shapes": [[c, s], [-s, c]], "mass": [4.0, 0.25]}
+    turned["shapes"] = (np.sqrt([[4.0], [0.25]]) * turned["shapes"]).tolist()
+    below = {"response": {"frequency": [0.3, 0.8], "max_step": 0.2}}
+    for modal in (BODY, turned):
+        _, found = curve(modal, {"n_0": 50.0}, (("x", 1.0), ("y", 0.5)), **below)
+        assert found.complete and set(found.regime.ravel()) == {"E"}
+        one = 1.0 / (1.0 - found.frequency**2)  # both springs of the contact are 1
+        assert found.amplitude == pytest.approx(np.column_stack((one, 0.5 * one)), rel=1e-9)
+
+
+def test_friction_that_pushes_one_way_has_no_steady_state():
+    _, found = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
+    assert not found.complete
+    assert "one way on average along a rigid-body mode" in found.reason
+    _, stuck = curve(JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9]})
+    assert stuck.complete and set(stuck.regime.ravel()) == {"E"}
+
+
+def test_a_body_that_no_contact_holds_at_rest_is_said():
+    """Beyond a frequency the amplitude no longer closes the gap: the body may float anywhere in it."""
+    _, found = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -5.0})
+    assert not found.complete and "closed contact" in found.reason and "rigid-body mode" in found.reason
+    _, never = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -50.0})
+    assert not never.complete and "rigid-body modes are at rest only" in never.reason
+
+
+def test_a_free_structure_without_contacts():
+    _, found = curve(JENKINS, None)
+    assert found.complete
+    assert found.amplitude[:, 0] == pytest.approx(1.0 / found.frequency**2, rel=1e-12)
