@@ -19,6 +19,7 @@ NEARLY_HIGHEST = 0.7  # a maximum between points may exceed them by this factor
 FINE = 0.08  # distance of points near a summit, so that no maximum hides between two of them
 CHANGE = 0.2  # greatest relative change of a degree of freedom between points
 FLOOR = 0.1  # of its greatest amplitude: below this a change is not followed
+ROUNDING = 1e-13  # of the greatest of all: a degree of freedom that moves less is not followed
 SHORTEST = 1e-6  # arc below which nothing is cut
 MOST_PIECES, ROUNDS = 8, 6
 
@@ -92,16 +93,17 @@ def _pieces(exact: Balance, points: Points) -> IntArray:
     highest = np.zeros((points.curve.max() + 1, size.shape[1]))
     np.maximum.at(highest, points.curve, size)
     highest = highest[points.curve]
+    noise = ROUNDING * highest.max(axis=1, keepdims=True)
     x = points.z[:, :-1]
     scale = scales(x, amplitudes(x), extent(exact, points.curve))
     arc = np.sqrt(((np.diff(points.z, axis=0) / scale[:-1]) ** 2).sum(axis=1))
     speed = np.sqrt(((points.direction / scale) ** 2).sum(axis=1))[:, None]
-    unit = np.maximum(size, FLOOR * highest)
+    unit = np.maximum(np.maximum(size, FLOOR * highest), noise)
     unit = np.where(unit > 0.0, unit, 1.0)
     rate = np.max(np.abs(dX) / (unit * speed), axis=1)  # relative change of a degree of freedom per arc
     jump = np.max(np.abs(np.diff(X, axis=0)) / np.maximum(unit[1:], unit[:-1]), axis=1)
     change = np.maximum(jump, arc * np.maximum(rate[1:], rate[:-1]))
-    high = np.any(size > NEARLY_HIGHEST * highest, axis=1)
+    high = np.any((size > NEARLY_HIGHEST * highest) & (highest > noise), axis=1)
     finer = np.maximum(change / CHANGE, np.where(high[1:] | high[:-1], arc / FINE, 0.0))
     finer = np.where(hang_together(points.branch) & (arc > SHORTEST), finer, 1.0)
     pieces: IntArray = np.ceil(np.clip(finer, 1.0, MOST_PIECES)).astype(np.intp)
