@@ -17,9 +17,9 @@ from fcm.response.result import UNIT, Curve, Response
 from fcm.response.sweep import INTERRUPTED
 from fcm.response.trace import ResponseError
 from fcm.scene.model import Scene
-from fcm.simulate.branch import trace_orbits
-from fcm.simulate.errors import SimulationError
-from fcm.simulate.orbit_curve import curve_of
+from fcm.simulate.branch import shown
+from fcm.simulate.explore import Explorer
+from fcm.simulate.orbit_curve import traced_curve
 
 METHOD = "exact"
 STOPPED = "interrupted at "  # how the reason of a curve begins that an interruption has cut off
@@ -96,10 +96,12 @@ class ExactWork(Work):
 
     def _curve(self, scene: Scene, progress: Progress | None) -> Curve:
         begin = time.perf_counter()
+        explorer, stopped = Explorer(scene, progress), ""
         try:
-            curve = curve_of(scene, trace_orbits(scene))
-        except SimulationError as error:
-            curve = lost_curve(scene, str(error))
+            explorer.run()
+        except KeyboardInterrupt:
+            stopped = STOPPED + (shown(scene, explorer.at) if explorer.branches else "the start")
+        curve = traced_curve(scene, explorer.branches, stopped or explorer.reason)
         return replace(curve, seconds=time.perf_counter() - begin)
 
 

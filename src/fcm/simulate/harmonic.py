@@ -6,6 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact import fourier_coefficients, hysteresis_loop, normal_coefficients
+from fcm.response.balance import Balance
+from fcm.response.displacement import displacements
+from fcm.response.law import ClosedForm
+from fcm.response.start import starting_points
+from fcm.response.structure import group_of, with_contact
 from fcm.scene.model import Contact, FloatArray, Scene
 from fcm.simulate.errors import SimulationError
 from fcm.simulate.state import State
@@ -66,6 +71,19 @@ def harmonic_state(
         wave = wave - system.tangential[j] * pair[0] - system.normal[j] * pair[1]
         steady -= system.tangential[j] * means[0] + system.normal[j] * (means[1] - max(contact.n_0, 0.0))
     return _modal(system, wave, steady, friction)
+
+
+def balanced_state(scene: Scene, frequency: float) -> State | None:
+    """A guess from the scene's own harmonic balance at a frequency [rad/s]; None if it has none there."""
+    if not scene.modal.frequency.all():
+        return None
+    balance = Balance(group_of([with_contact(scene)]), ClosedForm())
+    omega = np.array([frequency])
+    x, found = starting_points(balance, omega)
+    if not found[0]:
+        return None
+    X, mean = displacements(balance, x, omega)
+    return harmonic_state(scene, frequency, np.abs(X[0]), np.angle(X[0]), mean[0])
 
 
 def _modal(

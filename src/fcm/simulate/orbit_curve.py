@@ -6,56 +6,79 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.response.groups import lost_curve
+from fcm.response.jumps import Jump
 from fcm.response.result import Curve, Orbits
 from fcm.scene.model import Scene
 from fcm.simulate.branch import Branch
-from fcm.simulate.measure import Measure
-from fcm.simulate.periodic import Orbit
+from fcm.simulate.sample import Sample
 
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def curve_of(scene: Scene, branch: Branch) -> Curve:
-    """The points of a branch as a curve."""
-    return _with_points(lost_curve(scene, branch.reason), branch.orbits, branch)
+def traced_curve(scene: Scene, branches: Sequence[Branch], reason: str) -> Curve:
+    """The points of branches, with a point of NaN between one and the next; complete without a reason."""
+    points: list[Sample | None] = []
+    for branch in branches:
+        points += [None, *branch.orbits] if points else branch.orbits
+    folds = [fold.frequency for branch in branches for fold in branch.folds]
+    return replace(_curve(scene, points, reason), folds=folds)
 
 
-def _with_points(empty: Curve, orbits: Sequence[Orbit], branch: Branch) -> Curve:
-    measures = [orbit.measure for orbit in orbits]
-    amplitude = _columns(measures, "amplitude")
-    frequency = np.array([orbit.frequency for orbit in orbits])
+def visited_curve(
+    scene: Scene, points: Sequence[Sample], sweep: Sequence[str], jumps: list[Jump], reason: str
+) -> Curve:
+    """The points at which sweeps were steady, in order; complete without a reason."""
+    curve = _curve(scene, points, reason)
+    if curve.orbits is not None:
+        curve.orbits.sweep, curve.orbits.jumps = np.array(sweep, dtype="<U4"), jumps
+    return curve
+
+
+def _curve(scene: Scene, points: Sequence[Sample | None], reason: str) -> Curve:
+    empty = lost_curve(scene, reason)
+    frequency = _numbers(points, "frequency")
+    amplitude = _rows(points, "amplitude", empty)
+    zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
         empty,
         frequency=frequency,
         amplitude=amplitude,
-        phase=_columns(measures, "phase"),
-        mean=_columns(measures, "mean"),
-        regime=np.array([[_short(s) for s in orbit.states] for orbit in orbits], dtype=str).reshape(
-            len(orbits), -1
-        ),
-        loop=np.full(
-            (len(orbits), empty.loop.shape[1], empty.loop.shape[2]), np.nan
-        ),  # none has one angle phi
-        stable=np.array([orbit.stable for orbit in orbits]),
-        table_error=np.zeros(len(orbits)),
-        truncation_error=np.zeros(len(orbits)),
-        complete=branch.complete,
-        reason=branch.reason,
+        phase=_rows(points, "phase", empty),
+        mean=_rows(points, "mean", empty),
+        regime=_regimes(points, len(scene.contacts)),
+        loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
+        stable=np.array([p is not None and p.stable for p in points], dtype=bool),
+        table_error=zero,
+        truncation_error=zero,
+        complete=not reason,
         peaks={d: _peak(amplitude[:, i], frequency) for i, d in enumerate(empty.peaks)},
-        folds=[fold.frequency for fold in branch.folds],
         orbits=Orbits(
-            _columns(measures, "fundamental"),
-            np.array([orbit.residual for orbit in orbits]),
-            np.full(len(orbits), ""),
+            _rows(points, "fundamental", empty),
+            _numbers(points, "residual"),
+            np.full(len(points), "", dtype="<U4"),
         ),
     )
 
 
-def _columns(measures: Sequence[Measure], name: str) -> FloatArray:
-    return np.array([getattr(measure, name) for measure in measures])
+def _numbers(points: Sequence[Sample | None], name: str) -> FloatArray:
+    """A number of each point; NaN between branches."""
+    return np.array([np.nan if point is None else getattr(point, name) for point in points])
+
+
+def _rows(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArray:
+    """A measure of each point, (point, dof)."""
+    none = np.full(len(empty.peaks), np.nan)
+    rows = [none if point is None else getattr(point.measure, name) for point in points]
+    return np.array(rows).reshape(len(points), len(empty.peaks))
+
+
+def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.str_]:
+    rows = [[""] * contacts if point is None else [_short(s) for s in point.states] for point in points]
+    return np.array(rows, dtype=str).reshape(len(points), contacts)
 
 
 def _short(states: str) -> str:
@@ -63,5 +86,7 @@ def _short(states: str) -> str:
 
 
 def _peak(amplitude: FloatArray, frequency: FloatArray) -> tuple[float, float]:
-    at = int(amplitude.argmax())
+    if not np.isfinite(amplitude).any():
+        return np.nan, np.nan
+    at = int(np.nanargmax(amplitude))
     return float(amplitude[at]), float(frequency[at])

@@ -17,7 +17,7 @@ from fcm.simulate.measure import Measure, measure
 from fcm.simulate.motion import Motion, dof_rows
 from fcm.simulate.run import cycles_from
 from fcm.simulate.state import State, entry
-from fcm.simulate.stuck import choices
+from fcm.simulate.stuck import choices, overshoots
 from fcm.simulate.system import System
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
@@ -42,7 +42,7 @@ class Orbit:
     @property
     def stable(self) -> bool:
         """Whether small disturbances die out, or at least do not grow."""
-        return bool(np.abs(self.multipliers).max(initial=0.0) <= 1.0 + STABLE)
+        return within_unit_circle(self.multipliers)
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -58,6 +58,11 @@ class Orbit:
     def motion(self) -> Motion:
         """The period as a motion."""
         return Motion(self.scene, (self.cycle,), self.state)
+
+
+def within_unit_circle(multipliers: npt.NDArray[np.complex128]) -> bool:
+    """Whether no disturbance grows, but for rounding."""
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + STABLE)
 
 
 class Shot:
@@ -76,6 +81,8 @@ class Shot:
         self.chosen = choices(system, self.segments) if choose else []
         for choice in self.chosen:
             self.gap[2 * m + choice.contact] = choice.gap
+        for contact, missing in overshoots(system, self.segments) if choose else ():
+            self.gap[2 * m + contact] -= missing
         self.scale = _scale(system, self.segments)
         self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
 

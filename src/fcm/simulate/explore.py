@@ -1,0 +1,84 @@
+"""All curves of periodic solutions of a scene that reach an end of its range."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fcm.scene.model import Scene
+from fcm.simulate.arc import Equations, Point
+from fcm.simulate.branch import Branch, Progress, finish, first_point, follow
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.harmonic import balanced_state
+from fcm.simulate.periodic import Orbit, periodic
+from fcm.simulate.sample import Sample, distance, sampled
+
+DISTINCT = 1e-5  # solutions further apart than this, relative to their size, are different
+
+
+class Explorer:
+    """The branches of a scene: followed from the low end, and from the high end where that finds more.
+
+    They are there as far as they have been found, whenever the work is interrupted.
+    """
+
+    def __init__(self, scene: Scene, progress: Progress | None) -> None:
+        self.scene, self.equations, self.progress = scene, Equations(scene), progress
+        self.branches: list[Branch] = []
+        self.problem = ""  # why there is no solution to start from
+
+    def run(self) -> None:
+        """Find the branches, none if there is no solution to start from."""
+        for omega in self.scene.frequency_range:
+            first = self._first(omega)
+            if first is not None and self._is_new(sampled(first)):
+                self.branches.append(Branch())
+                follow(self.branches[-1], self.equations, first, self.scene.max_step, self.progress)
+        if len(self.branches) == 2 and self.branches[1].complete:
+            self._turn_second()
+        for branch in self.branches:
+            finish(branch, self.equations)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every branch goes from end to end, or there are those of both ends."""
+        ended = all(branch.ended for branch in self.branches)
+        return ended and (len(self.branches) > 1 or any(branch.complete for branch in self.branches))
+
+    @property
+    def reason(self) -> str:
+        """Why the curve is not complete, else ''."""
+        return "" if self.complete else "; ".join(b.reason for b in self.branches if b.reason) or self.problem
+
+    @property
+    def at(self) -> float:
+        """The frequency to which the work has come [rad/s]."""
+        return self.branches[-1].orbits[-1].frequency
+
+    def _first(self, omega: float) -> Point | None:
+        try:
+            return first_point(self.equations, _solution(self.scene, omega))
+        except SimulationError as error:
+            self.problem = str(error)
+            return None
+
+    def _is_new(self, solution: Sample) -> bool:
+        ends = [branch.orbits[i] for branch in self.branches for i in (0, -1)]
+        return all(end.frequency != solution.frequency or distance(solution, end) > DISTINCT for end in ends)
+
+    def _turn_second(self) -> None:
+        """Turn a branch that came down from the high end; one that stopped on its way up is part of it."""
+        second = self.branches[1]
+        second.orbits = [replace(orbit, tangent=-orbit.tangent) for orbit in reversed(second.orbits)]
+        if not self.branches[0].ended and distance(second.orbits[0], self.branches[0].orbits[0]) <= DISTINCT:
+            del self.branches[0]
+
+
+def _solution(scene: Scene, omega: float) -> Orbit:
+    """The solution that a motion from rest approaches, or else one near harmonic balance."""
+    try:
+        return periodic(scene, omega)
+    except SimulationError:
+        guess = balanced_state(scene, omega)
+        if guess is None:
+            raise
+        return periodic(scene, omega, guess)

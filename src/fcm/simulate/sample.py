@@ -1,0 +1,49 @@
+"""What is kept of a periodic solution on a curve: everything that is reported, without its motion in time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray
+from fcm.simulate.arc import Point
+from fcm.simulate.measure import Measure
+from fcm.simulate.periodic import Orbit, within_unit_circle
+from fcm.simulate.state import State
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A periodic solution, and where on its curve it is (in units of scale, the frequency last)."""
+
+    frequency: float  # [rad/s]
+    state: State  # at the forces' angle 0
+    states: tuple[str, ...]  # of each contact over the period
+    measure: Measure
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which the period fails to close, relative to the motion
+    z: FloatArray  # (unknown + 1,)
+    scale: FloatArray
+    tangent: FloatArray
+    orientation: float
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out, or at least do not grow."""
+        return within_unit_circle(self.multipliers)
+
+
+def sampled(point: Point) -> Sample:
+    """What is kept of a point."""
+    orbit: Orbit = point.shot.orbit(0)
+    return Sample(
+        orbit.frequency, orbit.state, orbit.states, orbit.measure, orbit.multipliers, orbit.residual,
+        point.z, point.scale, point.tangent, point.orientation,
+    )  # fmt: skip
+
+
+def distance(one: Sample, other: Sample) -> float:
+    """Of two solutions, relative to their size."""
+    return float(np.linalg.norm((one.z - other.z) / one.scale))
