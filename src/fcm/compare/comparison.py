@@ -46,15 +46,31 @@ class Comparison:
         return [scene.parameters for scene in self.scene.each_curve()]
 
     @property
+    def names(self) -> list[str]:
+        """What tells the curves apart, of each."""
+        return [", ".join(f"{k} = {v:g}" for k, v in p.items()) or "the curve" for p in self.parameters]
+
+    @property
     def without_exact(self) -> list[str]:
         """Why some curves have no exact reference, a sentence for each."""
-        lines = self.references[EXACT].lines
-        names = [", ".join(f"{k} = {v:g}" for k, v in p.items()) or "the curve" for p in self.parameters]
         return [
             f"{name}: {line.reason or 'no periodic solution'}"
-            for name, line in zip(names, lines, strict=True)
+            for name, line in zip(self.names, self.references[EXACT].lines, strict=True)
             if not line.complete
         ]
+
+    @property
+    def notes(self) -> list[str]:
+        """What else a reader of the errors has to know."""
+        found = []
+        lines = (self.references[CLOSED_FORM].lines, self.references[EXACT].lines)
+        for name, harmonic, exact in zip(self.names, *lines, strict=True):
+            if not harmonic.complete:
+                found.append(f"{name}: harmonic balance is not complete, and not compared: {harmonic.reason}")
+            if exact.complete and len(harmonic.branches()) != len(exact.branches()):
+                count = f"{len(harmonic.branches())} separate parts, the exact curve {len(exact.branches())}"
+                found.append(f"{name}: harmonic balance has {count}; what one of them lacks is in the errors")
+        return found
 
     def add(self, one: Run) -> None:
         """A run and its errors."""

@@ -17,7 +17,8 @@ from scipy.spatial import cKDTree
 
 from fcm.compare.lines import FloatArray, Line
 
-FINE = 16  # points on a piece between two neighbours
+CHAIN = 4000  # points of a fine chain, about
+FINEST, COARSEST = 16, 3  # points on a piece between two neighbours
 SAME = 1e-13  # distance below which two neighbours are one point
 
 
@@ -98,7 +99,8 @@ def _fine(points: FloatArray, smooth: bool) -> FloatArray:
     if kept.shape[0] < 2:
         return kept
     arc = np.concatenate(([0.0], np.cumsum(np.sqrt((np.diff(kept, axis=0) ** 2).sum(axis=1)))))
-    share = np.arange(FINE) / FINE
+    fine = min(max(CHAIN // kept.shape[0], COARSEST), FINEST)
+    share = np.arange(fine) / fine
     at = np.append((arc[:-1, None] + share * np.diff(arc)[:, None]).ravel(), arc[-1])
     if smooth and kept.shape[0] > 2:
         return np.asarray(Akima1DInterpolator(arc, kept)(at))

@@ -16,7 +16,7 @@ from fcm.response.trace import trace_group
 from fcm.scene.model import Scene
 
 CLOSED_FORM, EXACT = "closed form", "exact"
-REPEATS = 3  # a run is repeated, and its least time counts
+REPEATS = 2  # a run is repeated, and its least time counts
 LONG = 0.5  # [s], after which it is not repeated
 
 

@@ -27,9 +27,11 @@ def summary(out: Comparison) -> Json:
     return {
         "title": out.scene.title,
         "frequency_unit": out.scene.frequency_unit,
+        "max_step": out.scene.each_curve()[0].max_step,
         "curves": out.parameters,
         "references": {name: _reference(out, name) for name in (EXACT, CLOSED_FORM)},
         "without_exact": out.without_exact,
+        "notes": out.notes,
         "left_out": out.left_out,
         "runs": [_run(out, number, one) for number, one in enumerate(out.runs)],
         "contributions": {

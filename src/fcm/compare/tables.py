@@ -1,0 +1,104 @@
+"""A comparison as tables of text, from its summary: the same on a terminal and on a page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fcm.compare.errors import MEASURES, Shown
+from fcm.compare.methods import CLOSED_FORM, EXACT
+
+Rows = list[list[str]]  # the first is the header
+Summary = Mapping[str, Any]
+NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
+HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
+DIGITS = 6
+
+
+def references(summary: Summary) -> Rows:
+    """What the others are measured against, and the errors of these themselves."""
+    rows = [["errors of the references themselves", "max. step", *HEADS]]
+    for name, one in summary["references"].items():
+        own = [one["own_error"][measure] for measure in MEASURES]
+        cells = ["-" if value is None else f"{value:.0e}" for value in own]
+        rows.append([NAMES[name], f"{one['max_step']:.3g}", *cells])
+    return rows
+
+
+def methods(summary: Summary) -> Rows:
+    """Each method with the scene's own steps."""
+    against = main_reference(summary)
+    header = ["left out", "points", "solve [s]", "start [s]", "calls", "evaluations"]
+    rows = [[f"against {NAMES[against]}", *header, *HEADS]]
+    for one in in_order(summary["runs"]):
+        if one["max_step"] == summary["max_step"] and one["corrected"]:
+            left_out = "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing to"
+            start = one["start_seconds"]
+            cells = [str(one["points"]), f"{one['seconds']:.3f}", "-" if start is None else f"{start:.2f}"]
+            cells += ["-" if one[key] is None else str(one[key]) for key in ("calls", "evaluations")]
+            rows.append([one["method"], left_out, *cells, *shown(one["against"][against])])
+    return rows
+
+
+def contributions(summary: Summary) -> Rows:
+    """What the error consists of."""
+    rows = [["what the error consists of", "against", *HEADS]]
+    for what, one in summary["contributions"].items():
+        rows.append([what, NAMES[one["against"]], *shown(one)])
+    return rows
+
+
+def peaks(summary: Summary) -> Rows:
+    """The estimate of what the single harmonic leaves out beside the true error, peak by peak."""
+    found = summary["peaks"]
+    if not found:
+        return []
+    unit = summary["frequency_unit"]
+    heads = ["exact", f"at {unit}", "harmonic", f"at {unit}", "error", "its freq.", "estimate"]
+    rows = [["peak of", *found[0]["parameters"], *heads]]
+    for one in found:
+        swept = [f"{value:.6g}" for value in one["parameters"].values()]
+        pairs = [
+            f"{one[kind][key]:#.{DIGITS}g}"
+            for kind in ("exact", "harmonic")
+            for key in ("amplitude", "frequency")
+        ]
+        estimate = one["truncation_error"]
+        cells = [f"{one['error']:+.1e}", f"{one['frequency_error']:+.1e}"]
+        rows.append([one["dof"], *swept, *pairs, *cells, "-" if estimate is None else f"{estimate:.1e}"])
+    return rows
+
+
+def steps(summary: Summary) -> Rows:
+    """Each method over its longest step."""
+    against = list(dict.fromkeys((main_reference(summary), CLOSED_FORM)))
+    rows = [["over the steps", "max. step", "points", "solve [s]", *(f"curve, {name}" for name in against)]]
+    for one in in_order(summary["runs"]):
+        if one["corrected"] and not one["left_out"]:
+            continue  # the same once more
+        name = one["method"] if one["corrected"] else f"{one['method']}, as it is"
+        curve = MEASURES.index("curve")
+        errors = [shown(one["against"][reference])[curve] for reference in against]
+        rows.append([name, f"{one['max_step']:.4g}", str(one["points"]), f"{one['seconds']:.3f}", *errors])
+    return rows
+
+
+def main_reference(summary: Summary) -> str:
+    """The exact motion, if it is known for any curve."""
+    return EXACT if summary["references"][EXACT]["own_error"]["peak"] is not None else CLOSED_FORM
+
+
+def in_order(runs: Sequence[Summary]) -> list[Summary]:
+    """A method's runs together, from long steps to short ones; exact last."""
+    names = ["default table", "fast table", *sorted({one["method"] for one in runs}), CLOSED_FORM]
+
+    def place(one: Summary) -> tuple[Any, ...]:
+        name = one["method"]
+        return name == EXACT, name == CLOSED_FORM, names.index(name), not one["corrected"], -one["max_step"]
+
+    return sorted(runs, key=place)
+
+
+def shown(one: Summary) -> list[str]:
+    """Errors, or limits below which they are."""
+    return [str(Shown(one["errors"][measure], one["below"].get(measure))) for measure in MEASURES]
