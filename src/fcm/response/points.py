@@ -116,7 +116,7 @@ def _subdivided(exact: Balance, points: Points, pieces: IntArray) -> Points:
     share = number / pieces[at]
     new = points.segments(at, exact).points(exact, share)
     ok = new.converged
-    return _inserted(points, (at + share)[ok], new.z[ok], new.tangent[ok], fold=False)
+    return inserted(points, (at + share)[ok], new.z[ok], new.tangent[ok], fold=False)
 
 
 def with_folds(exact: Balance, points: Points) -> Points:
@@ -125,10 +125,10 @@ def with_folds(exact: Balance, points: Points) -> Points:
     at = np.flatnonzero(same & (np.sign(rate[1:]) * np.sign(rate[:-1]) < 0.0))
     segments = points.segments(at, exact)
     z, direction = locate(exact, segments, fold_rate, rate[at], rate[at + 1], at)
-    return _inserted(points, at + np.float64(0.5), z, direction, fold=True)
+    return inserted(points, at + np.float64(0.5), z, direction, fold=True)
 
 
-def _inserted(points: Points, place: FloatArray, z: FloatArray, direction: FloatArray, fold: bool) -> Points:
+def inserted(points: Points, place: FloatArray, z: FloatArray, direction: FloatArray, fold: bool) -> Points:
     """Points between others: place k + share lies between the points k and k + 1."""
     order = np.argsort(np.concatenate((np.arange(points.curve.size), place)))
     at = place.astype(np.intp)

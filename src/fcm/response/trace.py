@@ -10,6 +10,7 @@ import numpy as np
 from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
 from fcm.response.branches import all_branches
+from fcm.response.changes import with_changes
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.newton import CLOSE
 from fcm.response.path import Progress
@@ -50,7 +51,7 @@ def trace_group(
     uncorrected = found - np.bincount(points.curve, minlength=len(curves))
     if not by_table:
         points.shift[:] = 0.0
-    points = with_folds(exact_balance, refined(exact_balance, points))
+    points = with_folds(exact_balance, refined(exact_balance, with_changes(exact_balance, points)))
     results = Assembly(exact_balance, points, branches).curves(curves, scene.modal.dofs)
     if by_table:
         _without_table(scene, curves, results, uncorrected, progress)
