@@ -6,6 +6,7 @@ BIN    := $(VENV)/bin
 OTHERS := build/bench-others
 DEMO   := build/demo
 PAPER  := build/paper
+REPORT := build/report
 
 # What the pictures are made of, so that a change redoes only what it touches.
 CONTACT    := $(wildcard src/fcm/contact/*.py)
@@ -19,9 +20,11 @@ CURVES     := $(LOOK) $(addprefix src/fcm/plot/,place.py response.py error_panel
 HISTORIES  := $(LOOK) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
 FIGURES    := $(foreach number,5 6 8 10 11 12 13 15,$(PAPER)/figure$(number).png)
 
+COMPARED   := yang1998-n5 two-contacts yang1998
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help bench-others demo picture paper figures test check tables clean bench study
+.PHONY: help bench-others report demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -99,7 +102,21 @@ bench: $(VENV)/installed  ## run times beside one another: closed form, table, s
 	$(BIN)/python tests/benchmarks/speed.py
 
 bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
-	OPENBLAS_NUM_THREADS=1 $(OTHERS)/bin/python tests/benchmarks/pyharm.py
+	cd $(OTHERS) && OPENBLAS_NUM_THREADS=1 bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
+		status=$$?; cat table.txt; exit $$status
+
+report: $(REPORT)/index.html  ## error against run time of the bundled scenes on a page, build/report/index.html
+
+$(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py)
+	$(BIN)/python -m fcm.report accuracy $(REPORT) $(COMPARED:%=--scene %) \
+		--extremes build/extremes/table.txt --others $(OTHERS)/table.txt
+
+$(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
+	$(BIN)/fcm plot accuracy $< -o $@
+
+$(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*.py) tables/fast.nc $(VENV)/installed
+	@mkdir -p $(@D)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
 
 clean:  ## remove what was made, but for the environment
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

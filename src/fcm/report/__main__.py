@@ -8,6 +8,7 @@ from fcm.cli.lazy import LazyGroup
 
 PAGES = {
     "paper": ("fcm.report.paper:paper", "The figures of the paper, and its numbers beside those obtained."),
+    "accuracy": ("fcm.report.accuracy:accuracy", "Error against run time of some scenes."),
 }
 
 

@@ -1,0 +1,113 @@
+"""Error against run time of the bundled scenes: a page of their comparisons (``make report``)."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fcm.cli.messages import Messages, pass_messages
+from fcm.compare import tables
+from fcm.compare.tables import Rows
+from fcm.files import replacing
+from fcm.report.made import facts
+from fcm.report.page import Page, Section, Table, render
+
+TITLE = "Error against run time"
+ABOUT = (
+    "Every scene below is solved by every method: harmonic balance with the default table, with the fast one "
+    "and in closed form, and the exact periodic motion, each over a range of longest steps. Errors are "
+    "greatest over all curves of a scene. Those of peaks and folds are relative. The distance of points and "
+    "curves is measured in the plane of the logarithm of frequency and of amplitude relative to its "
+    "greatest value, from each point of the one to the nearest of the other, so that it is as fair on steep "
+    "flanks and at folds as elsewhere.",
+    "Two references: the exact periodic motion, and harmonic balance in closed form with the shortest steps, "
+    "which has the same single harmonic as what is compared. Their own errors are stated; where an error is "
+    "less than ten times that of its reference, only a limit is given. “As it is” is a table before its "
+    "points are corrected with the closed form, as fcm does at every point.",
+    "Time to solve is that of all curves together, on one core, in a program that has begun and has its "
+    "table; the time to start one is listed beside it.",
+)
+CAPTION = (
+    "Error of the curve against time, longest steps halved from marker to marker. Arrows point down where "
+    "the error is below what its reference can show."
+)
+MAKERS = (tables.methods, tables.contributions, tables.peaks, tables.steps, tables.references)
+
+
+@click.command()
+@click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
+@click.option("--scene", "scenes", multiple=True, required=True, metavar="NAME", help="In this order.")
+@click.option(
+    "--extremes", type=click.Path(path_type=Path), metavar="FILE", help="What `make extremes` wrote."
+)
+@click.option(
+    "--others", type=click.Path(path_type=Path), metavar="FILE", help="What `make bench-others` wrote."
+)
+@pass_messages
+def accuracy(
+    messages: Messages, folder: Path, scenes: Sequence[str], extremes: Path | None, others: Path | None
+) -> None:
+    """Write FOLDER/index.html from NAME.json and NAME.png of each scene in FOLDER."""
+    begin = time.perf_counter()
+    found = {name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in scenes}
+    sections = [_scene(name, summary) for name, summary in found.items()]
+    printed = {
+        "Stiff and extreme cases": ("make extremes", extremes),
+        "Beside another package": ("make bench-others", others),
+    }
+    missing = []
+    for title, (command, path) in printed.items():
+        if path is not None and path.is_file():
+            sections.append(Section(title, commands=(path.read_text(encoding="utf-8").rstrip(),)))
+        else:
+            missing.append(f"{title}: not in this report; {command} makes it, and make report then takes it")
+    sections.append(_left_out(found, missing))
+    output = folder / "index.html"
+    with replacing(output) as partial:
+        partial.write_text(render(Page(TITLE, ABOUT, sections, facts())), encoding="utf-8")
+    messages.info(f"wrote {output}: {len(found)} scenes, in {time.perf_counter() - begin:.1f} s")
+
+
+def _scene(name: str, summary: dict[str, Any]) -> Section:
+    return Section(
+        name,
+        text=(summary["title"],),
+        picture=f"{name}.png",
+        width=85.0,
+        caption=CAPTION,
+        commands=(
+            f"fcm respond {name} --compare -o {name}.nc",
+            f"fcm plot accuracy {name}.nc",
+        ),
+        tables=tuple(_table(rows) for rows in (maker(summary) for maker in MAKERS) if len(rows) > 1),
+    )
+
+
+def _table(rows: Rows) -> Table:
+    return Table(tuple(rows[0]), [tuple(row) for row in rows[1:]])
+
+
+def _left_out(found: dict[str, dict[str, Any]], missing: Sequence[str]) -> Section:
+    """What failed, what was not compared, and what the scenes did not need."""
+    rows = [(name, "failed", text) for name, one in found.items() for text in _failures(one)]
+    rows += [(name, "left out", text) for name, one in found.items() for text in one["left_out"]]
+    rows += [("the report", "left out", text) for text in missing]
+    text = () if rows else ("Nothing failed, and nothing was left out.",)
+    tables_ = (Table(("scene", "", "what"), rows),) if rows else ()
+    return Section("What failed or was left out", text=text, tables=tables_)
+
+
+def _failures(summary: dict[str, Any]) -> list[str]:
+    out = [f"no exact reference, compared with the closed form alone: {t}" for t in summary["without_exact"]]
+    out += summary["notes"]
+    out += [
+        f"{one['method']}, max. step {one['max_step']:g}: curves not complete"
+        for one in summary["runs"]
+        if not one["complete"]
+    ]
+    return out if summary["complete"] else [*out, "interrupted: some runs are missing"]
