@@ -95,3 +95,20 @@ def test_contacts_too_stiff_for_the_table_are_traced_without_it():
     assert one.folds == pytest.approx(other.folds, rel=1e-6)
     for dof in one.peaks:
         assert one.peaks[dof][0] == pytest.approx(other.peaks[dof][0], rel=1e-6)
+
+
+def test_a_contact_without_friction_opens_and_closes_and_may_be_unstable():
+    """mu = 0 and a mu too small to matter are the same curve, with the same unstable part."""
+    none, hardly = (
+        trace(fcm.load_scene(f"extreme/{name}"), "closed-form").curves[0]
+        for name in ("no-friction", "tiny-friction")
+    )
+    assert set(none.regime.ravel()) == {"E", "SE"}
+    for curve in (none, hardly):
+        between = (curve.frequency > min(curve.folds)) & (curve.frequency < max(curve.folds))
+        first, last = np.flatnonzero(np.isin(curve.frequency, curve.folds))
+        inner = np.arange(curve.points)
+        inner = (inner > first) & (inner < last)
+        assert inner.sum() > 10 and between[inner].all()
+        assert not curve.stable[inner].any() and curve.stable[~inner].all()
+    assert none.folds == pytest.approx(hardly.folds, rel=1e-7)

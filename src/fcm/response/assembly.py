@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.contact.limits import FloatArray
-from fcm.contact.loop import sequences
 from fcm.response import drift
 from fcm.response.balance import Balance
 from fcm.response.branches import Branches, hang_together, outcome
@@ -16,9 +15,10 @@ from fcm.response.extrema import locate, peak_rate
 from fcm.response.law import UNKNOWNS
 from fcm.response.path import REASONS, STALLED
 from fcm.response.points import NEARLY_HIGHEST, Points
+from fcm.response.regimes import regimes
 from fcm.response.result import UNIT, Curve
 from fcm.response.stability import stable_points
-from fcm.response.structure import AnyArray, IntArray
+from fcm.response.structure import AnyArray, IntArray, unknown_contacts
 from fcm.response.truncation import truncation_error
 from fcm.scene.model import Scene
 
@@ -31,8 +31,8 @@ class Assembly:
         self.z = z = points.z
         at_points = exact.take(points.curve)
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
-        self.loop = at_points.law.loops(z[:, :-1].reshape(z.shape[0], exact.group.contacts, UNKNOWNS))
-        self.regime = sequences(*np.moveaxis(self.loop[..., :3], -1, 0))
+        x = z[:, :-1].reshape(z.shape[0], exact.group.contacts, UNKNOWNS)
+        self.loop, self.regime = at_points.law.loops(x), regimes(at_points.law, x)
         self.truncation_error = truncation_error(at_points, z)
         linear = np.logical_and.reduce(np.isin(self.regime, ("E", "S")), axis=1)
         self.stable = stable_points(at_points, z, linear)
@@ -56,8 +56,8 @@ class Assembly:
                     amplitude=_pick(np.abs(self.X), part),
                     phase=_pick(np.angle(self.X), part),
                     mean=_pick(self.mean, part),
-                    regime=_pick(self.regime[:, : len(scene.contacts)], part),
-                    loop=_pick(self.loop[:, : len(scene.contacts)], part),
+                    regime=_pick(self.regime[:, : unknown_contacts(scene)], part),
+                    loop=_pick(self.loop[:, : unknown_contacts(scene)], part),
                     stable=_pick(self.stable, part),
                     table_error=_pick(self.points.shift, part),
                     truncation_error=_pick(self.truncation_error, part),

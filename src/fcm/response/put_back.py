@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.contact.limits import FloatArray
-from fcm.contact.loop import sequences
 from fcm.response.balance import Balance
 from fcm.response.displacement import displacements
 from fcm.response.law import UNKNOWNS, ClosedForm, Law
 from fcm.response.leave_out import Lighter
 from fcm.response.newton import amplitudes, correct, scales
 from fcm.response.points import extent
+from fcm.response.regimes import regimes
 from fcm.response.result import Curve, Response
 from fcm.response.segment import correct_exactly
 from fcm.response.structure import IntArray, group_of
@@ -50,8 +50,8 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     law = Law(group.mu, group.k_u, group.k_v, group.n_0, ClosedForm())
     loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
     regime = np.full(loop.shape[:2], "", dtype=curve.regime.dtype)
-    loop[at] = law.loops(_unknowns(curve, scene, at))
-    regime[at] = sequences(*np.moveaxis(loop[at, :, :3], -1, 0))
+    x = _unknowns(curve, scene, at)
+    loop[at], regime[at] = law.loops(x), regimes(law, x)
     loop[:, traced], regime[:, traced] = curve.loop, curve.regime
     curve.loop, curve.regime = loop, regime
 
