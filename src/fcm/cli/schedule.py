@@ -75,7 +75,7 @@ def as_table(histories: Sequence[Summary], unit: str) -> str:
 
     first = next((one["phases"][0] for one in histories if one["phases"]), None)
     if first is None:
-        return "no cycle of the schedule"
+        return "\n".join(dict.fromkeys(f"no cycle of the schedule: {one['reason']}" for one in histories))
     dofs, contacts = list(first["amplitude"])[:_MOST_DOFS], list(first["regime"])[:_MOST_CONTACTS]
     names = list(short_names(histories[0]["parameters"]).values())
     amplitudes = [f"amplitude {dof}" for dof in dofs]

@@ -23,7 +23,7 @@ _HEIGHT, _PANEL = 2.5, 1.5  # [inch] of a single panel; of each further one
 _MOST_PANELS = 6
 _MOST_CYCLES = 60  # drawn as a line; more would be a solid area
 _BAND, _EDGE, _MEAN = "#a6c8e0", "#1f4e79", "#b34700"
-_LETTER = 0.021  # width of a letter of a label, relative to the axes
+_LETTER = 0.026  # width of a letter of a label and of some space, relative to the axes
 _ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
 
 
@@ -103,7 +103,7 @@ def _name_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
     room, taken = shown[1] - shown[0], -np.inf
     ticks: list[tuple[float, str]] = []
     for low, high, name in zip(bounds[:-1], bounds[1:], names, strict=True):
-        centre, half = 0.5 * (low + high), 0.5 * _LETTER * room * len(name.splitlines()[-1])
+        centre, half = 0.5 * (low + high), 0.5 * _LETTER * room * max(map(len, name.splitlines()))
         if high > low and centre - half > taken:
             ticks.append((centre, name))
             taken = centre + half

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import FloatArray, Phase, Scene
 from fcm.simulate.cycle import Cycle
 from fcm.simulate.energy import Energy, energy
 from fcm.simulate.errors import SimulationError
@@ -134,7 +134,7 @@ class _Tally:
     first: int  # its first cycle
     energies: list[Energy] = field(default_factory=list)
     transitions: int = 0
-    whole: Cycle | None = None  # the last whole cycle
+    states: tuple[str, ...] | None = None  # of each contact in the last whole cycle
 
 
 class _Recorder:
@@ -150,16 +150,16 @@ class _Recorder:
 
     def add(self, phase: int, cycle: Cycle, end: State) -> None:
         """Keep what is reported of the next cycle; nothing of it if that is interrupted."""
-        if phase == len(self.tallies):
-            self.tallies.append(_Tally(self.done))
         found = measure(cycle, dof_rows(cycle.system))
         balance = energy(Motion(self.scene, (cycle,), end))
         self._sample(cycle)
+        if phase == len(self.tallies):
+            self.tallies.append(_Tally(self.done))
         tally = self.tallies[phase]
         tally.transitions += self._count(cycle)
         tally.energies.append(balance)
-        if self.plan.part[self.done] == 1.0 or tally.whole is None:
-            tally.whole = cycle
+        if self.plan.part[self.done] == 1.0 or tally.states is None:
+            tally.states = cycle.states
         self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
         self.end, self.done = end, self.done + 1
 
@@ -194,19 +194,24 @@ class _Recorder:
         return Record(
             self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
             columns[0], columns[1].astype(np.int8), columns[2].astype(np.int8),
-            [self._phase(i) for i in range(len(self.tallies))], self.end, reason, 0.0,
+            self._phases(), self.end, reason, 0.0,
         )  # fmt: skip
 
-    def _phase(self, number: int) -> PhaseResult:
-        tally = self.tallies[number]
-        last = self.tallies[number + 1].first if number + 1 < len(self.tallies) else self.done
-        parts = self.plan.part[tally.first : last]
-        whole = slice(tally.first, tally.first + max(int((parts == 1.0).sum()), 1))
-        amplitude, mean = self.measures[:2, whole]
-        assert tally.whole is not None
+    def _phases(self) -> list[PhaseResult]:
+        bounds = [*(tally.first for tally in self.tallies), self.done]
+        return [
+            self._phase(phase, tally, slice(tally.first, bounds[number + 1]))
+            for number, (phase, tally) in enumerate(zip(self.scene.schedule, self.tallies, strict=False))
+            if tally.states is not None  # else it is interrupted in its first cycle
+        ]
+
+    def _phase(self, phase: Phase, tally: _Tally, cycles: slice) -> PhaseResult:
+        part = self.plan.part[cycles]
+        whole = max(int((part == 1.0).sum()), 1)
+        amplitude, mean = (values[cycles][:whole] for values in self.measures[:2])
         return PhaseResult(
-            self.scene.schedule[number].frequency, float(parts.sum()), amplitude[-1], mean[-1],
-            tally.whole.states, tally.transitions, unsettled(amplitude), total(tally.energies),
+            phase.frequency, float(part.sum()), amplitude[-1], mean[-1], tally.states or (),
+            tally.transitions, unsettled(amplitude), total(tally.energies),
         )  # fmt: skip
 
 
