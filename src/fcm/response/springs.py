@@ -7,7 +7,6 @@ meets the reactions R = (1/k + M)^-1 M_p, and the receptance between the ports i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -32,25 +31,6 @@ class Seen(NamedTuple):
     dG: ComplexArray
     external: ComplexArray  # (curve, port) displacements by the external forces
     d_external: ComplexArray
-
-
-def held(group: Group, contacts: Sequence[int]) -> Group:
-    """The group with some of its contacts as springs."""
-    if not contacts:
-        return group
-    others = [i for i in range(group.contacts) if i not in contacts]
-    pairs = group.ports.reshape(*group.ports.shape[:2], group.contacts, 2)
-    k_u = np.where(group.mu > 0.0, group.k_u, 0.0)
-    k_u, k_v = np.broadcast_arrays(k_u, group.k_v)
-    k = np.stack((k_u, k_v), axis=-1)[:, contacts]
-    names = ("mu", "k_u", "k_v", "n_0")
-    return replace(
-        group,
-        ports=pairs[:, :, others].reshape(*pairs.shape[:2], -1),
-        springs=pairs[:, :, contacts].reshape(*pairs.shape[:2], -1),
-        k_springs=k.reshape(k.shape[0], -1),
-        **{name: getattr(group, name)[:, others] for name in names},
-    )
 
 
 def seen(group: Group, omega: FloatArray) -> Seen:

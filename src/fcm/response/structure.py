@@ -53,12 +53,19 @@ class Group:
         return int(self.mu.shape[1])
 
 
+@dataclass(frozen=True)
+class Spring(Contact):
+    """A contact that acts as a spring along its tangent and one along its normal, and needs no unknowns."""
+
+    held: bool = True
+
+
 def group_of(scenes: Sequence[Scene]) -> Group:
     """Stack scenes that have the same modes, degrees of freedom and contacts by name."""
     modals, adrift = zip(*(settled(s) for s in scenes), strict=True)
     scenes = [s if s.modal is m else replace(s, modal=m) for s, m in zip(scenes, modals, strict=True)]
     modes = modals[0].frequency.size
-    return Group(
+    group = Group(
         mass=_stack([m.mass for m in modals]),
         frequency=_stack([m.frequency for m in modals]),
         damping=_stack([m.damping for m in modals]),
@@ -75,6 +82,24 @@ def group_of(scenes: Sequence[Scene]) -> Group:
         low=_stack([np.array(s.frequency_range[0]) for s in scenes]),
         high=_stack([np.array(s.frequency_range[1]) for s in scenes]),
     )
+    return _with_springs(group, [i for i, c in enumerate(scenes[0].contacts) if isinstance(c, Spring)])
+
+
+def _with_springs(group: Group, held: list[int]) -> Group:
+    """The group with some of its contacts as springs."""
+    if not held:
+        return group
+    others = [i for i in range(group.contacts) if i not in held]
+    pairs = group.ports.reshape(*group.ports.shape[:2], group.contacts, 2)
+    k_u, k_v = np.broadcast_arrays(np.where(group.mu > 0.0, group.k_u, 0.0), group.k_v)
+    k = np.stack((k_u, k_v), axis=-1)[:, held]
+    return replace(
+        group,
+        ports=pairs[:, :, others].reshape(*pairs.shape[:2], -1),
+        springs=pairs[:, :, held].reshape(*pairs.shape[:2], -1),
+        k_springs=k.reshape(k.shape[0], -1),
+        **{name: getattr(group, name)[:, others] for name in ("mu", "k_u", "k_v", "n_0")},
+    )
 
 
 def _stack(parts: list[AnyArray]) -> AnyArray:
@@ -87,10 +112,16 @@ def _stack(parts: list[AnyArray]) -> AnyArray:
 
 def with_contact(scene: Scene) -> Scene:
     """The scene; one without contacts gets one that carries nothing, for the path to follow."""
-    if scene.contacts:
+    if unknown_contacts(scene):
         return scene
     along = np.sum([np.abs(force.direction) for force in scene.forces], axis=0)
-    return replace(scene, contacts=(Contact("", along, along, mu=0.0, k_u=0.0, k_v=0.0, n_0=0.0),))
+    nothing = Contact("", along, along, mu=0.0, k_u=0.0, k_v=0.0, n_0=0.0)
+    return replace(scene, contacts=(*scene.contacts, nothing))
+
+
+def unknown_contacts(scene: Scene) -> int:
+    """Number of contacts that are no springs."""
+    return sum(not isinstance(contact, Spring) for contact in scene.contacts)
 
 
 def _ports(scene: Scene) -> FloatArray:

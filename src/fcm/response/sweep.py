@@ -10,9 +10,11 @@ from fcm.response.groups import Finished, Group, Work, lost_curve, one_by_one
 from fcm.response.kept import Kept, fingerprint
 from fcm.response.law import UNKNOWNS, ClosedForm, Coefficients
 from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out, sentence_on_modes
+from fcm.response.newton import CLOSE
 from fcm.response.path import Progress
 from fcm.response.put_back import checked, restored
 from fcm.response.result import Curve, Response
+from fcm.response.structure import unknown_contacts
 from fcm.response.trace import METHODS, ResponseError
 from fcm.scene.model import Scene
 
@@ -83,7 +85,7 @@ def trace(
     response = restored(response, lighter)
     if uncorrected := sum(curve.uncorrected for curve in response.curves):
         points = f"{uncorrected} point{'s' if uncorrected > 1 else ''}"
-        sentences.append(f"{points} that could not be corrected with the closed form")
+        sentences.append(f"the last correction of {points}, which stay as they were traced, to {CLOSE:g}")
     if stiff := sum(curve.without_table for curve in response.curves):
         which = f"{stiff} curve{'s' if stiff > 1 else ''}"
         sentences.append(f"the table, for {which} whose stiff contacts multiply its error: closed form")
@@ -154,6 +156,6 @@ def interrupted(response: Response) -> bool:
 
 def in_groups(curves: tuple[Scene, ...]) -> dict[int, Group]:
     """The curves in groups that advance together; how many there are does not depend on the cores."""
-    unknowns = UNKNOWNS * max(len(curves[0].contacts), 1)
+    unknowns = UNKNOWNS * max(unknown_contacts(curves[0]), 1)
     size = max(min(LARGEST_GROUP, LARGEST_MATRICES // unknowns**2), 1)
     return {i: curves[first : first + size] for i, first in enumerate(range(0, len(curves), size))}
