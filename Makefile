@@ -111,6 +111,8 @@ $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.
 	$(BIN)/python -m fcm.report accuracy $(REPORT) $(COMPARED:%=--scene %) \
 		--extremes build/extremes/table.txt --others $(OTHERS)/table.txt
 
+.SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
+
 $(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
 	$(BIN)/fcm plot accuracy $< -o $@
 
