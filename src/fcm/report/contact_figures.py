@@ -82,7 +82,7 @@ def figure_6(folder: Path) -> list[Row]:
     others = [slip_ends(loop)[0] - 90.0 for loop in loops if loop["phi"] != 0.0]
     return [
         Row("preload between the limits of (26)", "yes", "at every phase" if inside else "no", inside),
-        Row("states in order", "E N E P", ", ".join(sorted(states)), states == {"EPEN"}),
+        Row("states in order", "stick, slip, stick, slip", ", ".join(sorted(states)), states == {"EPEN"}),
         near("in phase, end of positive slip: at the reversal", 90.0, ends[0], 1e-9, ".1f", "°"),
         near("in phase, end of negative slip: at the reversal", 270.0, ends[1], 1e-9, ".1f", "°"),
         Row(

@@ -18,11 +18,12 @@ a { color: #0b5394; }
 figure { margin: 1rem 0; }
 figure img { max-width: 100%; height: auto; display: block; margin: 0 auto; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; }
-pre { background: #f5f5f2; padding: .6rem .8rem; overflow-x: auto; font-size: .8rem; line-height: 1.45; }
+pre { background: #f5f5f2; padding: .6rem .8rem; font-size: .8rem; line-height: 1.45; white-space: pre-wrap; }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .3rem .8rem .3rem 0;
   border-bottom: 1px solid var(--line); }
 th { font-weight: normal; color: var(--soft); border-bottom-color: #999; }
+td:nth-child(2) { min-width: 6.5rem; }
 td.yes { color: var(--good); } td.no { color: var(--bad); font-weight: bold; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: .1rem 1rem; font-size: .85rem;
   color: var(--soft); }

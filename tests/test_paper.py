@@ -1,0 +1,155 @@
+"""The page of the paper's figures: the numbers on it, from the commands that the Makefile runs."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from html import escape
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.report import contact_figures, response_figures
+from fcm.report.page import Page, Section, Table, render
+from fcm.report.paper import FIGURES, commands, paper
+from fcm.report.rows import near
+from fcm.simulate import periodic
+
+ROOT = Path(__file__).parents[1]
+# what every run of the program imports, or has no part in a result
+FRAME = re.compile(r"src/fcm/(files|cli/(?!loop|coefficients|drawing|history)\w+)\.py")
+PLOT = {
+    f"src/fcm/plot/{name}.py" for name in ("errors", "response", "place", "error_panel")
+}  # by its __init__
+
+
+def planned(*args):
+    """The lines that make would run, all of them."""
+    make = [shutil.which("make"), "--no-print-directory", "-nB", "VENV=none", *args]
+    return subprocess.run(make, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """What ``make figures`` makes, by the commands of the Makefile run here."""
+    folder = tmp_path_factory.mktemp("paper")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for line in planned("figures"):
+            if line.startswith("none/bin/fcm "):
+                _run(line.removeprefix("none/bin/fcm ").replace("build/paper/", ""))
+            elif line.startswith("echo "):
+                _, text, _, name = shlex.split(line)
+                Path(name.replace("build/paper/", "")).write_text(text)
+    return folder
+
+
+def _run(line):
+    """Run a command of fcm; the modules that it imports are kept beside what it makes."""
+    command, _, output = line.partition(" > ")
+    arguments = shlex.split(command)
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "fcm.cli", *arguments],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    if output:
+        Path(output).write_text(done.stdout)
+    imported = re.findall(r"^import time:.*\| +(fcm[\w.]*)$", done.stderr, re.M)
+    Path(arguments[arguments.index("-o") + 1] + ".imports").write_text("\n".join(imported))
+
+
+@pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: str(figure.number))
+def test_every_number_agrees_with_the_paper(folder, figure):
+    rows = figure.rows(folder)
+    assert rows and [row for row in rows if not row.agrees] == []
+
+
+def test_figure_5_has_the_printed_angles(folder):
+    (loop,) = contact_figures.read_loops(folder / "figure5.json")
+    assert contact_figures.slip_ends(loop) == pytest.approx((22.9, 159.7), abs=0.05)
+
+
+def test_the_motion_of_two_angles_gives_these_angles():
+    """The other way round by the loop itself."""
+    b_bar, phi = contact_figures.motion_of_ends(30.0, 140.0)
+    loop = fcm.hysteresis_loop(0.5 * (1.0 + b_bar), b_bar, np.radians(phi))
+    assert loop.sequence == "EPEN"
+    assert np.degrees(loop.angles[[2, 0]]) - 90.0 == pytest.approx([30.0, 140.0], abs=1e-9)
+
+
+def test_constant_load_is_the_work_of_a_parallelogram():
+    """F_c from the area of the loop, 4 n (1 - n); F_s from its own points."""
+    n0_bar = np.linspace(0.05, 0.95, 10)
+    F_s, F_c = contact_figures.constant_load(n0_bar)
+    np.testing.assert_allclose(F_c, 4.0 * n0_bar * (1.0 - n0_bar) / np.pi, rtol=1e-12)
+    theta = np.linspace(0.0, 2.0 * np.pi, 20_000, endpoint=False)
+    for n, F in zip(n0_bar, F_s, strict=True):
+        force = fcm.hysteresis_loop(n, 0.0, 0.0).force(theta)
+        assert 2.0 * np.mean(force * np.sin(theta)) == pytest.approx(F, abs=1e-6)
+
+
+def exact_amplitude(n_0, omega):
+    scene = fcm.load_scene("yang1998-n5")
+    contact = replace(scene.contacts[0], n_0=n_0)
+    return periodic(replace(scene, contacts=(contact,)), omega).measure.amplitude[0]
+
+
+def test_beyond_the_limits_of_figure_13_the_exact_motion_does_not_depend_on_the_preload():
+    above, below = response_figures.stuck_above(), response_figures.open_below()
+    for beyond, within, far, omega in (
+        (above + 0.1, above - 2.0, 120.0, 1.4134),
+        (below - 0.1, below + 1.0, -120.0, 0.9999),
+    ):
+        linear = exact_amplitude(far, omega)
+        assert exact_amplitude(beyond, omega) == pytest.approx(linear, rel=1e-9)
+        assert exact_amplitude(within, omega) < (1.0 - 1e-4) * linear
+
+
+def test_the_page_shows_each_figure_with_its_commands_and_numbers(folder, capsys):
+    paper.main([str(folder)], standalone_mode=False)
+    said = capsys.readouterr().err
+    text = (folder / "index.html").read_text(encoding="utf-8")
+    count = text.count('class="yes"')
+    assert f"{count} of {count} numbers agree" in said and count > 25
+    for figure in FIGURES:
+        assert f'<img src="figure{figure.number}.png"' in text and escape(figure.caption) in text
+        shown = commands(folder, figure.number)
+        assert shown and shown[-1].startswith("fcm plot ") and str(folder) not in "".join(shown)
+        assert all(escape(command) in text for command in shown)
+    assert not re.search(r'(?:src|href)="(?!figure|#)', text)  # nothing from elsewhere
+
+
+def test_a_number_that_differs_is_shown_and_said(folder, capsys, monkeypatch):
+    row = near("angle", 22.9, 23.1, within=0.05, form=".1f", unit="°")
+    monkeypatch.setattr("fcm.report.paper.FIGURES", (replace(FIGURES[0], rows=lambda _folder: [row]),))
+    paper.main([str(folder)], standalone_mode=False)
+    said = capsys.readouterr().err
+    assert "fcm: warning: angle: 23.1°, in the paper 22.9°" in said and "0 of 1 numbers agree" in said
+    assert '<td class="no">differs</td>' in (folder / "index.html").read_text(encoding="utf-8")
+
+
+def test_names_are_not_read_as_html():
+    table = Table(("a < b",), [("<i>",)], [False])
+    text = render(Page("<x>", (), [Section("<s>", caption="&", picture='".png', tables=(table,))]))
+    assert "<x>" not in text and "<s>" not in text and "<i>" not in text and '""' not in text
+
+
+def test_every_figure_is_made_again_when_what_it_uses_changes(folder):
+    """What a command imports is among the prerequisites of its target, but for the frame of the program."""
+    make = [shutil.which("make"), "-npq", "VENV=none", "figures"]
+    database = subprocess.run(make, cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    found = dict(re.findall(r"^build/paper/(\S+): (.*)$", database, re.M))
+    for record in folder.glob("*.imports"):
+        name = record.stem
+        needed = {f"src/{module.replace('.', '/')}.py" for module in record.read_text().split()}
+        needed -= {
+            path for path in needed if path.startswith("src/fcm/plot/") and name.endswith(".nc")
+        } | PLOT
+        modules = {path for path in needed if (ROOT / path).is_file() and not FRAME.match(path)}
+        assert modules and modules - set(found[name].split()) == set(), name
