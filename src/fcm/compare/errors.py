@@ -56,12 +56,15 @@ def reference(
 ) -> Reference:
     """A reference whose own error is how much it differs from a run with longer steps.
 
+    Between its points that is the greatest distance from it of the points of that run, which lie on the same
+    curve elsewhere, or its `resolution`, if that is more.
+
     closure : relative error of each of its points.
     """
     bare = Reference(name, max_step, lines)
     own = bare.errors(coarser)
     resolved = np.array([resolution(line, size) for line, size in zip(lines, bare.sizes, strict=True)])
-    own["points"] = own["curve"] = np.where(np.isnan(own["peak"]), np.nan, resolved)
+    own["points"] = own["curve"] = np.maximum(own["points"], resolved)
     return Reference(name, max_step, lines, {key: np.maximum(e, closure) for key, e in own.items()})
 
 
