@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -35,20 +35,16 @@ class Points:
     shift: FloatArray  # (point,) relative, by the correction
     fold: BoolArray  # (point,) where the frequency turns
 
-    def take(self, which: BoolArray) -> Points:
-        """Some of the points."""
-        return Points(*(getattr(self, f.name)[which] for f in fields(self)))
-
     def segments(self, at: IntArray, exact: Balance) -> Segments:
         """The segments from points at (segment,) to the points that follow them."""
         curve, z, d = self.curve[at], self.z, self.direction
         return Segments(curve, z[at], z[at + 1], d[at], d[at + 1], extent(exact, curve))
 
 
-def corrected(exact: Balance, branches: Branches) -> Points:
+def corrected(exact: Balance, branches: Branches, curves: int) -> tuple[Points, IntArray]:
     """Every point corrected with the closed form along the normal of its curve.
 
-    A point for which that fails is none: the neighbours stand for the curve there.
+    A point for which that fails stays as it was traced, and is counted, (curve,).
     """
     path = branches.trace
     curve = branches.curve[path.curve]
@@ -68,10 +64,9 @@ def corrected(exact: Balance, branches: Branches) -> Points:
     size = np.abs(after).max(axis=1, initial=0.0)
     shift = np.abs(after - before).max(axis=1, initial=0.0) / np.where(size > 0.0, size, 1.0)
     along = np.sign((new.tangent * path.direction / scale).sum(axis=1, keepdims=True))
-    points = Points(
-        curve, path.curve, z, along * scale * new.tangent, shift, np.zeros(shift.size, dtype=bool)
-    )
-    return points.take(new.converged)
+    direction = np.where(new.converged[:, None], along * scale * new.tangent, path.direction)
+    points = Points(curve, path.curve, z, direction, shift, np.zeros(shift.size, dtype=bool))
+    return points, np.bincount(curve[~new.converged], minlength=curves)
 
 
 def refined(exact: Balance, points: Points) -> Points:

@@ -51,7 +51,7 @@ class Curve:
     peaks: dict[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
-    uncorrected: int = 0  # points left out because the closed form gave none there
+    uncorrected: int = 0  # points that stay as they were traced, because their last correction failed
     without_table: bool = False  # traced again with the closed form, because the table led away from it
     orbits: Orbits | None = None  # of the exact motion; amplitude is then half the peak-to-peak
 

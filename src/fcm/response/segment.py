@@ -63,5 +63,6 @@ class Segments:
         new = correct_exactly(exact.take(self.curve), guess, self.scale, self.row)
         away = np.sqrt((((new.z - guess) / self.scale) ** 2).sum(axis=1))
         new.converged &= away < self.length  # a solution further off is of another part of the curve
+        new.converged &= new.z[:, -1] > 0.0
         new.tangent = self.scale * new.tangent
         return new

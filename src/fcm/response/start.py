@@ -71,9 +71,12 @@ def _at_level(
     z = np.column_stack((x, level))
     row = np.zeros_like(z)
     row[:, -1] = 1.0
-    scale = scales(x, amplitudes(x), np.ones(level.size))
-    end = correct(equations, z, scale, row, iterations=TRIES)
-    return end.z[:, :-1], end.converged
+    found = np.ones(level.size, dtype=bool)
+    for _ in range(2):  # once more in the solution's own scale: the first guess may be far larger
+        scale = scales(z[:, :-1], amplitudes(z[:, :-1]), np.ones(level.size))
+        end = correct(equations, z, scale, row, iterations=TRIES)
+        z, found = end.z, found & end.converged
+    return z[:, :-1], found
 
 
 def _raise_load(

@@ -11,6 +11,7 @@ from fcm.response.kept import Kept, fingerprint
 from fcm.response.law import UNKNOWNS, ClosedForm, Coefficients
 from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out, sentence_on_modes
 from fcm.response.newton import CLOSE
+from fcm.response.newton import CLOSE
 from fcm.response.path import Progress
 from fcm.response.put_back import checked, restored
 from fcm.response.result import Curve, Response

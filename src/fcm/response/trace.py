@@ -46,9 +46,7 @@ def trace_group(
     used = Balance(group, table or _default_table()) if by_table else exact_balance
     steps = np.array([c.max_step for c in curves])
     branches = all_branches(used, steps, progress, TO_BE_CORRECTED if by_table else CLOSE)
-    points = corrected(exact_balance, branches)
-    found = np.bincount(branches.curve[branches.trace.curve], minlength=len(curves))
-    uncorrected = found - np.bincount(points.curve, minlength=len(curves))
+    points, uncorrected = corrected(exact_balance, branches, len(curves))
     if not by_table:
         points.shift[:] = 0.0
     points = with_folds(exact_balance, refined(exact_balance, with_changes(exact_balance, points)))
