@@ -136,5 +136,13 @@ def test_a_file_without_loops(fcm, folded, tmp_path):
     assert (done.code, done.err) == (2, "fcm: error: b.nc: holds no loops: it has no variable phi\n")
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         data.renameVariable("psi", "phi")
+        loops = {name: data[name][:] for name in ("n0_bar", "b_bar", "tangential_amplitude")}
+        data["n0_bar"][:] = data["b_bar"][:] = 0.0
+    assert "has no friction, and so no loop" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+    with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
+        for name, values in loops.items():
+            data[name][:] = 0.0 if name == "tangential_amplitude" else values
+    assert "no tangential motion at 0.7 rad/s" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+    with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         data["tangential_amplitude"][:] = np.nan
     assert "exact motions" in fcm("plot", "loop", "b.nc", "--curve", 0).err

@@ -175,7 +175,7 @@ def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool)
     for axes, force in ((above, names.force), (below, "Force")):
         axes.tick_params(labelsize=_SMALL, labelleft=numbers)
         axes.xaxis.get_offset_text().set_fontsize(_SMALL)
-        axes.yaxis.get_offset_text().set_fontsize(_SMALL)
+        axes.yaxis.get_offset_text().set(fontsize=_SMALL, ha="right")  # not among the letters of the states
         if left:
             axes.set_ylabel(force, fontsize=8)
 

@@ -111,6 +111,8 @@ def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutio
         raise PlotError(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
         )
+    if n0_bar == b_bar == 0.0:
+        raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
