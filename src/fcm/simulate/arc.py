@@ -92,14 +92,16 @@ class Equations:
         None if Newton's method does not find it, or finds none within that distance of the guess.
         """
         z, before = guess, np.inf
-        known, regimes = guess, [""]  # where the rate by frequency is from
+        rate = np.zeros(guess.size - 1)  # by frequency; not needed while that is held
+        known, regimes = guess, [""]  # where the rate is from
         for _ in range(MOST_CORRECTIONS):
             shot = self.shot(z)
             if shot is None:
                 return None
             z = self.unknowns(shot)
             closed = shot.residual <= TOLERANCE or 0.5 * before < shot.residual <= ROUGH * TOLERANCE
-            if regimes != _sequence(shot) or _distance(z, known, scale) > (0.0 if closed else MOVED):
+            old = regimes != _sequence(shot) or _distance(z, known, scale) > (0.0 if closed else MOVED)
+            if old and (closed or row[:-1].any()):
                 rate, known, regimes = self.by_frequency(shot), z, _sequence(shot)
             right = np.zeros((z.size, 2))
             right[:-1, 0] = -shot.gap[self.free] / scale[:-1]

@@ -18,8 +18,10 @@ from fcm.response.sweep import INTERRUPTED
 from fcm.response.trace import ResponseError
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
+from fcm.simulate.errors import SimulationError
 from fcm.simulate.explore import Explorer
-from fcm.simulate.orbit_curve import traced_curve
+from fcm.simulate.orbit_curve import traced_curve, visited_curve
+from fcm.simulate.visit import Visitor
 
 METHOD = "exact"
 STOPPED = "interrupted at "  # how the reason of a curve begins that an interruption has cut off
@@ -96,13 +98,28 @@ class ExactWork(Work):
 
     def _curve(self, scene: Scene, progress: Progress | None) -> Curve:
         begin = time.perf_counter()
-        explorer, stopped = Explorer(scene, progress), ""
-        try:
-            explorer.run()
-        except KeyboardInterrupt:
-            stopped = STOPPED + (shown(scene, explorer.at) if explorer.branches else "the start")
-        curve = traced_curve(scene, explorer.branches, stopped or explorer.reason)
+        curve = _traced(scene, progress) if self.at is None else _visited(scene, self.at, progress)
         return replace(curve, seconds=time.perf_counter() - begin)
+
+
+def _traced(scene: Scene, progress: Progress | None) -> Curve:
+    explorer, stopped = Explorer(scene, progress), ""
+    try:
+        explorer.run()
+    except KeyboardInterrupt:
+        stopped = STOPPED + (shown(scene, explorer.at) if explorer.branches else "the start")
+    return traced_curve(scene, explorer.branches, stopped or explorer.reason)
+
+
+def _visited(scene: Scene, at: tuple[float, ...], progress: Progress | None) -> Curve:
+    visitor, reason = Visitor(replace(scene, frequency_range=(0.0, at[-1]))), ""
+    try:
+        visitor.run(at, progress)
+    except KeyboardInterrupt:
+        reason = STOPPED + (shown(scene, visitor.points[-1].frequency) if visitor.points else "the start")
+    except SimulationError as error:
+        reason = str(error)
+    return visited_curve(scene, visitor, reason)
 
 
 @dataclass

@@ -9,8 +9,9 @@ from fcm.simulate.arc import Equations, Point
 from fcm.simulate.branch import Branch, Progress, finish, first_point, follow
 from fcm.simulate.errors import SimulationError
 from fcm.simulate.harmonic import balanced_state
-from fcm.simulate.periodic import Orbit, periodic
+from fcm.simulate.periodic import Orbit, periodic, shoot
 from fcm.simulate.sample import Sample, distance, sampled
+from fcm.simulate.system import System
 
 DISTINCT = 1e-5  # solutions further apart than this, relative to their size, are different
 
@@ -74,11 +75,21 @@ class Explorer:
 
 
 def _solution(scene: Scene, omega: float) -> Orbit:
-    """The solution that a motion from rest approaches, or else one near harmonic balance."""
+    """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any."""
+    near = _balanced(scene, omega)
+    if near is not None and near.stable:
+        return near
     try:
         return periodic(scene, omega)
     except SimulationError:
-        guess = balanced_state(scene, omega)
-        if guess is None:
+        if near is None:
             raise
-        return periodic(scene, omega, guess)
+        return near
+
+
+def _balanced(scene: Scene, omega: float) -> Orbit | None:
+    try:
+        guess = balanced_state(scene, omega)
+        return None if guess is None else shoot(System(scene, omega), guess)
+    except SimulationError:
+        return None

@@ -25,9 +25,15 @@ CORNER_TRIES = 16  # directions around a corner in which its regimes are looked 
 REACHES = POINT * np.array([1e1, 1e2, 1e3, 1e4])  # distances at which they are
 BOUNDLESS = 1e9  # size of the motion, in units of that at the start, that only an undamped resonance reaches
 MOST_STEPS = 20_000
+CROWD, CROWDED = 100, 1e-3  # so many successive attempts that cover less arc than that
+
 
 STALLED = "no further solution could be found; try a smaller max_step or another range"
 UNBOUNDED = "the motion grows without limit, at a resonance that nothing damps; add damping"
+CHATTER = (
+    "the contacts chatter, and the states over the cycle change at almost every step; give the modes more "
+    "damping, or the contacts less stiffness"
+)
 TOO_LONG = f"the curve did not leave the range within {MOST_STEPS} steps; try a larger max_step"
 
 
@@ -44,7 +50,12 @@ class Follower:
     def points(self) -> Iterator[Point]:
         """The points after the first, as they are found; the last one is at an end of the range."""
         limit = BOUNDLESS * _size(self.point)
-        for _ in range(MOST_STEPS):
+        covered = np.ones(CROWD)  # arc covered by the last attempts
+        for count in range(MOST_STEPS):
+            if covered.sum() < CROWDED:
+                self.reason = CHATTER
+                return
+            covered[count % CROWD] = 0.0
             new = self._attempt()
             if new is None and self.step > POINT:
                 self._shorten()
@@ -61,6 +72,7 @@ class Follower:
                     continue
                 yield new
                 return
+            covered[count % CROWD] = self.step
             self._move(new)
             yield self.point
             if _size(self.point) > limit:

@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.response.groups import lost_curve
-from fcm.response.jumps import Jump
 from fcm.response.result import Curve, Orbits
 from fcm.scene.model import Scene
 from fcm.simulate.branch import Branch
 from fcm.simulate.sample import Sample
+from fcm.simulate.visit import Visitor
 
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
@@ -28,13 +28,11 @@ def traced_curve(scene: Scene, branches: Sequence[Branch], reason: str) -> Curve
     return replace(_curve(scene, points, reason), folds=folds)
 
 
-def visited_curve(
-    scene: Scene, points: Sequence[Sample], sweep: Sequence[str], jumps: list[Jump], reason: str
-) -> Curve:
-    """The points at which sweeps were steady, in order; complete without a reason."""
-    curve = _curve(scene, points, reason)
+def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
+    """The points at which sweeps were steady, in order; complete without a reason, its own or that one."""
+    curve = _curve(scene, visitor.points, reason or visitor.reason)
     if curve.orbits is not None:
-        curve.orbits.sweep, curve.orbits.jumps = np.array(sweep, dtype="<U4"), jumps
+        curve.orbits.sweep, curve.orbits.jumps = np.array(visitor.sweep, dtype="<U4"), visitor.jumps
     return curve
 
 

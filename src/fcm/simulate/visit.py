@@ -1,0 +1,145 @@
+"""The steady motion at given frequencies, visited by a slow upward and then a slow downward sweep.
+
+Between two frequencies the periodic solution is continued in steps as short as it takes to stay on its
+branch, while it is stable. Where it is lost the motion is simulated from there, just beyond, until it is
+steady again: so it jumps where a slow sweep of the structure itself does, and to where that does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.response.jumps import Jump
+from fcm.scene.model import FloatArray, Scene
+from fcm.simulate.arc import Equations, Point, level, rescaled
+from fcm.simulate.branch import Progress, first_point, shown
+from fcm.simulate.periodic import Orbit, shoot
+from fcm.simulate.run import cycles_from
+from fcm.simulate.sample import Sample, sampled
+from fcm.simulate.state import State
+from fcm.simulate.subharmonic import repeating
+from fcm.simulate.system import System
+
+FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
+FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
+ASTRAY = 0.5  # distance from what the direction foretells, relative to the way, beyond which a solution
+CLOSE = 0.02  # is another branch; but never within this distance
+SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
+BEYOND = (
+    0.1  # part of it, past the end of a branch, at which the motion is simulated: it lingers near the end
+)
+SETTLED = 0.1  # distance of a simulated state from the periodic solution to which it belongs
+JUMP = 0.01  # relative change of an amplitude that is one
+
+
+class Visitor:
+    """Sweeps of one scene; what they have found is there whenever they are interrupted."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.equations = scene, Equations(scene)
+        self.points: list[Sample] = []
+        self.sweep: list[str] = []
+        self.jumps: list[Jump] = []
+        self.problems: list[str] = []
+        self._here: Point | None = None  # the periodic solution that is continued
+        self._state = State.rest(scene)  # the motion, where there is none
+        self._sample: Sample | None = None  # what is steady now
+
+    def run(self, frequencies: Sequence[float], progress: Progress | None = None) -> None:
+        """Visit increasing frequencies [rad/s] upwards, then downwards."""
+        ways = (("up", omega) for omega in frequencies), (("down", omega) for omega in reversed(frequencies))
+        for count, (sweep, omega) in enumerate(pair for way in ways for pair in way):
+            self._go(omega, sweep)
+            if self._sample is not None:
+                self.points.append(self._sample)
+                self.sweep.append(sweep)
+            if progress is not None:
+                progress((count + 1) / (2 * len(frequencies)), f"{sweep}, {shown(self.scene, omega)}")
+
+    @property
+    def reason(self) -> str:
+        """Which frequencies have no steady motion, else ''."""
+        more = f", and so at {len(self.problems) - 1} more" if len(self.problems) > 1 else ""
+        return self.problems[0] + more if self.problems else ""
+
+    def _go(self, omega: float, sweep: str) -> None:
+        """Bring the motion to a frequency."""
+        while self._here is not None and not self._continue(omega):
+            lost, before = float(self._here.z[-1]), self._sample
+            self._settle(self._here.shot.state, lost + BEYOND * (omega - lost))
+            after = self._sample
+            if self._here is None:
+                self._settle(self._state, omega)
+            self._note_jump(sweep, lost, before, after or self._sample)
+        if self._sample is None or self._sample.frequency != omega:
+            self._settle(self._state, omega)
+        if self._sample is None:
+            where, cycles = shown(self.scene, omega), sum(FREE_CYCLES)
+            self.problems.append(f"at {where} the motion has not become steady in {cycles} cycles")
+
+    def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
+        if before is not None and after is not None:
+            old, new = before.measure.amplitude, after.measure.amplitude
+            if (np.abs(new - old) > JUMP * np.maximum(new, old)).any():
+                self.jumps.append(Jump(sweep, at, old, new))
+
+    def _continue(self, omega: float) -> bool:
+        """Follow the periodic solution to a frequency, or as near as it is stable."""
+        assert self._here is not None
+        step = omega - float(self._here.z[-1])
+        smallest = SMALLEST * abs(step)
+        while (left := omega - float(self._here.z[-1])) != 0.0:
+            near = self._near(omega if abs(step) >= abs(left) else omega - left + step)
+            if near is not None:
+                step *= 2.0
+                continue
+            step *= 0.25
+            if abs(step) < smallest:
+                return False
+        return True
+
+    def _near(self, omega: float) -> Point | None:
+        """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
+        here = self._here
+        assert here is not None
+        rate = here.tangent[-1] * here.scale[-1]
+        way = here.tangent * here.scale * ((omega - here.z[-1]) / rate) if rate else here.scale
+        length = float(np.linalg.norm(way / here.scale))
+        if length > FAR:
+            return None
+        guess = here.z + way
+        guess[-1] = omega
+        row = level(guess.size)
+        found = self.equations.correct(guess, here.scale, row, max(ASTRAY * length, CLOSE))
+        if found is None:
+            return None
+        sample = sampled(found)
+        if not sample.stable:
+            return None
+        self._here, self._sample = rescaled(self.equations, found), sample
+        return found
+
+    def _settle(self, state: State, omega: float) -> None:
+        """Simulate from a state until the motion is steady."""
+        self._here, self._sample, system = None, None, System(self.scene, omega)
+        for cycles in FREE_CYCLES:
+            *_, (_, state) = cycles_from(system, cycles, state)
+            self._state = state
+            orbit = shoot(system, state)
+            if orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED:
+                self._here = first_point(self.equations, orbit)
+                self._sample = sampled(self._here)
+                return
+            self._sample = repeating(system, state)
+            if self._sample is not None:
+                return
+
+
+def _distance(state: State, orbit: Orbit) -> float:
+    """Of a state from a periodic solution, relative to the size of its motion."""
+    size: FloatArray = np.abs([segment.y for segment in orbit.cycle.segments]).max(axis=0)
+    system = orbit.cycle.system
+    parts = ((state.q, orbit.state.q, system.q), (state.velocity, orbit.state.velocity, system.p))
+    return max(float(np.abs(a - b).max()) / max(float(size[part].max()), 1e-300) for a, b, part in parts)
