@@ -1,0 +1,149 @@
+"""fcm respond --compare and fcm plot accuracy, on a curve that takes seconds."""
+
+import json
+from dataclasses import replace
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm.compare import MEASURES, comparison, methods
+from fcm.compare import startup as startups
+from fcm.scene import load_scene
+from fcm.simulate import periodic
+
+RANGE = "[0.8, 1.6]"
+
+
+@pytest.fixture
+def short(scene, monkeypatch):
+    """A part of the scene, and fewer runs."""
+    scene.write_text(scene.read_text().replace(RANGE, "[1.36, 1.46]\nmax_step = 0.5"))
+    monkeypatch.setattr(comparison, "STEPS", (2.0, 1.0))
+    monkeypatch.setattr(comparison, "STEPS_EXACT", (1.0,))
+    monkeypatch.setattr(comparison, "FINEST", 0.25)
+    monkeypatch.setattr(startups, "REPEATS", 1)
+    monkeypatch.setattr(methods, "REPEATS", 1)
+    return scene
+
+
+def test_every_method_with_its_errors_and_costs(fcm, short):
+    run = fcm("respond", short, "--compare", "--json", "-o", "c.nc")
+    assert run.code == 0, run.err
+    result = json.loads(run.out)
+    assert result["complete"] and not result["without_exact"] and not result["notes"]
+    runs = result["runs"]
+    with_and_without = {(one["method"], one["left_out"]) for one in runs}
+    methods = ("default table", "fast table", "closed form", "exact")
+    assert with_and_without >= {(method, left_out) for method in methods for left_out in (True, False)}
+    for one in runs:
+        assert one["complete"] and one["points"] > 5
+        assert 0.0 < one["seconds"] and 0.0 <= one["table_seconds"] < one["start_seconds"]
+        for against in one["against"].values():
+            for measure in set(MEASURES) - {"fold"}:  # there are none
+                assert (against["errors"][measure] is None) == (measure in against["below"])
+    assert all(one["evaluations"] > one["calls"] > 0 for one in runs if one["method"] != "exact")
+    _the_error_of_the_harmonic_is_true(short, result)
+    _the_parts_of_the_error(result)
+    _the_file_holds_the_same(result)
+    assert fcm("plot", "accuracy", "c.nc", "--of", "peak-frequency", "-o", "c.svg").code == 0
+
+
+def _the_error_of_the_harmonic_is_true(path, result):
+    """The exact peak by solutions at single frequencies, on a grid around it."""
+    peak = next(one for one in result["peaks"] if one["dof"] == "u")
+    scene, at = load_scene(path), peak["exact"]["frequency"]
+    around = [periodic(scene, at * (1.0 + d)).measure.fundamental[0] for d in (-1e-3, 0.0, 1e-3)]
+    assert peak["exact"]["amplitude"] == pytest.approx(max(around), rel=1e-8)
+    assert np.argmax(around) == 1
+    true = peak["harmonic"]["amplitude"] / max(around) - 1.0
+    assert peak["error"] == pytest.approx(true, abs=1e-8)
+    assert 0.1 * peak["truncation_error"] < abs(true) < peak["truncation_error"]
+
+
+def _the_parts_of_the_error(result):
+    """The table errs before the correction and not after; the harmonic by more than both."""
+    parts = result["contributions"]
+    before, after = parts["fast table, as it is"], parts["fast table, corrected"]
+    harmonic = parts["single harmonic"]["errors"]["peak"]
+    assert 1e-8 < before["errors"]["peak"] < harmonic
+    assert after["errors"]["peak"] is None and after["below"]["peak"] <= 1e-8
+    assert parts["step and tolerance"]["below"]["peak"] <= 1e-8
+
+
+def _the_file_holds_the_same(result):
+    with netCDF4.Dataset("c.nc") as file:
+        assert json.loads(file.summary) == result
+        assert file["error"].dimensions == ("reference", "measure", "run", "curve")
+        assert list(file["method"][:]) == [one["method"] for one in result["runs"]]
+        i, j = list(file["reference"][:]).index("exact"), list(file["measure"][:]).index("peak")
+        errors = np.ma.filled(file["error"][i, j, :, 0], np.nan)
+        own = file["own_error"][i, j, 0]
+        for error, one in zip(errors, result["runs"], strict=True):
+            stated = one["against"]["exact"]["errors"]["peak"]
+            assert error < 10.0 * own if stated is None else error == pytest.approx(stated)
+
+
+@pytest.fixture
+def quick(short, monkeypatch):
+    """Fewer still, and no programs started."""
+    monkeypatch.setattr(comparison, "STEPS", (1.0,))
+    monkeypatch.setattr(comparison, "startup", lambda *_: startups.Startup(1.0, 0.5))
+    return short
+
+
+def test_an_interruption_keeps_what_is_finished(fcm, quick, monkeypatch):
+    done = []
+
+    def interrupted(method, scene, tolerance, progress=None):
+        if len(done) == 4:  # two of the references, two methods
+            raise KeyboardInterrupt
+        done.append(method)
+        return whole(method, scene, tolerance, progress)
+
+    whole = comparison.run
+    monkeypatch.setattr(comparison, "run", interrupted)
+    run = fcm("respond", quick, "--compare", "--json", "-o", "c.nc")
+    assert run.code == 3 and "interrupted" in run.err and "Traceback" not in run.err
+    result = json.loads(run.out)
+    assert not result["complete"] and len(result["runs"]) == 4
+    assert fcm("plot", "accuracy", "c.nc").code == 0
+
+
+def test_where_the_exact_motion_is_not_found_the_closed_form_remains(fcm, quick, monkeypatch):
+    reason = "the motion grows without end"
+
+    def none(scene, progress=None):
+        line = methods.solve(methods.Method(methods.CLOSED_FORM), scene, None)[0]
+        return [replace(line, complete=False, reason=reason)]
+
+    monkeypatch.setattr(methods, "exact_lines", none)
+    run = fcm("respond", quick, "--compare")
+    assert (
+        run.code == 0
+        and f"no exact reference, compared with the closed form alone: the curve: {reason}" in run.err
+    )
+    assert "against harmonic balance, closed form" in run.out
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--method", "closed-form"], "--method is of no use with --compare"),
+        (["--csv", "c.csv"], "--csv is of no use with --compare"),
+        (["--jobs", "2"], "--jobs is of no use with --compare"),
+        (["--keep-all"], "--keep-all is of no use with --compare"),
+        (["--resume", "-o", "c.nc"], "--resume is of no use with --compare"),
+    ],
+)
+def test_options_without_meaning_are_refused(fcm, scene, options, said):
+    run = fcm("respond", scene, "--compare", *options)
+    assert run.code == 2 and said in run.err
+
+
+def test_a_file_that_is_no_comparison_is_not_drawn(fcm, scene, tmp_path):
+    fcm("respond", scene, "-o", "curves.nc")
+    run = fcm("plot", "accuracy", "curves.nc")
+    assert run.code == 2 and "not a comparison" in run.err
+    (tmp_path / "text.nc").write_text("no")
+    assert fcm("plot", "accuracy", "text.nc").code == 2
