@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 import xarray
 
+from fcm.contact.limits import FloatArray
 from fcm.report.rows import Row
 from fcm.response import trace
 from fcm.scene import load_scene
 
 PRELOAD = "contact.shroud.n_0"
 SEARCHED = (20.0, 120.0)  # preloads, of either sign, between which the response becomes linear
+TWO_STATES = (1.195, 1.235)  # [rad/s] printed in section 4.4
+APART, SLIGHT = 0.01, 0.1  # relative: amplitudes that are two states; what may be called a slight difference
 IN_A_SWEEP, SPACING = 11, 0.02  # preloads that are tried together; how closely the limit is found
 
 
@@ -46,8 +49,7 @@ def _limit(state: str, sticking: float) -> float:
 
 def figure_13(folder: Path) -> list[Row]:
     """From fully stuck to fully separate; the best preload; which way the peaks bend."""
-    with xarray.open_dataset(folder / "figure13.nc") as file:
-        data = file.sel(dof="u").load()
+    data = _read(folder / "figure13.nc")
     curves = {float(n): data.isel(curve=i) for i, n in enumerate(data[PRELOAD].values)}
     peaks = {n: float(curve.peak_amplitude) for n, curve in curves.items()}
     at = {n: float(curve.peak_frequency) for n, curve in curves.items()}
@@ -74,10 +76,72 @@ def _bend(peak: float, folds: Any) -> str:
     return f"peak at {peak:.3f}, folds at {', '.join(f'{f:.4f}' for f in sorted(folds))} rad/s"
 
 
+def crossings(frequency: FloatArray, amplitude: FloatArray, at: float) -> FloatArray:
+    """Amplitudes at which a curve crosses a frequency, linear between its points.
+
+    >>> crossings(np.array([1.0, 3.0, 2.0]), np.array([0.0, 2.0, 3.0]), 2.5)
+    array([1.5, 2.5])
+    """
+    start, end = frequency[:-1] - at, frequency[1:] - at
+    here = np.flatnonzero((start * end <= 0.0) & (start != end))
+    share = start[here] / (start[here] - end[here])
+    found: FloatArray = amplitude[:-1][here] + share * np.diff(amplitude)[here]
+    return found
+
+
+def off_the_curve(curve: Any, points: Any) -> FloatArray:
+    """Relative distance of simulated points from the nearest solution of a curve at their frequency."""
+    frequency, amplitude = curve.frequency.values, curve.amplitude.values
+    known = np.isfinite(points.frequency.values)
+    pairs = zip(points.frequency.values[known], points.amplitude.values[known], strict=True)
+    return np.array([np.min(np.abs(crossings(frequency, amplitude, at) / own - 1.0)) for at, own in pairs])
+
+
+def several_states(points: Any) -> FloatArray:
+    """The frequencies at which an upward and a downward sweep come to different amplitudes."""
+    found: dict[float, list[float]] = {}
+    for at, amplitude in zip(points.frequency.values, points.amplitude.values, strict=True):
+        if np.isfinite(at):
+            found.setdefault(float(at), []).append(float(amplitude))
+    return np.array([at for at, both in sorted(found.items()) if max(both) > (1.0 + APART) * min(both)])
+
+
+def figure_14(folder: Path) -> list[Row]:
+    """Where the simulation has two states, where the single harmonic has three; how far they are apart."""
+    curve, points = (
+        _read(folder / f"figure14{name}.nc").isel(curve=0).dropna("point", subset=["frequency"])
+        for name in ("", "-points")
+    )
+    several = several_states(points)
+    folds = sorted(curve.fold_frequency.values)
+    unstable = curve.frequency.values[curve.stable.values == 0.0]
+    middle = unstable.size > 0 and folds[0] <= unstable.min() and unstable.max() <= folds[-1]
+    peaks = float(curve.peak_amplitude), float(np.max(points.amplitude.values))
+    apart = peaks[0] / peaks[1] - 1.0
+    return [
+        Row("two states of the simulation", "1.195 to 1.235 rad/s",
+            f"{several[0]:g} to {several[-1]:g} rad/s, of points {_step(points):g} apart",
+            (round(several[0], 6), round(several[-1], 6)) == TWO_STATES),
+        Row("three solutions of harmonic balance, one of them unstable", "a dashed part of the curve",
+            f"{folds[0]:.4f} to {folds[-1]:.4f} rad/s", len(folds) == 2 and middle),
+        Row("difference from the simulation near the resonance", "slight",
+            f"peak {peaks[0]:.2f}, simulated {peaks[1]:.2f}: {apart:.1%}", abs(apart) < SLIGHT),
+    ]  # fmt: skip
+
+
+def _step(points: Any) -> float:
+    return float(np.round(np.diff(np.unique(points.frequency.values)).min(), 6))
+
+
+def _read(path: Path) -> Any:
+    """A response file at the first degree of freedom, u."""
+    with xarray.open_dataset(path) as file:
+        return file.isel(dof=0).load()
+
+
 def figure_15(folder: Path) -> list[Row]:
     """Amplitude at the end of each phase: the upper branch, then the lower and never back."""
-    with xarray.open_dataset(folder / "figure15.nc") as file:
-        data = file.isel(curve=0).sel(dof="u").load()
+    data = _read(folder / "figure15.nc").isel(curve=0)
     phase = data.cycle_phase.values
     ends = [float(data.cycle_amplitude.values[phase == i][-1]) for i in range(3)]
     error = float(np.max(np.abs(data.energy_error.values)))
