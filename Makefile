@@ -24,7 +24,7 @@ COMPARED   := yang1998-n5 two-contacts yang1998
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help bench-others report demo picture paper figures test check tables clean bench study
+.PHONY: help bench-time bench-others report demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -100,6 +100,9 @@ study: $(VENV)/installed  ## two hundred random scenes, each with three step lim
 
 bench: $(VENV)/installed  ## run times beside one another: closed form, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
+
+bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/benchmarks/motion.py
 
 bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
 	cd $(OTHERS) && OPENBLAS_NUM_THREADS=1 bin/python ../../tests/benchmarks/pyharm.py > table.txt; \

@@ -1,0 +1,183 @@
+"""Steady motion by exact periodic solutions beside fixed steps: ``make bench-time`` prints times and errors.
+
+The fixed-step method is the classical fourth-order Runge-Kutta method with the friction force as a state
+that follows its spring and is cut off at the limit mu n. All frequencies and preloads take their steps
+together, in arrays, which is the most that numpy gives such a method. As every method that steps across
+transitions it is of low order, so its steps are halved until its convergence can be seen.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+import fcm
+from fcm.scene import Contact, Force, Modal, Scene
+from fcm.simulate import periodic, trace_exact
+
+FREQUENCIES = np.linspace(0.7, 1.7, 40)
+STEPS = (100, 200, 400)  # in a cycle
+CYCLES = 300  # until transients of a damping ratio 0.01 are below 1e-6
+REPEATS = 5
+SAME = 1e-8  # error at which the two kinds are compared by extrapolation
+
+
+class Rates:
+    """q', q'' and f' of the paper's oscillator for arrays of preloads and frequencies."""
+
+    def __init__(self, scene: Scene, preload: np.ndarray, omega: np.ndarray) -> None:
+        modal, contact = scene.modal, scene.contacts[0]
+        self.preload, self.omega, self.contact = preload, omega, contact
+        self.tangential = (modal.shapes @ contact.tangential)[:, None]
+        self.normal = (modal.shapes @ contact.normal)[:, None]
+        push = sum(force.amplitude * (modal.shapes @ force.direction) for force in scene.forces)
+        self.push = np.asarray(push)[:, None]
+        self.damping = (2.0 * modal.damping * modal.frequency)[:, None]
+        self.stiffness = (modal.frequency**2)[:, None]
+
+    def limit(self, q: np.ndarray) -> np.ndarray:
+        """mu n, never negative."""
+        load = self.preload + self.contact.k_v * (self.normal * q).sum(axis=0)
+        return self.contact.mu * np.maximum(load, 0.0)
+
+    def __call__(self, t: np.ndarray, y: np.ndarray) -> np.ndarray:
+        q, p, f = y[:2], y[2:4], y[4]
+        limit = self.limit(q)
+        friction = np.clip(f, -limit, limit)
+        load = limit / self.contact.mu - np.maximum(self.preload, 0.0)
+        force = self.push * np.sin(self.omega * t) - self.tangential * friction - self.normal * load
+        rate = self.contact.k_u * (self.tangential * p).sum(axis=0)
+        stuck = (np.abs(f) < limit) | (f * rate < 0.0)
+        acceleration = force - self.damping * p - self.stiffness * q
+        return np.concatenate((p, acceleration, [np.where(stuck, rate, 0.0)]))
+
+
+def fixed_steps(rates: Rates, steps: int, cycles: int) -> np.ndarray:
+    """Half the peak-to-peak of u in the last cycle, from rest, by `steps` Runge-Kutta steps a cycle."""
+    h = 2.0 * np.pi / rates.omega / steps
+    y = np.zeros((5, rates.omega.size))
+    greatest, least = np.full(rates.omega.size, -np.inf), np.full(rates.omega.size, np.inf)
+    for i in range(steps * cycles):
+        t = i * h
+        a = rates(t, y)
+        b = rates(t + 0.5 * h, y + 0.5 * h * a)
+        c = rates(t + 0.5 * h, y + 0.5 * h * b)
+        d = rates(t + h, y + h * c)
+        y = y + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
+        limit = rates.limit(y[:2])
+        y[4] = np.clip(y[4], -limit, limit)
+        if i >= steps * (cycles - 1):
+            u = (rates.tangential * y[:2]).sum(axis=0)
+            greatest, least = np.maximum(greatest, u), np.minimum(least, u)
+    return 0.5 * (greatest - least)
+
+
+def seconds(call: Callable[[], object], repeats: int = 1) -> tuple[float, object]:
+    """Median processor time of a call, and what it returned last."""
+    times, result = [], None
+    for _ in range(repeats):
+        begin = time.process_time()
+        result = call()
+        times.append(time.process_time() - begin)
+    return float(np.median(times)), result
+
+
+def exact_amplitudes(scene: Scene) -> np.ndarray:
+    """Amplitude of u at each preload and frequency, of the upward and of the downward sweep."""
+    out = np.empty((2, len(scene.each_curve()), FREQUENCIES.size))
+    for k, curve in enumerate(trace_exact(scene, FREQUENCIES).curves):
+        for i, way in enumerate(("up", "down")):
+            chosen = curve.orbits.sweep == way
+            order = np.argsort(curve.frequency[chosen])
+            out[i, k] = curve.amplitude[chosen][order, 0]
+    return out
+
+
+def ten_preloads() -> None:
+    scene = fcm.load_scene("yang1998")
+    took, found = seconds(lambda: exact_amplitudes(scene))
+    exact = np.asarray(found)
+    print(f"\namplitude of u at {FREQUENCIES.size} frequencies for each of {exact.shape[1]} preloads")
+    print(
+        f"  exact periodic solutions, both sweeps     {took:8.2f} s   {1e3 * took / exact.size:.2f} ms each"
+    )
+    preloads = [curve.contacts[0].n_0 for curve in scene.each_curve()]
+    preload, omega = np.meshgrid(preloads, FREQUENCIES, indexing="ij")
+    rates = Rates(scene, preload.ravel(), omega.ravel())
+    errors: list[float] = []
+    for steps in STEPS:
+        slow, amplitude = seconds(lambda steps=steps: fixed_steps(rates, steps, CYCLES))
+        relative = np.abs(np.reshape(amplitude, exact.shape[1:]) / exact - 1.0).min(axis=0)
+        errors.append(float(np.median(relative)))
+        print(
+            f"  fixed steps, {steps} a cycle, {CYCLES} cycles {slow:14.2f} s   "
+            f"{slow / took:.1f} times as long, error {errors[-1]:.1e} median, "
+            f"{np.quantile(relative, 0.95):.1e} at 95 %"
+        )
+    order = np.log2(errors[-2] / errors[-1])
+    needed = STEPS[-1] * (errors[-1] / SAME) ** (1.0 / order)
+    print(
+        f"  order seen {order:.1f}: an error of {SAME:g} would need {needed:.1g} steps a cycle and "
+        f"{slow * needed / STEPS[-1] / took:.1g} times the exact solutions' time; theirs is below 1e-10"
+    )
+
+
+def one_frequency(omega: float = 1.3) -> None:
+    """The same for one case alone, where arrays are of no help."""
+    scene = fcm.load_scene("yang1998-n5")
+    took, orbit = seconds(lambda: periodic(scene, omega), REPEATS)
+    rates = Rates(scene, np.array([5.0]), np.array([omega]))
+    slow, found = seconds(lambda: fixed_steps(rates, STEPS[0], CYCLES))
+    error = abs(float(np.asarray(found)[0]) / orbit.measure.amplitude[0] - 1.0)  # type: ignore[attr-defined]
+    print(f"\none steady motion, n_0 = 5, {omega} rad/s, from rest")
+    print(f"  exact periodic solution {1e3 * took:29.1f} ms")
+    print(
+        f"  fixed steps, {STEPS[0]} a cycle, {CYCLES} cycles {1e3 * slow:14.0f} ms   "
+        f"{slow / took:.0f} times as long, error {error:.1e}"
+    )
+
+
+def large(contacts: int = 4, modes: int = 50) -> Scene:
+    """A structure of many modes with several contacts that slip and open, drawn at random."""
+    rng = np.random.default_rng(0)
+    dofs = 2 * contacts + 1
+    shapes = rng.normal(size=(modes, dofs)) / np.sqrt(modes)
+    frequency = np.sort(rng.uniform(1.0, 20.0, modes))
+    names = tuple(f"x{i}" for i in range(dofs))
+    unit = np.eye(dofs)
+    made = tuple(
+        Contact(f"c{j}", unit[2 * j], unit[2 * j + 1], 0.4, 1.0, 1.0, rng.uniform(0.0, 0.2))
+        for j in range(contacts)
+    )
+    modal = Modal(names, np.ones(modes), frequency, np.full(modes, 0.01), shapes)
+    return Scene("large", modal, made, (Force(unit[-1] + 0.3 * unit[1], 10.0, 0.0),), (0.8, 3.0), 0.05)
+
+
+def aims() -> None:
+    """One periodic solution: from a neighbouring one, and from nothing."""
+    print("\none periodic solution")
+    for name, scene, omega, aim in (
+        ("the paper's oscillator, n_0 = 5", fcm.load_scene("yang1998-n5"), 1.3, 0.02),
+        ("4 contacts and 50 modes", large(), 1.5, 1.0),
+    ):
+        beside = periodic(scene, omega - 0.01).state
+        near, _ = seconds(lambda: periodic(scene, omega, beside), REPEATS)  # noqa: B023
+        alone, orbit = seconds(lambda: periodic(scene, omega), REPEATS)  # noqa: B023
+        states = " ".join(orbit.states)  # type: ignore[attr-defined]
+        print(
+            f"  {name:34s} {1e3 * near:8.1f} ms beside a known one, {1e3 * alone:8.1f} ms from rest; "
+            f"aim {1e3 * aim:.0f} ms; {states}"
+        )
+
+
+def main() -> None:
+    print("processor times of one core; ratios carry over to other machines better than times")
+    aims()
+    one_frequency()
+    ten_preloads()
+
+
+if __name__ == "__main__":
+    main()
