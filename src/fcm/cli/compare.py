@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fcm.scene.model import Scene
 OF_NO_USE = {  # with --compare, and why
     "method": "it runs every method",
+    "at": "it compares whole curves",
     "history_csv": "it simulates no schedule",
     "csv": "it has no curves to write; -o FILE.nc holds the errors",
     "jobs": "the methods are timed on one core",

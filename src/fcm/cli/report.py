@@ -78,6 +78,10 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     count = f"{len(curves)} curve{'' if len(curves) == 1 else 's'}"
     table, harmonic = (_worst(curves, key) for key in ("table_error", "truncation_error"))
     errors = []
+    if summary.get("method") == "exact":
+        table = harmonic = None
+        if (closure := _worst(curves, "closure_error")) is not None:
+            errors.append(f"{closure:.1e} by which a period does not close")
     if summary.get("method") != "closed-form" and table is not None:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import schedule
+from fcm.cli import exact, schedule
 from fcm.cli.files import output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
@@ -37,8 +37,13 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 @output_option("--history-csv", endings=(".csv",), help="Write the motion of the schedule as CSV.")
 @click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table.")
 @click.option(
-    "--method", type=click.Choice(["table", "closed-form"]), default="table", show_default=True,
-    help="Where the friction coefficients come from.",
+    "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
+    help="Harmonic balance with coefficients of a table or in closed form, or exact periodic solutions.",
+)  # fmt: skip
+@click.option(
+    "--at", multiple=True, metavar="F", callback=exact.frequencies,
+    help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
+    "for more. With --method exact.",
 )  # fmt: skip
 @click.option(
     "--table", type=click.Path(), metavar="FILE", help="A table of your own.  [default: the shipped one]"
@@ -71,6 +76,7 @@ def respond(
     history_csv: Path | None,
     to_json: bool,
     method: str,
+    at: tuple[float, ...] | None,
     table: str | None,
     max_step: float | None,
     jobs: int,
@@ -91,6 +97,7 @@ def respond(
         refuse_other_options()
         write_comparison(messages, _loaded(scene, max_step, None), table, tolerance, output, to_json)
         return
+    exact.check_options(method, at)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
     if resume and output is None:
@@ -101,7 +108,9 @@ def respond(
     keep = None if output is None else output.with_name(f"{output.name}.unfinished")
     options = {"jobs": jobs, "tolerance": None if keep_all else tolerance, "keep": keep, "resume": resume}
     loaded = _loaded(scene, max_step, history_csv)
-    if loaded.has_range:
+    if method == "exact" and (loaded.has_range or at):
+        response = exact.traced(messages, loaded, at, jobs, keep, resume)
+    elif loaded.has_range:
         response = _traced(messages, loaded, method, table, options)
     else:
         response = _without_curves(loaded)

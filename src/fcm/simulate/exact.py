@@ -77,6 +77,8 @@ def trace_exact(
 
 def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | None:
     """The frequencies to visit, upward [rad/s]."""
+    if at is None and not scene.has_range:
+        raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     if at is None:
         return None
     frequencies = np.unique(np.asarray(at, dtype=np.float64).ravel())

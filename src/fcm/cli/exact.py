@@ -1,0 +1,78 @@
+"""``--method exact`` and ``--at``: the frequencies to visit, and which other options have a meaning then."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fcm.cli.messages import Messages
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+
+MOST_FREQUENCIES = 100_000
+FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
+OF_NO_USE = {  # with --method exact, and why
+    "table": "it needs no coefficients",
+    "tolerance": "it leaves nothing out",
+    "keep_all": "it leaves nothing out anyway",
+}
+
+
+def frequencies(
+    _ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]
+) -> tuple[float, ...] | None:
+    """The frequencies of all --at, in the scene's unit; None if there is none."""
+    found = tuple(value for text in texts for value in _values(text))
+    if len(found) > MOST_FREQUENCIES:
+        raise click.BadParameter(f"{len(found)} frequencies; there can be {MOST_FREQUENCIES}.")
+    return found or None
+
+
+def _values(text: str) -> list[float]:
+    import numpy as np
+
+    parts = text.split(":")
+    try:
+        ends = [float(part) for part in parts[:2]]
+        count = int(parts[2]) if len(parts) == 3 else 1
+    except ValueError:
+        raise click.BadParameter(f"{text!r}: {FORMS}.") from None
+    if len(parts) not in (1, 3):
+        raise click.BadParameter(f"{text!r}: {FORMS}.")
+    if not all(0.0 < end < np.inf for end in ends):
+        raise click.BadParameter(f"{text!r}: a frequency must be finite and greater than 0.")
+    if not 1 <= count <= MOST_FREQUENCIES:
+        raise click.BadParameter(f"{text!r}: the count must be from 1 to {MOST_FREQUENCIES}.")
+    return ends if len(parts) == 1 else [float(value) for value in np.linspace(ends[0], ends[1], count)]
+
+
+def check_options(method: str, at: tuple[float, ...] | None) -> None:
+    """A usage error if an option was given that has no meaning with the method."""
+    if method != "exact":
+        if at is not None:
+            raise click.UsageError("--at needs --method exact: only exact motions are visited by sweeps.")
+        return
+    for name, why in (OF_NO_USE | ({"max_step": "no curve is followed"} if at else {})).items():
+        context = click.get_current_context()
+        if context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
+            (option,) = (param.opts[0] for param in context.command.params if param.name == name)
+            given = "--at" if name == "max_step" else "--method exact"
+            raise click.UsageError(f"{option} is of no use with {given}: {why}.")
+
+
+def traced(
+    messages: Messages, scene: Scene, at: tuple[float, ...] | None, jobs: int, keep: Path | None, resume: bool
+) -> Response:
+    """The exact curves of a scene, or its steady motions at frequencies."""
+    from fcm.simulate import trace_exact
+
+    count = len(scene.each_curve())
+    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: exact")
+    response = trace_exact(scene, at, messages.progress, jobs=jobs, keep=keep, resume=resume)
+    messages.clear()
+    return response
