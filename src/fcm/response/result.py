@@ -27,6 +27,7 @@ class Orbits:
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
     jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
+    periods: int = 0  # of the motion that were computed to trace the curve
 
 
 @dataclass

@@ -43,6 +43,7 @@ class Equations:
         carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
         self.free = np.flatnonzero(np.concatenate((np.ones(2 * modes, dtype=bool), carries)))
         self.size = 2 * modes + contacts
+        self.periods = 0  # that have been computed
 
     def shot(self, z: FloatArray) -> Shot | None:
         """The period from z; None where there is none."""
@@ -50,6 +51,7 @@ class Equations:
             return None
         x = np.zeros(self.size)
         x[self.free] = z[:-1]
+        self.periods += 1
         try:
             return Shot(System(self.scene, float(z[-1])), x, choose=True)
         except SimulationError:

@@ -110,7 +110,10 @@ def _traced(scene: Scene, progress: Progress | None) -> Curve:
         explorer.run()
     except KeyboardInterrupt:
         stopped = STOPPED + (shown(scene, explorer.at) if explorer.branches else "the start")
-    return traced_curve(scene, explorer.branches, stopped or explorer.reason)
+    curve = traced_curve(scene, explorer.branches, stopped or explorer.reason)
+    if curve.orbits is not None:
+        curve.orbits.periods = explorer.equations.periods
+    return curve
 
 
 def _visited(scene: Scene, at: tuple[float, ...], progress: Progress | None) -> Curve:
