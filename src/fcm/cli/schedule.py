@@ -21,7 +21,7 @@ Summary = Mapping[str, Any]  # one of the summary's "histories"
 
 _MOST_DOFS, _MOST_CONTACTS = 4, 3  # that fit beside each other on a line
 _OF_CURVES = {  # options that mean nothing without a range of frequencies
-    "method": "--method", "at": "--at", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
+    "method": "--method", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
     "resume": "--resume", "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
 }  # fmt: skip
 
@@ -30,9 +30,9 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
     """Refuse options that concern curves where the scene has none, or motion where it has none."""
     if history_csv is not None and not scene.schedule:
         raise click.UsageError(f"--history-csv is of no use: {scene.name} has no [[schedule]].")
-    if scene.has_range:
-        return
     context = click.get_current_context()
+    if scene.has_range or context.params.get("at"):
+        return
     given = [
         option
         for name, option in _OF_CURVES.items()
@@ -46,10 +46,10 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
 
 def simulated(messages: Messages, scene: Scene, response: Response) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
-    from fcm.response.sweep import interrupted
     from fcm.simulate.histories import histories, not_begun
+    from fcm.simulate.record import INTERRUPTED
 
-    if interrupted(response):
+    if any(curve.reason.startswith(INTERRUPTED) for curve in response.curves):
         return not_begun(scene)
     try:
         found = histories(scene, messages.progress)
