@@ -17,7 +17,7 @@ from fcm.table import open_table
 from fcm.table.store import DEFAULT
 
 STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
-STEPS_EXACT = (4.0, 2.0, 1.0)
+STEPS_EXACT = (2.0, 1.0)
 FINEST, FINEST_EXACT = 1.0 / 16.0, 0.25  # of the references
 FLOOR = {CLOSED_FORM: 1e-9, EXACT: 1e-8}  # to which points are solved and peaks located, relative
 Progress = Callable[[float, str], None]
@@ -168,7 +168,7 @@ def _jobs(methods: list[Method], tolerance: float) -> Iterator[tuple[Method, flo
         for share in STEPS_EXACT if method.name == EXACT else STEPS:
             if share != 1.0:
                 yield method, share, tolerance
-            if method.table is not None:
+            if method.table is not None and (share == 1.0 or share in STEPS[::2]):
                 yield Method(method.name, method.table, corrected=False), share, None
 
 

@@ -28,7 +28,9 @@ def _line(scene: Scene, curve: Curve) -> Line:
         return Line(curve.frequency, curve.amplitude, curve.peaks, curve.folds, curve.complete, curve.reason)
     amplitude = curve.orbits.fundamental
     peaks = {name: _peak(scene, curve, amplitude[:, j], j) for j, name in enumerate(scene.modal.dofs)}
-    return Line(curve.frequency, amplitude, peaks, curve.folds, curve.complete, curve.reason)
+    return Line(
+        curve.frequency, amplitude, peaks, curve.folds, curve.complete, curve.reason, {}, curve.orbits.periods
+    )
 
 
 def _peak(scene: Scene, curve: Curve, amplitude: np.ndarray, dof: int) -> tuple[float, float]:

@@ -27,6 +27,7 @@ class Line:
     complete: bool
     reason: str = ""
     truncation: Mapping[str, float] = field(default_factory=dict)  # estimate at each peak [-]
+    periods: int = 0  # of the exact motion that were computed
 
     @property
     def points(self) -> int:

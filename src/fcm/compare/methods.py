@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from fcm.compare.exact import exact_lines
@@ -16,8 +15,6 @@ from fcm.response.trace import trace_group
 from fcm.scene.model import Scene
 
 CLOSED_FORM, EXACT = "closed form", "exact"
-REPEATS = 2  # a run is repeated, and its least time counts
-LONG = 0.5  # [s], after which it is not repeated
 
 
 @dataclass(frozen=True)
@@ -39,8 +36,9 @@ class Run:
     max_step: float  # longest step along the curves, relative to their extent
     lines: list[Line]
     seconds: float  # solving alone, in a program that has begun and has its table
-    calls: int | None  # of the solver for forces of the contacts, each for many curves or points at once
-    evaluations: int | None  # of the force of one contact
+    processor_seconds: float  # the same where nothing else takes the processor
+    calls: int  # of the solver for forces of the contacts, each for many curves or points at once
+    evaluations: int  # of the force of one contact; of `exact`: periods of the motion, each a call
 
     @property
     def points(self) -> int:
@@ -67,12 +65,16 @@ def run(method: Method, scene: Scene, tolerance: float | None, progress: Progres
 
     tolerance : of what is left out; None for leaving nothing out.
     """
-    calls = evaluations = None
-    lines, seconds = _timed(lambda: solve(method, scene, tolerance, progress))
-    if method.name != EXACT:
+    calls = evaluations = 0
+    if method.name != EXACT:  # at the same time it is warm
         calls, evaluations = _counted(method, scene, tolerance)
+    begin, processor = time.perf_counter(), time.process_time()
+    lines = solve(method, scene, tolerance, progress)
+    seconds, processor = time.perf_counter() - begin, time.process_time() - processor
+    if method.name == EXACT:
+        calls = evaluations = sum(line.periods for line in lines)
     step, left_out = scene.each_curve()[0].max_step, tolerance is not None
-    return Run(method.name, method.corrected, left_out, step, lines, seconds, calls, evaluations)
+    return Run(method.name, method.corrected, left_out, step, lines, seconds, processor, calls, evaluations)
 
 
 def with_step(scene: Scene, share: float) -> Scene:
@@ -119,16 +121,3 @@ def _by_groups(scene: Scene, way: Coefficients | None, last: Coefficients) -> li
     groups = in_groups(scene.each_curve()).values()
     parts = (trace_group(replace(scene, curves=group), kind, way, exact=last) for group in groups)
     return [line_of(curve) for part in parts for curve in part.curves]
-
-
-def _timed(solve: Callable[[], list[Line]]) -> tuple[list[Line], float]:
-    """The lines, and the least time of some runs [s]."""
-    begin, best = time.perf_counter(), float("inf")
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        lines = solve()
-        end = time.perf_counter()
-        best = min(best, end - start)
-        if end - begin > LONG:
-            break
-    return lines, best

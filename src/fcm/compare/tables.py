@@ -28,14 +28,14 @@ def references(summary: Summary) -> Rows:
 def methods(summary: Summary) -> Rows:
     """Each method with the scene's own steps."""
     against = main_reference(summary)
-    header = ["left out", "points", "solve [s]", "start [s]", "calls", "evaluations"]
+    header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "calls", "evaluations"]
     rows = [[f"against {NAMES[against]}", *header, *HEADS]]
     for one in in_order(summary["runs"]):
         if one["max_step"] == summary["max_step"] and one["corrected"]:
             left_out = "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing to"
             start = one["start_seconds"]
-            cells = [str(one["points"]), f"{one['seconds']:.3f}", "-" if start is None else f"{start:.2f}"]
-            cells += ["-" if one[key] is None else str(one[key]) for key in ("calls", "evaluations")]
+            cells = [str(one["points"]), f"{one['seconds']:.3f}", f"{one['processor_seconds']:.3f}"]
+            cells += ["-" if start is None else f"{start:.2f}", str(one["calls"]), str(one["evaluations"])]
             rows.append([one["method"], left_out, *cells, *shown(one["against"][against])])
     return rows
 
@@ -72,14 +72,15 @@ def peaks(summary: Summary) -> Rows:
 def steps(summary: Summary) -> Rows:
     """Each method over its longest step."""
     against = list(dict.fromkeys((main_reference(summary), CLOSED_FORM)))
-    rows = [["over the steps", "max. step", "points", "solve [s]", *(f"curve, {name}" for name in against)]]
+    rows = [["over the steps", "max. step", "points", "CPU [s]", *(f"curve, {name}" for name in against)]]
     for one in in_order(summary["runs"]):
         if one["corrected"] and not one["left_out"]:
             continue  # the same once more
         name = one["method"] if one["corrected"] else f"{one['method']}, as it is"
         curve = MEASURES.index("curve")
         errors = [shown(one["against"][reference])[curve] for reference in against]
-        rows.append([name, f"{one['max_step']:.4g}", str(one["points"]), f"{one['seconds']:.3f}", *errors])
+        seconds = f"{one['processor_seconds']:.3f}"
+        rows.append([name, f"{one['max_step']:.4g}", str(one["points"]), seconds, *errors])
     return rows
 
 

@@ -1,4 +1,4 @@
-"""Error against run time: one line a method, over its longest step."""
+"""Error against processor time: one line a method, over its longest step."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ QUANTITIES = {
 
 
 class Mark(NamedTuple):
-    """One run: time [s], error, and whether the error is only known to be below that."""
+    """One run: processor time [s], error, and whether the error is only known to be below that."""
 
     seconds: float
     error: float
@@ -99,7 +99,7 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
         shown = run["against"][reference]
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
-            mark = Mark(float(run["seconds"]), float(error or below), error is None)
+            mark = Mark(float(run["processor_seconds"]), float(error or below), error is None)
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
     return Panel(reference, one["own_error"][quantity], float(one["max_step"]), lines)
@@ -113,7 +113,7 @@ def draw_accuracy(accuracy: Accuracy) -> Figure:
         for axes, panel in zip(all_axes, accuracy.panels, strict=True):
             _draw_panel(axes, panel)
             axes.set_ylabel(QUANTITIES[accuracy.quantity])
-        all_axes[-1].set_xlabel("Time to solve (s)")
+        all_axes[-1].set_xlabel("Processor time to solve (s)")
         handles: dict[str, Any] = {}
         for axes in all_axes:
             handles |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
