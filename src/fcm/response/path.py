@@ -4,10 +4,7 @@ Predictor and corrector work along the arc of each curve, in coordinates made di
 own size, so that neither units nor the frequency scale matter. Curves are rows of arrays: one evaluation
 and one stacked solve serve all of them, each with its own step.
 
-Where a regime begins, a response curve has a corner. The step shrinks until the corner is a point; if the
-curve turns back on itself there, its new direction is found from the equations just beyond, with the
-orientation that the sign of the determinant carries across a corner, as for piecewise linear paths
-(Allgower and Georg, "Introduction to Numerical Continuation Methods").
+Where a regime begins, a response curve has a corner (`fcm.response.corner`), which a short step crosses.
 """
 
 from __future__ import annotations
@@ -18,18 +15,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.contact.limits import FloatArray
-from fcm.response.newton import CLOSE, Equations, Newton, amplitudes, correct, oriented_tangent, scales
+from fcm.response.corner import POINT, corner_ahead, turn_back
+from fcm.response.newton import CLOSE, Equations, Newton, amplitudes, correct, scales
 from fcm.response.structure import BoolArray, IntArray
 
 Progress = Callable[[float, str], None]  # finished fraction and a text
 
 SAME_DIRECTION = 0.94  # cosine: a smooth step turns by less than 20 degrees
 GENTLE_TURN = 0.25  # [rad] the turn that the step size aims at
-CORNER_BEND = 0.1  # two pieces that miss each other by less than this of their length meet in a corner
 AIM_SHORT = 0.98  # of the distance to a corner
 CORNER = 1e-4  # a step this short may turn by any angle below a right angle: it crosses a corner
-POINT = 1e-7  # a corner known to this is a point from which the curve may turn back
-CORNER_TRIES = 16  # directions around a corner in which its regimes are looked for
 STRAIGHT = 0.999  # cosine above which a change of orientation is a branch point and not a corner
 FIRST_STEP = 1e-3
 LONGEST_PATH = 20000  # steps
@@ -71,7 +66,7 @@ class _Front:
     step: FloatArray
     resume: FloatArray  # step before a corner came near, 0 if none has
 
-    def take(self, keep: BoolArray) -> _Front:
+    def take(self, keep: BoolArray | IntArray) -> _Front:
         return replace(self, **{name: value[keep] for name, value in vars(self).items()})
 
 
@@ -159,12 +154,15 @@ class _Follower:
         kept |= short & (turn > STRAIGHT)  # a branch point: straight on, with the other orientation
         found = new.converged & kept
         good = found & (missed < 0.5) & ((turn > SAME_DIRECTION) | short)
-        corner, at = self._corner(new, turn) if not good.all() else (good, front.step)
-        good |= found & corner & short
+        corner, at = good, front.step
+        if not good.all():
+            corner, at = corner_ahead((new.z - front.z) / front.scale, front.tangent, new.tangent, turn)
+            corner = corner & found & (at < front.step)
+        good |= corner & short
         outside = good & ((new.z[:, -1] > self.high[front.curve]) | (new.z[:, -1] < self.low[front.curve]))
         landed = self._land(outside, new) if outside.any() else outside
         accepted = good & ~outside
-        shorter = self._shorter(found & corner & ~good, at)
+        shorter = self._shorter(corner & ~good, at)
         front.step = np.where(accepted | landed, front.step, shorter)
         self._advance(accepted, new, turn, missed)
         front.bend[~accepted] = np.where(short[~accepted, None], 0.0, front.bend[~accepted])
@@ -177,18 +175,6 @@ class _Follower:
         status[stuck & ~turned] = STALLED
         status[front.largest.max(axis=1, initial=0.0) > self.too_large[front.curve]] = UNBOUNDED
         self._retire(status)
-
-    def _corner(self, new: Newton, turn: FloatArray) -> tuple[BoolArray, FloatArray]:
-        """Whether two nearly straight pieces lead to new, and the length of the first, up to the corner."""
-        front = self.front
-        chord = (new.z - front.z) / front.scale
-        before, beyond = (chord * front.tangent).sum(axis=1), (chord * new.tangent).sum(axis=1)
-        square = np.maximum(1.0 - turn * turn, 1e-6)
-        s, r = (before - turn * beyond) / square, (beyond - turn * before) / square
-        off = chord - s[:, None] * front.tangent - r[:, None] * new.tangent
-        corner = (np.minimum(s, r) > 0.0) & (s < front.step)
-        corner &= np.sqrt((off * off).sum(axis=1)) < CORNER_BEND * (s + r)
-        return corner, s
 
     def _shorter(self, corner: BoolArray, at: FloatArray) -> FloatArray:
         """The step to try next: to the corner, and at last across it; a quarter where there is none."""
@@ -252,39 +238,16 @@ class _Follower:
 
     def _turn_corners(self, stuck: BoolArray) -> BoolArray:
         """Leave a corner, known to within POINT, in a direction that may point backwards."""
-        turned = np.zeros_like(stuck)
+        front, turned = self.front, np.zeros_like(stuck)
         for i in np.flatnonzero(stuck):
-            turned[i] = self._turn_corner(int(i))
+            here = front.take(np.array([i]))
+            beyond = turn_back(
+                self.equations.take(np.array([i])), here.z, here.scale, here.tangent, here.orientation
+            )
+            if beyond is not None:
+                front.z[i], front.tangent[i], front.step[i] = beyond
+                front.bend[i], turned[i] = 0.0, True
         return turned
-
-    def _turn_corner(self, i: int) -> bool:
-        """Try the directions of the curve in the regimes around the corner, at growing distances."""
-        front = self.front
-        directions = np.random.default_rng(0).normal(size=(CORNER_TRIES, front.z.shape[1]))
-        directions[0] = front.tangent[i]
-        directions /= np.sqrt((directions**2).sum(axis=1, keepdims=True))
-        equations = self.equations.take(np.full(CORNER_TRIES, i))
-        scale = np.repeat(front.scale[i : i + 1], CORNER_TRIES, axis=0)
-        orientation = np.full(CORNER_TRIES, front.orientation[i])
-        for reach in POINT * np.array([1e1, 1e2, 1e3, 1e4]):
-            around = front.z[i] + reach * scale * directions
-            tangent = oriented_tangent(equations, around, scale, directions, orientation)
-            guess = front.z[i] + reach * scale * tangent
-            new = correct(equations, guess, scale, tangent, 1e-3 * reach, reach=reach)
-            step = (new.z - front.z[i]) / scale
-            length = np.sqrt((step**2).sum(axis=1))
-            ok = new.converged & (new.determinant == orientation) & (length < 3.0 * reach)
-            ok &= (new.tangent * step).sum(axis=1) > 0.5 * length  # the curve leads away from the corner
-            ok &= step @ front.tangent[i] > -0.99 * length  # and is not the one that led to it
-            if ok.any():
-                self._leave(i, new, int(np.argmax(ok)), reach)
-                return True
-        return False
-
-    def _leave(self, i: int, new: Newton, chosen: int, step: float) -> None:
-        front = self.front
-        front.z[i], front.tangent[i] = new.z[chosen], new.tangent[chosen]
-        front.bend[i], front.step[i] = 0.0, step
 
     def _record(self, which: BoolArray) -> None:
         front = self.front
