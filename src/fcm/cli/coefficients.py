@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.drawing import angles, save_picture
+from fcm.cli.drawing import angles, save_picture, shorten
 from fcm.cli.files import output_option
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.plot import ENDINGS
@@ -158,7 +158,7 @@ def error(
     opened = _opened(table)
     maps = [error_map(name, plane, opened) for name, plane in shown]
     name = "the shipped table" if table is None else Path(table).name
-    save_picture(draw_errors(maps, f"Error of {_shorten(name)}"), output)
+    save_picture(draw_errors(maps, f"Error of {shorten(name, LONGEST_NAME)}"), output)
     worst = max(maps, key=lambda one: one.largest)
     n0, b = worst.worst
     messages.info(
@@ -183,11 +183,6 @@ def normal(messages: Messages, output: Path) -> None:
     n0_star = np.linspace(*NORMAL_RANGE, NORMAL_POINTS)
     save_picture(draw_normal(n0_star, *normal_coefficients(n0_star)), output)
     messages.info(f"wrote {output}")
-
-
-def _shorten(name: str) -> str:
-    """A name as long as a picture is wide, at most."""
-    return name if len(name) <= LONGEST_NAME else name[: LONGEST_NAME - 1] + "…"
 
 
 def _opened(table: str | None) -> Any:

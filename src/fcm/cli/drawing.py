@@ -30,6 +30,15 @@ def _angle(text: str) -> float:
     return math.radians(number) if text.endswith("deg") else number
 
 
+def shorten(name: str, most: int) -> str:
+    """A name of at most so many characters.
+
+    >>> shorten("a/long/name.nc", 8)
+    'a/long/…'
+    """
+    return name if len(name) <= most else name[: most - 1] + "…"
+
+
 def save_picture(figure: Figure, output: Path) -> None:
     """Write the picture; the file appears only when it is whole."""
     from fcm.plot.style import save

@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from fcm.cli.drawing import shorten
+
 if TYPE_CHECKING:
     from fcm.contact import Loop
     from fcm.plot.loop_file import LoopPoint
 
+WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
+LONGEST = 24  # characters of a contact's name
 _SYMBOL = {
     "n0_bar": r"$\bar{n}_0$", "b_bar": r"$\bar{b}$", "mu": r"$\mu$", "k_u": "$k_u$", "k_v": "$k_v$",
     "n_0": "$n_0$", "a": "$a$", "b": "$b$",
@@ -128,7 +132,7 @@ def _at_point(point: LoopPoint, unit: str) -> Case:
     at = f"{point.frequency:.5g} {unit}"
     swept = ", ".join(f"{key} = {value:g}" for key, value in point.parameters.items())
     names = (
-        Name(point.contact.replace("$", r"\$"), point.contact),
+        Name(shorten(point.contact, LONGEST).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters), swept),
         Name(f"{symbol} = {at}", at),
     )
@@ -146,15 +150,26 @@ def _at_point(point: LoopPoint, unit: str) -> Case:
 def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:
     """What all loops share, for the picture; what tells each from the others, for its panel."""
     columns = list(zip(*(case.names for case in cases), strict=True))
-    same = [len(set(column)) == 1 for column in columns]
-    common = [column[0].drawn for column, shared in zip(columns, same, strict=True) if shared]
+    shared = {column[0] for column in columns if len(set(column)) == 1}
+    several = len(cases) > 1
+    common = _lines([column[0] for column in columns if column[0] in shared], WIDE if several else NARROW)
     panels = []
     for case in cases:
-        own = [name.drawn for name, shared in zip(case.names, same, strict=True) if not shared]
-        first = ", ".join([*own, case.note] if case.note else own)
-        sequence = case.loop.sequence
-        panels.append(f"{first}: {sequence}" if first and len(first) < 24 else f"{first}\n{sequence}".strip())
-    return ", ".join(filter(None, common)), panels
+        own = [name for name in case.names if name not in shared]
+        lines = _lines([*own, Name(case.note, case.note)], IN_A_ROW if several else NARROW)
+        panels.append("\n".join([*lines, case.loop.sequence]))
+    return "\n".join(common), panels
+
+
+def _lines(names: Iterable[Name], most: int) -> list[str]:
+    """The names in lines of at most so many characters, if each is short enough."""
+    lines: list[list[Name]] = []
+    for name in (name for name in names if name.plain):
+        if lines and sum(len(one.plain) + 2 for one in lines[-1]) + len(name.plain) <= most:
+            lines[-1].append(name)
+        else:
+            lines.append([name])
+    return [", ".join(one.drawn for one in line) for line in lines]
 
 
 def _named(key: str, value: float) -> Name:

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.contact.loop import Loop
-from fcm.contact.sampled import Part, Transition, parts, shown_degrees, transitions
+from fcm.contact.sampled import Part, parts, shown_degrees, transitions
 from fcm.plot.loop_marks import name_marks
+from fcm.plot.read import FloatArray
 from fcm.plot.style import house_style, new_figure
 
 if TYPE_CHECKING:
@@ -43,6 +44,10 @@ class DrawnLoop:
     title: str
     amplitude: float = 1.0  # a
     force: float = 1.0  # k_u a
+
+    def points(self, part: Part) -> tuple[FloatArray, FloatArray]:
+        """Displacement and force of a part, as they are drawn."""
+        return self.amplitude * part.displacement, self.force * part.force
 
 
 @dataclass(frozen=True)
@@ -120,7 +125,7 @@ def _draw_loop(axes: Axes, drawn: DrawnLoop) -> None:
     axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
     for part in parts(drawn.loop):
         look = STATES[part.state][1]
-        u, f = drawn.amplitude * part.displacement, drawn.force * part.force
+        u, f = drawn.points(part)
         if part.state == "S":  # to and fro on one line, whose dashes would fill each other's gaps
             u, f = np.array([u.min(), u.max()]), np.zeros(2)
         axes.plot(u, f, **look)
@@ -133,10 +138,8 @@ def _arrow(axes: Axes, drawn: DrawnLoop, part: Part, colour: str) -> None:
     middle = part.theta.size // 2
     if part.theta[-1] - part.theta[0] < 0.5 or middle + 1 >= part.theta.size:
         return
-    start, end = (
-        (drawn.amplitude * part.displacement[i], drawn.force * part.force[i])
-        for i in (middle - 1, middle + 1)
-    )
+    u, f = drawn.points(part)
+    start, end = ((u[i], f[i]) for i in (middle - 1, middle + 1))
     head = {"arrowstyle": "-|>", "color": colour, "mutation_scale": 8, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", end, start, arrowprops=head)
 
@@ -150,7 +153,7 @@ def _draw_over_angle(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
         for turn in (angle, angle - 360.0):
             for sign in (-1.0, 1.0):
                 axes.plot(turn, sign * drawn.force * part.limit, label="_limit", **_LIMIT)
-            axes.plot(turn, drawn.force * part.force, **STATES[part.state][1])
+            axes.plot(turn, drawn.points(part)[1], **STATES[part.state][1])
             _name_state(axes, part.state, turn)
     for transition in transitions(drawn.loop):
         axes.axvline(names.degrees(transition.theta), color="0.3", linewidth=0.4, zorder=0)
@@ -192,8 +195,8 @@ def _limit(above: Axes, below: Axes, loops: Sequence[DrawnLoop]) -> None:
 
 def _extent(drawn: DrawnLoop) -> tuple[float, float, float]:
     """Greatest displacement, least and greatest force."""
-    force = np.concatenate([part.force for part in parts(drawn.loop)])
-    return drawn.amplitude or 1.0, drawn.force * float(force.min()), drawn.force * float(force.max())
+    force = np.concatenate([drawn.points(part)[1] for part in parts(drawn.loop)])
+    return drawn.amplitude, float(force.min()), float(force.max())
 
 
 def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None:
@@ -213,15 +216,10 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None
 
 def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
     """A ring at each transition, and its angle where there is room."""
-    found: list[Transition] = transitions(drawn.loop)
+    found = transitions(drawn.loop)
     points = [(drawn.amplitude * t.displacement, drawn.force * t.force) for t in found]
     texts = [f"{names.degrees(t.theta):.1f}°" for t in found]
-    curve = np.concatenate(
-        [
-            np.column_stack((drawn.amplitude * p.displacement, drawn.force * p.force))
-            for p in parts(drawn.loop)
-        ]
-    )
+    curve = np.concatenate([np.column_stack(drawn.points(part)) for part in parts(drawn.loop)])
     for x, y in points:
         axes.plot([x], [y], color="black", linestyle="", zorder=3, **_MARK)
     name_marks(axes, points, texts, curve, _SMALL)
