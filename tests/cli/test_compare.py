@@ -122,7 +122,7 @@ def test_where_the_exact_motion_is_not_found_the_closed_form_remains(fcm, quick,
         run.code == 0
         and f"no exact reference, compared with the closed form alone: the curve: {reason}" in run.err
     )
-    assert "against harmonic balance, closed form" in run.out
+    assert "errors against harmonic balance, closed form" in run.out
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from fcm.cli.report import aligned
 
 if TYPE_CHECKING:
     from fcm.scene.model import Scene
+
 OF_NO_USE = {  # with --compare, and why
     "method": "it runs every method",
     "at": "it compares whole curves",
@@ -56,12 +57,10 @@ def write_comparison(
 
 
 def as_text(summary: dict[str, Any]) -> str:
-    """Tables of the methods, of what the errors consist of, of the peaks, and over the steps."""
-    from fcm.compare import tables
+    """The tables of a comparison."""
+    from fcm.compare.tables import every
 
-    makers = (tables.references, tables.methods, tables.contributions, tables.peaks, tables.steps)
-    parts = [maker(summary) for maker in makers]
-    return "\n\n".join(aligned(_to_the_left(rows), left=0) for rows in parts if len(rows) > 1)
+    return "\n\n".join(aligned(_to_the_left(rows), left=0) for rows in every(summary))
 
 
 def _to_the_left(rows: list[list[str]]) -> list[list[str]]:

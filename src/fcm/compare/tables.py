@@ -15,6 +15,12 @@ HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
 DIGITS = 6
 
 
+def every(summary: Summary) -> list[Rows]:
+    """All tables that have rows, in their order."""
+    makers = errors, contributions, peaks, costs, steps, references
+    return [rows for rows in (maker(summary) for maker in makers) if len(rows) > 1]
+
+
 def references(summary: Summary) -> Rows:
     """What the others are measured against, and the errors of these themselves."""
     rows = [["errors of the references themselves", "max. step", *HEADS]]
@@ -25,19 +31,35 @@ def references(summary: Summary) -> Rows:
     return rows
 
 
-def methods(summary: Summary) -> Rows:
-    """Each method with the scene's own steps."""
+def errors(summary: Summary) -> Rows:
+    """Of each method with the scene's own steps."""
     against = main_reference(summary)
-    header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "calls", "evaluations"]
-    rows = [[f"against {NAMES[against]}", *header, *HEADS]]
-    for one in in_order(summary["runs"]):
-        if one["max_step"] == summary["max_step"] and one["corrected"]:
-            left_out = "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing to"
-            start = one["start_seconds"]
-            cells = [str(one["points"]), f"{one['seconds']:.3f}", f"{one['processor_seconds']:.3f}"]
-            cells += ["-" if start is None else f"{start:.2f}", str(one["calls"]), str(one["evaluations"])]
-            rows.append([one["method"], left_out, *cells, *shown(one["against"][against])])
+    rows = [[f"errors against {NAMES[against]}", "left out", *HEADS]]
+    for one in _at_own_step(summary):
+        rows.append([one["method"], _left_out(one, summary), *shown(one["against"][against])])
     return rows
+
+
+def costs(summary: Summary) -> Rows:
+    """Of the same."""
+    header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "table [s]", "calls", "evaluations"]
+    rows = [["costs", *header]]
+    for one in _at_own_step(summary):
+        seconds = [f"{one[key]:.3f}" for key in ("seconds", "processor_seconds")]
+        start = ["-" if one[key] is None else f"{one[key]:.2f}" for key in ("start_seconds", "table_seconds")]
+        counts = [str(one["calls"]), str(one["evaluations"])]
+        rows.append([one["method"], _left_out(one, summary), str(one["points"]), *seconds, *start, *counts])
+    return rows
+
+
+def _at_own_step(summary: Summary) -> list[Summary]:
+    runs = in_order(summary["runs"])
+    return [one for one in runs if one["max_step"] == summary["max_step"] and one["corrected"]]
+
+
+def _left_out(one: Summary, summary: Summary) -> str:
+    """Whether what the scene does not need was left out, if there is anything."""
+    return "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing to"
 
 
 def contributions(summary: Summary) -> Rows:

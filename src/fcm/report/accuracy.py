@@ -11,8 +11,7 @@ from typing import Any
 import click
 
 from fcm.cli.messages import Messages, pass_messages
-from fcm.compare import tables
-from fcm.compare.tables import Rows
+from fcm.compare.tables import Rows, every
 from fcm.files import replacing
 from fcm.report.made import facts
 from fcm.report.page import Page, Section, Table, render
@@ -29,14 +28,16 @@ ABOUT = (
     "which has the same single harmonic as what is compared. Their own errors are stated; where an error is "
     "less than ten times that of its reference, only a limit is given. “As it is” is a table before its "
     "points are corrected with the closed form, as fcm does at every point.",
-    "Time to solve is that of all curves together, on one core, in a program that has begun and has its "
-    "table; the time to start one is listed beside it.",
+    "“Solve” is the time of all curves together, on one core, in a program that has begun and has its table, "
+    "and “CPU” the part of it in which the processor worked for it; “start” is the time of a program that "
+    "begins as one with that method does and ends at once, “table” the part of it that opens the table. "
+    "Calls are those for the forces of the contacts, each for many points at once; evaluations are of the "
+    "force of one contact, or of one period of the exact motion.",
 )
 CAPTION = (
-    "Error of the curve against time, longest steps halved from marker to marker. Arrows point down where "
+    "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point down where "
     "the error is below what its reference can show."
 )
-MAKERS = (tables.methods, tables.contributions, tables.peaks, tables.steps, tables.references)
 
 
 @click.command()
@@ -84,7 +85,7 @@ def _scene(name: str, summary: dict[str, Any]) -> Section:
             f"fcm respond {name} --compare -o {name}.nc",
             f"fcm plot accuracy {name}.nc",
         ),
-        tables=tuple(_table(rows) for rows in (maker(summary) for maker in MAKERS) if len(rows) > 1),
+        tables=tuple(_table(rows) for rows in every(summary)),
     )
 
 
@@ -98,8 +99,8 @@ def _left_out(found: dict[str, dict[str, Any]], missing: Sequence[str]) -> Secti
     rows += [(name, "left out", text) for name, one in found.items() for text in one["left_out"]]
     rows += [("the report", "left out", text) for text in missing]
     text = () if rows else ("Nothing failed, and nothing was left out.",)
-    tables_ = (Table(("scene", "", "what"), rows),) if rows else ()
-    return Section("What failed or was left out", text=text, tables=tables_)
+    tables = (Table(("scene", "", "what"), rows),) if rows else ()
+    return Section("What failed or was left out", text=text, tables=tables)
 
 
 def _failures(summary: dict[str, Any]) -> list[str]:
