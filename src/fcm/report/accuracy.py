@@ -35,8 +35,8 @@ ABOUT = (
     "force of one contact, or of one period of the exact motion.",
 )
 CAPTION = (
-    "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point down where "
-    "the error is below what its reference can show."
+    "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point "
+    "down where the error is below what its reference can show."
 )
 
 
