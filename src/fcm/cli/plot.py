@@ -41,19 +41,30 @@ def plot() -> None:
     help="Amplitude axis.  [default: logarithmic if the peaks span more than a decade]",
 )  # fmt: skip
 @click.option("--errors/--no-errors", default=True, show_default=True, help="A panel of the curves' errors.")
+@click.option(
+    "--points", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="FILE",
+    help="Exact motions to mark over the curves, the file of `fcm respond --method exact -o FILE`.",
+)  # fmt: skip
 @pass_messages
 def response(
-    messages: Messages, file: Path, output: Path | None, dof: str | None, log: bool | None, errors: bool
+    messages: Messages,
+    file: Path,
+    output: Path | None,
+    dof: str | None,
+    log: bool | None,
+    errors: bool,
+    points: Path | None,
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
     Unstable parts are dashed, and the errors of the curves drawn below them, where the file knows them.
     """
-    from fcm.plot import draw_response, read_response, save
+    from fcm.plot import draw_response, read_points, read_response, save
 
     output = output or file.with_suffix(".png")
     check_output(output, ENDINGS)
-    figure = draw_response(read_response(file), dof=dof, log=log, errors=errors)
+    marked = None if points is None else read_points(points)
+    figure = draw_response(read_response(file), dof=dof, log=log, errors=errors, points=marked)
     with replacing(output) as partial:
         save(figure, partial)
     messages.info(f"wrote {output}")

@@ -10,6 +10,7 @@ from fcm.plot.error_panel import HEIGHT, SHARES, draw_errors, has_errors
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.place import label_at_peaks
+from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
 
@@ -25,11 +26,16 @@ _MOST_NAMES = 20  # of more curves than this, only the first and the last are na
 
 
 def draw_response(
-    response: DrawnResponse, dof: str | None = None, log: bool | None = None, errors: bool = True
+    response: DrawnResponse,
+    dof: str | None = None,
+    log: bool | None = None,
+    errors: bool = True,
+    points: DrawnPoints | None = None,
 ) -> Figure:
     """The figure of one degree of freedom (the first by default); unstable parts are dashed.
 
-    Errors that the file knows have a panel below the curves, unless errors is false.
+    Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
+    motion are drawn over the curves.
     """
     column = _column(response, dof)
     curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
@@ -42,6 +48,9 @@ def draw_response(
         axes.set_prop_cycle(color=colours)
         for curve in curves:
             _draw_curve(axes, curve, column, width)
+        if points is not None:
+            draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
+            name_points(figure, axes)
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         if below is not None:
             draw_errors(figure, below, curves, colours, width)

@@ -1,0 +1,109 @@
+"""Points of the exact motion over the curves of harmonic balance: triangles for sweeps up and down."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import curve_label
+from fcm.plot.read import DrawnCurve, DrawnResponse, opened, read_response
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MARKERS = {"up": "^", "down": "v", "": "o"}  # by the sweep that visited a point; of a traced curve none did
+WORDS = {"up": "exact motion, swept up", "down": "swept down", "": "exact motion"}
+ALONE = {"up": "#0072B2", "down": "#D55E00", "": "#0072B2"}  # of one curve, told apart without colour as well
+NEUTRAL = "#404040"  # of what stands for the markers of several curves
+EDGE = 0.7  # [point]
+SIZE, SMALL = 4.0, 3.0  # [point] of a marker; of several curves' markers
+MOST = 60  # points of a traced curve that are marked
+
+
+@dataclass(frozen=True)
+class DrawnPoints:
+    """A response of exact motions, and for each of its curves the sweep of every point."""
+
+    response: DrawnResponse
+    sweeps: tuple[npt.NDArray[np.str_], ...]
+
+
+def read_points(path: Path) -> DrawnPoints:
+    """Read what ``fcm respond --method exact -o`` has written; PlotError if the file is something else."""
+    response = read_response(path)
+    with opened(path, "a file of exact motions", ("sweep",)) as dataset:
+        rows = np.asarray(dataset.variables["sweep"][:], dtype=str)
+        sweeps = tuple(row[: len(c.frequency)] for row, c in zip(rows, response.curves, strict=True))
+    return DrawnPoints(response, sweeps)
+
+
+def draw_points(
+    axes: Axes, points: DrawnPoints, dof: str, unit: str, curves: Sequence[DrawnCurve], colours: Sequence[str]
+) -> None:
+    """Draw the points of the curves that are drawn, each in the colour of its curve.
+
+    Raises
+    ------
+    PlotError
+        If the points are of other degrees of freedom, or of other curves.
+    """
+    theirs = points.response
+    if dof not in theirs.dofs:
+        raise PlotError(f"the points have no degree of freedom {dof!r}; they have {', '.join(theirs.dofs)}")
+    column, factor = theirs.dofs.index(dof), _factor(theirs.frequency_unit, unit)
+    several = len(curves) > 1
+    for curve, sweep in zip(theirs.curves, points.sweeps, strict=True):
+        number = _match(curve, curves)
+        for way in (way for way in MARKERS if way in sweep):
+            chosen = np.flatnonzero((sweep == way) & np.isfinite(curve.frequency))
+            if not way:
+                chosen = chosen[:: max(1, chosen.size // MOST)]
+            axes.plot(
+                factor * curve.frequency[chosen], curve.amplitude[chosen, column], MARKERS[way],
+                color=colours[number] if several else ALONE[way], markerfacecolor="none",
+                markeredgewidth=EDGE, markersize=SMALL if several else SIZE, label=f"_{WORDS[way]}",
+            )  # fmt: skip
+
+
+def name_points(figure: Figure, axes: Axes) -> None:
+    """Say above the axes what line and markers are."""
+    from matplotlib.lines import Line2D
+
+    drawn = {str(line.get_label()): line for line in axes.get_lines()}
+    ways = [way for way, word in WORDS.items() if f"_{word}" in drawn]
+    alone = sum(line.get_label() == f"_{WORDS[ways[0]]}" for line in axes.get_lines()) == 1 if ways else True
+    handles = [Line2D([], [], color=NEUTRAL, linewidth=1.1)]
+    for way in ways:
+        colour = ALONE[way] if alone else NEUTRAL
+        handle = Line2D([], [], linestyle="none", marker=MARKERS[way], color=colour, markersize=SIZE)
+        handle.set(markerfacecolor="none", markeredgewidth=EDGE)
+        handles.append(handle)
+    words = ["harmonic balance", *(WORDS[way] for way in ways)]
+    figure.legend(handles, words, loc="outside upper center", ncols=len(handles))
+
+
+def _factor(theirs: str, ours: str) -> float:
+    """What turns frequencies of one unit into the other."""
+    units = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
+    return units.get(theirs, 1.0) / units.get(ours, 1.0)
+
+
+def _match(points: DrawnCurve, curves: Sequence[DrawnCurve]) -> int:
+    """Which curve has the parameters of the points."""
+    if len(curves) == 1 and not (points.parameters and curves[0].parameters):
+        return 0
+    for number, curve in enumerate(curves):
+        if _same(points.parameters, curve.parameters):
+            return number
+    raise PlotError(f"no curve of the file is that of the points with {curve_label(points.parameters)}")
+
+
+def _same(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    return one.keys() == other.keys() and all(np.isclose(one[k], other[k], rtol=1e-12, atol=0.0) for k in one)

@@ -1,0 +1,69 @@
+"""Exact motions marked over curves: which markers are where, and what does not fit is said."""
+
+import numpy as np
+import pytest
+
+from fcm.plot import DrawnCurve, DrawnPoints, DrawnResponse, PlotError, draw_response
+
+KEY = "contact.shroud.n_0"
+FREQUENCY = np.linspace(1.0, 2.0, 21)
+
+
+def curve(n_0, frequency=FREQUENCY, **more):
+    amplitude = 5.0 / (1.0 + (20.0 * (frequency - 1.5)) ** 2) + n_0
+    parameters = {} if n_0 == 0.0 else {KEY: n_0}
+    return DrawnCurve(parameters, frequency, np.column_stack([amplitude, 2.0 * amplitude]), **more)
+
+
+def swept(*curves, unit="rad/s", dofs=("u", "v")):
+    """Points of each curve at three frequencies upwards and then downwards."""
+    at = np.array([1.2, 1.4, 1.6])
+    both = np.concatenate((at, at[::-1])) / (2.0 * np.pi if unit == "Hz" else 1.0)
+    marked = tuple(DrawnCurve(c.parameters, both, np.tile([[3.0, 4.0]], (6, 1))) for c in curves)
+    ways = np.array(["up"] * 3 + ["down"] * 3)
+    return DrawnPoints(DrawnResponse(dofs, unit, marked), (ways,) * len(curves))
+
+
+def markers(figure):
+    return [line for line in figure.axes[0].get_lines() if line.get_marker() in ("^", "v", "o")]
+
+
+@pytest.mark.parametrize("unit", ["rad/s", "Hz"])
+def test_triangles_point_where_the_sweep_went(unit):
+    figure = draw_response(
+        DrawnResponse(("u", "v"), "rad/s", (curve(0.0),)), "v", points=swept(curve(0.0), unit=unit)
+    )
+    up, down = markers(figure)
+    assert (up.get_marker(), down.get_marker()) == ("^", "v")
+    assert up.get_xdata() == pytest.approx([1.2, 1.4, 1.6])
+    assert down.get_xdata() == pytest.approx([1.6, 1.4, 1.2])
+    assert set(up.get_ydata()) == {4.0}
+    (legend,) = figure.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words == ["harmonic balance", "exact motion, swept up", "swept down"]
+
+
+def test_points_have_the_colour_of_their_curve_in_any_order():
+    curves = curve(1.0), curve(2.0)
+    figure = draw_response(DrawnResponse(("u", "v"), "rad/s", curves), points=swept(curves[1], curves[0]))
+    lines = [line for line in figure.axes[0].get_lines() if len(line.get_xdata()) == FREQUENCY.size]
+    colours = [line.get_color() for line in markers(figure)]
+    assert colours == [lines[i].get_color() for i in (1, 1, 0, 0)]
+
+
+def test_a_traced_curve_is_marked_by_circles():
+    traced = curve(0.0)
+    points = DrawnPoints(DrawnResponse(("u", "v"), "rad/s", (traced,)), (np.full(FREQUENCY.size, ""),))
+    figure = draw_response(DrawnResponse(("u", "v"), "rad/s", (traced,)), points=points)
+    (circles,) = markers(figure)
+    assert circles.get_marker() == "o"
+    np.testing.assert_array_equal(circles.get_xdata(), FREQUENCY)
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [(swept(curve(3.0)), "= 3"), (swept(curve(1.0), dofs=("x", "y")), "no degree of freedom 'u'")],
+)
+def test_points_of_something_else_are_refused(points, said):
+    with pytest.raises(PlotError, match=said):
+        draw_response(DrawnResponse(("u", "v"), "rad/s", (curve(1.0), curve(2.0))), points=points)
