@@ -1,0 +1,58 @@
+"""Points of a harmonic-balance curve beside the exact periodic motion at the same frequencies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.response import Curve
+from fcm.scene.model import Scene
+from fcm.simulate import SimulationError, harmonic_state, periodic
+
+SHARES = (0.02, 0.25, 0.5, 0.75, 0.98)  # where along a curve it is compared, beside its highest point
+FROM_FOLDS = 0.03  # relative distance in frequency within which a fold of the exact curve may lie elsewhere
+
+
+@dataclass(frozen=True)
+class Beside:
+    """One point."""
+
+    frequency: float  # [rad/s]
+    difference: (
+        float  # of the complex fundamentals, relative to the greatest; NaN if no exact motion is found
+    )
+    truncation: float  # the estimate of what the single harmonic leaves out, relative
+
+
+def beside_exact(scene: Scene, curve: Curve) -> list[Beside]:
+    """Compare some stable points of a curve, away from its folds, with exact periodic solutions.
+
+    The exact motion is found by shooting from the point itself, and its fundamental compared.
+    """
+    return [_beside(scene, curve, int(i)) for i in chosen(curve)]
+
+
+def chosen(curve: Curve) -> list[int]:
+    """Stable points at some shares of the curve and its highest one, none of them next to a fold."""
+    away = np.isfinite(curve.frequency) & curve.stable
+    for fold in curve.folds:
+        away &= np.abs(curve.frequency - fold) > FROM_FOLDS * fold
+    at = np.flatnonzero(away)
+    if at.size == 0:
+        return []
+    some = {int(at[round(share * (at.size - 1))]) for share in SHARES}
+    return sorted(some | {int(at[curve.amplitude[at].max(axis=1).argmax()])})
+
+
+def _beside(scene: Scene, curve: Curve, i: int) -> Beside:
+    frequency, truncation = float(curve.frequency[i]), float(curve.truncation_error[i])
+    try:
+        guess = harmonic_state(scene, frequency, curve.amplitude[i], curve.phase[i], curve.mean[i])
+        exact = periodic(scene, frequency, guess).measure
+    except SimulationError:
+        return Beside(frequency, float("nan"), truncation)
+    ours = curve.amplitude[i] * np.exp(1j * curve.phase[i])
+    theirs = exact.fundamental * np.exp(1j * exact.phase)
+    size = float(np.abs(ours).max())
+    return Beside(frequency, float(np.abs(theirs - ours).max()) / (size if size > 0.0 else 1.0), truncation)

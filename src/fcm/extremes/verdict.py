@@ -1,0 +1,66 @@
+"""Whether a row of the catalogue passes, and in plain words why not. A row passes if all of this holds:
+
+- its curve is complete and every point of it was corrected; or it stops where the amplitude has no limit,
+  at a resonance that nothing damps;
+- at every point the full modal equations are balanced: what is left is below 1e-9 of the forces, or below a
+  hundred times what the last digits of displacements and forces are worth;
+- table and closed form lead to the same peaks and folds, to 1e-6;
+- at each of some points away from the folds an exact periodic motion is found, whose fundamental differs by
+  less than five times the error that is estimated for leaving out the higher harmonics, or than 1e-6.
+"""
+
+from __future__ import annotations
+
+from fcm.extremes.exact import Beside
+from fcm.extremes.residual import BALANCED, ROUNDINGS
+from fcm.extremes.row import Row
+from fcm.response.path import REASONS, UNBOUNDED
+
+SAME = 1e-6  # peaks and folds by table and by closed form, relative
+TRUNCATIONS, LINEAR = 5.0, 1e-6  # of the estimated error; where the response is linear
+
+
+def faults(row: Row) -> list[str]:
+    """Why a row does not pass; empty if it does."""
+    return [fault for fault in (_incomplete(row), _unbalanced(row), _table(row), _exact(row)) if fault]
+
+
+def excess(point: Beside) -> float:
+    """Difference from the exact motion in units of what is allowed."""
+    return point.difference / max(TRUNCATIONS * point.truncation, LINEAR)
+
+
+def _incomplete(row: Row) -> str:
+    if not row.complete and not row.reason.endswith(REASONS[UNBOUNDED]):
+        return f"not complete: {row.reason}"
+    return f"{row.uncorrected} points not corrected" if row.uncorrected else ""
+
+
+def _unbalanced(row: Row) -> str:
+    if row.residual <= BALANCED + ROUNDINGS * row.rounding:
+        return ""
+    return f"residual {row.residual:.1e}, rounding {row.rounding:.1e}"
+
+
+def _table(row: Row) -> str:
+    if row.table <= SAME:
+        return ""
+    return f"peaks or folds by table and by closed form differ by {row.table:.1e}"
+
+
+def _exact(row: Row) -> str:
+    missing = [point for point in row.exact if point not in row.compared]
+    if missing:
+        where = ", ".join(f"{point.frequency:.6g}" for point in missing)
+        estimate = max(point.truncation for point in missing)
+        return (
+            f"no exact motion found at {where} rad/s (estimated error of the single harmonic {estimate:.1g})"
+        )
+    far = [point for point in row.compared if excess(point) > 1.0]
+    if not far:
+        return ""
+    worst = max(far, key=excess)
+    return (
+        f"differs from the exact motion by {worst.difference:.1e} at {worst.frequency:.6g} rad/s, "
+        f"estimated {worst.truncation:.1e}"
+    )
