@@ -18,7 +18,6 @@ from fcm.response.structure import BoolArray, IntArray
 MAX_ITERATIONS = 7  # Newton steps before a predictor is judged too far away
 CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every point is corrected later
 FLOOR = 1e-8  # a second step below this is at the rounding of the force: it would be 1e-16 otherwise
-FLOOR = 1e-8  # a second step below this is at the rounding of the force: it would be 1e-16 otherwise
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
 
@@ -122,7 +121,6 @@ def correct(
         length = np.sqrt((change * change).sum(axis=1))
         done |= (length * length < close * before) & (length < 0.1 * before)
         done |= length < 1e-2 * close
-        done |= (length < FLOOR) & (before < FLOOR)
         done |= (length < FLOOR) & (before < FLOOR)
         before = length
         if (done | lost).all():
