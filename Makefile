@@ -16,9 +16,9 @@ LOOK       := src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py 
 LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(LOOK) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py
 NORMAL     := $(CONTACT) $(LOOK) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
-CURVES     := $(LOOK) $(addprefix src/fcm/plot/,place.py response.py error_panel.py) src/fcm/cli/plot.py
+CURVES     := $(LOOK) $(addprefix src/fcm/plot/,place.py points.py response.py error_panel.py) src/fcm/cli/plot.py
 HISTORIES  := $(LOOK) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
-FIGURES    := $(foreach number,5 6 8 10 11 12 13 15,$(PAPER)/figure$(number).png)
+FIGURES    := $(foreach number,5 6 8 10 11 12 13 14 15,$(PAPER)/figure$(number).png)
 
 COMPARED   := yang1998-n5 two-contacts yang1998
 
@@ -74,8 +74,17 @@ $(PAPER)/figure12.png: $(NORMAL) $(VENV)/installed
 $(PAPER)/figure13.nc: src/fcm/scenes/yang1998.toml $(SOLVER) $(VENV)/installed
 	$(call fcm,respond yang1998 -o $@)
 
-$(PAPER)/figure13.png: $(PAPER)/figure13.nc $(CURVES)
-	$(call fcm,plot response $< -o $@)
+$(PAPER)/figure13-points.nc: src/fcm/scenes/yang1998.toml $(SIMULATION) $(VENV)/installed
+	$(call fcm,respond yang1998 --method exact --at 0.7:1.7:41 -o $@)
+
+$(PAPER)/figure14.nc: src/fcm/scenes/yang1998-n5.toml $(SOLVER) $(VENV)/installed
+	$(call fcm,respond yang1998-n5 -o $@)
+
+$(PAPER)/figure14-points.nc: src/fcm/scenes/yang1998-n5.toml $(SIMULATION) $(VENV)/installed
+	$(call fcm,respond yang1998-n5 --method exact --at 0.8:1.16:19 --at 1.165:1.265:21 --at 1.28:1.6:17 -o $@)
+
+$(PAPER)/figure13.png $(PAPER)/figure14.png: $(PAPER)/%.png: $(PAPER)/%.nc $(PAPER)/%-points.nc $(CURVES)
+	$(call fcm,plot response $< --points $(word 2,$^) --no-errors -o $@)
 
 $(PAPER)/figure15.nc: src/fcm/scenes/yang1998-jump.toml $(SIMULATION) $(VENV)/installed
 	$(call fcm,respond yang1998-jump -o $@)

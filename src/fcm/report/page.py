@@ -34,11 +34,11 @@ dd { margin: 0; }
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of texts; ``agrees`` adds a column that says of each row whether it is as expected."""
+    """Rows of texts; ``agrees`` adds a column: of each row whether it is as expected, None if nothing is."""
 
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
-    agrees: Sequence[bool] | None = None
+    agrees: Sequence[bool | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -121,5 +121,7 @@ def _table(table: Table) -> str:
     return "\n".join([*lines, "</tbody></table>"])
 
 
-def _verdict(agrees: bool) -> str:
+def _verdict(agrees: bool | None) -> str:
+    if agrees is None:
+        return "<td></td>"
     return '<td class="yes">agrees</td>' if agrees else '<td class="no">differs</td>'

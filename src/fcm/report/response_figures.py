@@ -56,6 +56,10 @@ def figure_13(folder: Path) -> list[Row]:
     best = min(peaks, key=lambda n: peaks[n])
     stuck, opened = max(curves), min(curves)
     above, below = stuck_above(), open_below()
+    marks = _read(folder / "figure13-points.nc")
+    off = np.concatenate(
+        [off_the_curve(curve, marks.isel(curve=i)) for i, curve in enumerate(curves.values())]
+    )
     least = f"{best:g}: peak {peaks[best]:.3f} at {at[best]:.3f} rad/s"
     between = all(at[opened] <= at[n] <= at[stuck] for n in curves)
     folds = {n: curve.fold_frequency.values[np.isfinite(curve.fold_frequency)] for n, curve in curves.items()}
@@ -63,6 +67,9 @@ def figure_13(folder: Path) -> list[Row]:
         Row("stuck at every frequency", "above about 90", f"above {above:.2f}", abs(above - 90.0) < 5.0),
         Row("separate at every frequency", "below −50", f"below −{-below:.2f}", abs(below + 50.0) < 0.5),
         Row("preload of the least response", "10", least, best == 10.0),
+        Row("simulated points lie on the curves", "yes",
+            f"{off.size} points: half of them within {np.median(off):.1g}, nine tenths within "
+            f"{np.quantile(off, 0.9):.1g} of their amplitude", bool(np.quantile(off, 0.9) < SLIGHT)),
         Row("peaks lie between those of the two linear cases", "yes",
             f"{at[opened]:.3f} to {at[stuck]:.3f} rad/s", between),
         Row("n₀ = −20, a gap: hardening, the peak bends to higher frequencies", "yes",
@@ -123,7 +130,7 @@ def figure_14(folder: Path) -> list[Row]:
             f"{several[0]:g} to {several[-1]:g} rad/s, of points {_step(points):g} apart",
             (round(several[0], 6), round(several[-1], 6)) == TWO_STATES),
         Row("three solutions of harmonic balance, one of them unstable", "a dashed part of the curve",
-            f"{folds[0]:.4f} to {folds[-1]:.4f} rad/s", len(folds) == 2 and middle),
+            f"{folds[0]:.4f} to {folds[-1]:.4f} rad/s", bool(len(folds) == 2 and middle)),
         Row("difference from the simulation near the resonance", "slight",
             f"peak {peaks[0]:.2f}, simulated {peaks[1]:.2f}: {apart:.1%}", abs(apart) < SLIGHT),
     ]  # fmt: skip
@@ -155,7 +162,5 @@ def figure_15(folder: Path) -> list[Row]:
             ("I", "II", "III"), schedule, stated, ends, good, strict=True
         )
     ]
-    balance = Row(
-        "work of the force less energy dissipated and stored", "not stated", f"{error:.1g}", error < 1e-9
-    )
+    balance = Row("work of the force less energy dissipated and stored", "not stated", f"{error:.1g}", None)
     return [*rows, balance]

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 
 class Row(NamedTuple):
-    """What is compared, as the paper states it and as it was obtained, and whether the two agree."""
+    """A quantity as the paper states it and as it was obtained, and whether the two agree."""
 
     quantity: str
     stated: str
     obtained: str
-    agrees: bool
+    agrees: bool | None  # None where the paper states nothing
 
 
 def near(
