@@ -72,18 +72,35 @@ def slip_limit(b_bar: float, phi: float) -> float:
     return float(boundaries(np.array([b_bar]), phi)["slip"][0])
 
 
+def starts_in_phase(n0_bar: float, b_bar: float) -> tuple[float, float]:
+    """Where negative and positive slip begin in phase [degree], by the formulas of figure 4's caption.
+
+    Their angles count from the greatest displacement; mu gamma is b_bar. The first is printed with the
+    denominator 1 - mu gamma; -n = f at the end of the stick gives 1 + mu gamma.
+    """
+    first = math.acos((1.0 - 2.0 * n0_bar - b_bar) / (1.0 + b_bar))
+    second = 2.0 * math.pi - math.acos((2.0 * n0_bar - b_bar - 1.0) / (1.0 - b_bar))
+    return math.degrees(first) + 90.0, math.degrees(second) + 90.0
+
+
 def figure_6(folder: Path) -> list[Row]:
     """Slip without separation at every phase; in phase, slip ends where the motion reverses."""
     loops = read_loops(folder / "figure6.json")
     inside = all(loop["b_bar"] < loop["n0_bar"] < slip_limit(loop["b_bar"], loop["phi"]) for loop in loops)
     states = {loop["sequence"] for loop in loops}
-    ends = slip_ends(next(loop for loop in loops if loop["phi"] == 0.0))
+    in_phase = next(loop for loop in loops if loop["phi"] == 0.0)
+    ends = slip_ends(in_phase)
+    starts = {t["to"]: t["degrees"] for t in in_phase["transitions"] if t["from"] == "E"}
+    negative, positive = starts_in_phase(in_phase["n0_bar"], in_phase["b_bar"])
     others = [slip_ends(loop)[0] - 90.0 for loop in loops if loop["phi"] != 0.0]
     return [
         Row("preload between the limits of (26)", "yes", "at every phase" if inside else "no", inside),
         Row("states in order", "stick, slip, stick, slip", ", ".join(sorted(states)), states == {"EPEN"}),
         near("in phase, end of positive slip: at the reversal", 90.0, ends[0], 1e-9, ".1f", "°"),
         near("in phase, end of negative slip: at the reversal", 270.0, ends[1], 1e-9, ".1f", "°"),
+        near("in phase, start of positive slip: θ₂ of figure 4", positive, starts["P"], 1e-9, ".3f", "°"),
+        near("in phase, start of negative slip: θ₁ of figure 4, its denominator read as 1 + μγ",
+             negative, starts["N"], 1e-9, ".3f", "°"),
         Row(
             "at other phases, from the reversal to the end of positive slip", "not zero",
             ", ".join(f"{end:.1f}°" for end in others), min(map(abs, others)) > 1.0,
