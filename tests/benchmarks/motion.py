@@ -105,7 +105,8 @@ def ten_preloads() -> None:
     each = took / exact.size
     print(f"\namplitude of u at {FREQUENCIES.size} frequencies for each of {exact.shape[1]} preloads")
     print(
-        f"  exact, upward and downward sweep     {took:8.2f} s   {1e3 * each:6.1f} ms a motion; closed to {open_by:.1e}"
+        f"  exact, upward and downward sweep     {took:8.2f} s   "
+        f"{1e3 * each:6.1f} ms a motion; closed to {open_by:.1e}"
     )
     preloads = [curve.contacts[0].n_0 for curve in scene.each_curve()]
     preload, omega = np.meshgrid(preloads, FREQUENCIES, indexing="ij")

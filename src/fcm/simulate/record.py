@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -62,7 +63,7 @@ class Record:
     displacement: FloatArray  # (instant, dof)
     state: ByteArray  # (instant, contact) index into LETTERS
     transition_time: FloatArray  # (transition,) [s]
-    transition_contact: ByteArray  # (transition,)
+    transition_contact: npt.NDArray[np.int16]  # (transition,)
     transition_state: ByteArray  # (transition,) index into LETTERS of the state that begins
     phases: list[PhaseResult]
     end: State  # from which another schedule can go on
@@ -122,8 +123,8 @@ def unfinished(scene: Scene, plan: Plan) -> Record:
 
 def total(parts: Sequence[Energy]) -> Energy:
     """The balance of successive motions."""
-    work, slip, damping, stored = (sum(part[i] for part in parts) for i in range(4))
-    turnover = sum(part.turnover - abs(part.stored) for part in parts) + abs(stored)
+    work, slip, damping, stored = (sum((part[i] for part in parts), 0.0) for i in range(4))
+    turnover = sum((part.turnover - abs(part.stored) for part in parts), abs(stored))
     return Energy(work, slip, damping, stored, turnover)
 
 
@@ -132,9 +133,32 @@ class _Tally:
     """What is counted in a phase."""
 
     first: int  # its first cycle
-    energies: list[Energy] = field(default_factory=list)
+    energy: Energy = field(default_factory=lambda: total([]))
     transitions: int = 0
     states: tuple[str, ...] | None = None  # of each contact in the last whole cycle
+
+
+class _Transitions:
+    """All changes of state are counted; their times are kept while there is room."""
+
+    def __init__(self) -> None:
+        self.times, self.contacts, self.states = array("d"), array("h"), array("b")
+        self.letters = ""  # the states until now
+
+    def count(self, cycle: Cycle, start: float) -> int:
+        """Transitions of a cycle that begins at a time [s]."""
+        found = 0
+        for segment in cycle.segments:
+            for j, (before, after) in enumerate(zip(self.letters, segment.states, strict=False)):
+                if before == after:
+                    continue
+                found += 1
+                if len(self.times) < MOST_TRANSITIONS:
+                    self.times.append(start + segment.start)
+                    self.contacts.append(j)
+                    self.states.append(LETTERS.index(after))
+            self.letters = segment.states
+        return found
 
 
 class _Recorder:
@@ -144,9 +168,8 @@ class _Recorder:
         self.measures = np.full((4, plan.phase.size, dofs), np.nan)
         self.displacement = np.full((plan.instants, dofs), np.nan)
         self.state = np.full((plan.instants, contacts), NOT_REACHED, dtype=np.int8)
-        self.transitions: list[tuple[float, int, int]] = []
+        self.transitions = _Transitions()
         self.tallies: list[_Tally] = []
-        self.letters = ""
 
     def add(self, phase: int, cycle: Cycle, end: State) -> None:
         """Keep what is reported of the next cycle; nothing of it if that is interrupted."""
@@ -156,8 +179,8 @@ class _Recorder:
         if phase == len(self.tallies):
             self.tallies.append(_Tally(self.done))
         tally = self.tallies[phase]
-        tally.transitions += self._count(cycle)
-        tally.energies.append(balance)
+        tally.transitions += self.transitions.count(cycle, float(self.plan.start[self.done]))
+        tally.energy = total([tally.energy, balance])
         if self.plan.part[self.done] == 1.0 or tally.states is None:
             tally.states = cycle.states
         self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
@@ -176,24 +199,16 @@ class _Recorder:
         codes = np.array([_codes(segment.states) for segment in cycle.segments], dtype=np.int8)
         self.state[chosen] = codes[np.searchsorted(starts, times, side="right")]
 
-    def _count(self, cycle: Cycle) -> int:
-        """Transitions of the cycle; their times are kept while there is room."""
-        count, start = 0, float(self.plan.start[self.done])
-        for segment in cycle.segments:
-            for j, (before, after) in enumerate(zip(self.letters, segment.states, strict=False)):
-                if before != after:
-                    count += 1
-                    if len(self.transitions) < MOST_TRANSITIONS:
-                        self.transitions.append((start + segment.start, j, LETTERS.index(after)))
-            self.letters = segment.states
-        return count
-
     def record(self, reason: str) -> Record:
         amplitude, mean, greatest, least = self.measures
-        columns = np.array(self.transitions, dtype=np.float64).reshape(-1, 3).T
+        found = self.transitions
+        if self.done < self.plan.phase.size:  # it may have been interrupted within a cycle
+            self.displacement[self.plan.first[self.done] :] = np.nan
+            self.state[self.plan.first[self.done] :] = NOT_REACHED
         return Record(
             self.scene.parameters, amplitude, mean, greatest, least, self.displacement, self.state,
-            columns[0], columns[1].astype(np.int8), columns[2].astype(np.int8),
+            np.array(found.times), np.array(found.contacts, dtype=np.int16),
+            np.array(found.states, dtype=np.int8),
             self._phases(), self.end, reason, 0.0,
         )  # fmt: skip
 
@@ -211,7 +226,7 @@ class _Recorder:
         amplitude, mean = (values[cycles][:whole] for values in self.measures[:2])
         return PhaseResult(
             phase.frequency, float(part.sum()), amplitude[-1], mean[-1], tally.states or (),
-            tally.transitions, unsettled(amplitude), total(tally.energies),
+            tally.transitions, unsettled(amplitude), tally.energy,
         )  # fmt: skip
 
 
