@@ -85,8 +85,9 @@ def test_a_wrong_estimate_is_found_and_everything_kept(monkeypatch):
     reference = trace(scene, tolerance=None)
     monkeypatch.setattr("fcm.response.static_modes._linear_error", lambda *_: 0.0)  # as if there were none
     response = trace(scene, tolerance=1e-9)
-    assert response.left_out == []
-    assert response.curves[0].peaks == reference.curves[0].peaks
+    assert not any("far above" in sentence for sentence in response.left_out)
+    for dof, peak in reference.curves[0].peaks.items():
+        assert response.curves[0].peaks[dof] == pytest.approx(peak, rel=1e-9)
 
 
 def oscillator(**more):
@@ -126,7 +127,9 @@ def test_idle_modes_and_contacts_have_no_effect():
 def test_the_regimes_of_contacts_left_out_are_those_of_contacts_kept():
     scene = oscillator()
     light, full = trace(scene, "closed-form"), trace(scene, "closed-form", tolerance=None)
-    assert light.left_out and not full.left_out
+    assert len(light.left_out) == 3 and [text.partition(",")[0] for text in full.left_out] == [
+        "the mean of 1 rigid-body mode"
+    ]
     one, other = light.curves[0], full.curves[0]
     assert one.peaks["u"] == pytest.approx(other.peaks["u"], rel=1e-7)
     assert one.regime.shape[1] == other.regime.shape[1] == 3

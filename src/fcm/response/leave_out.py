@@ -4,18 +4,20 @@ Without any effect are left out: modes that neither a force nor a contact moves,
 nothing. Modes far above the range are replaced by few (`static_modes`) where that pays; what this changes
 is measured afterwards with all modes, and if it is more than the tolerance they are put back.
 
-Contacts that happen to stay open or stuck are kept: without them, branches on which they do not stay so
-would never be found.
+Contacts that are foreseen to stay open or stuck all along have no unknowns (`foreseen`), which is checked.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
+from fcm.response.foreseen import OPEN, STUCK, States, foreseen
+from fcm.response.sentences import counted
 from fcm.response.static_modes import with_static_modes
+from fcm.response.structure import Spring
 from fcm.scene.model import Contact, Modal, Scene
 
 TOLERANCE = 1e-5  # of the response, for modes that are replaced
@@ -29,45 +31,39 @@ class Lighter:
     full: tuple[Scene, ...]
     exact: tuple[Scene, ...]  # without what has no effect
     curves: tuple[Scene, ...]  # what is traced
-    contacts: tuple[int, ...]  # which of the contacts are traced
+    contacts: tuple[int, ...]  # which of the contacts are traced, with unknowns of their own
     sentences: tuple[str, ...]  # what was left out without any effect, and why
     above: float | None = None  # [rad/s] modes above are replaced by few
+    states: States = field(default_factory=dict)  # contacts that are foreseen to stay stuck or open
+    whole: bool = False  # nothing is to be left out
 
     @property
     def idle_table(self) -> bool:
         """Whether no contact needs friction coefficients."""
-        return not any(c.mu > 0.0 and c.k_u > 0.0 for s in self.curves for c in s.contacts)
+        contacts = [c for s in self.curves for c in s.contacts if not isinstance(c, Spring)]
+        return not (self.whole or any(c.mu > 0.0 and c.k_u > 0.0 for c in contacts))
 
 
 def keep_all(curves: tuple[Scene, ...]) -> Lighter:
     """The scenes as they are."""
-    return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), ())
+    return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
-def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE) -> Lighter:
-    """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect."""
+def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, foresee: bool = True) -> Lighter:
+    """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
+
+    Unless foresee is false, contacts are without unknowns that are foreseen to stay stuck or open.
+    """
     needed = tuple(i for i in range(len(curves[0].contacts)) if any(_carries(s, i) for s in curves))
     lighter = tuple(_with_contacts(s, needed) for s in curves)
     sentences = _idle_contacts(curves[0], needed)
     moved = np.logical_or.reduce([_moved(s) for s in _different(lighter)])
     if moved.any() and not moved.all():
         lighter = _with_modals(lighter, {id(s.modal): _some_modes(s.modal, moved) for s in lighter})
-        what = f"{_counted(int((~moved).sum()), 'mode')} of {moved.size}"
+        what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
         sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
-    return _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance)
-
-
-def sentence_on_modes(lighter: Lighter, shift: float) -> str:
-    """What was replaced, with the bound that the check gives."""
-    modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
-    above = (lighter.above or 0.0) / (2.0 * np.pi if unit == "Hz" else 1.0)
-    high = int((modal.frequency > (lighter.above or 0.0)).sum())
-    few = int((fewer.frequency > (lighter.above or 0.0)).sum())
-    return (
-        f"{_counted(high, 'mode')} of {modal.frequency.size} above {above:.4g} {unit}: far above the range, "
-        f"replaced by {few} with the same flexibility (changes the response by less than {2.0 * shift:.1e}, "
-        "twice the most at the points checked, peaks among them)"
-    )
+    found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance)
+    return _without_unknowns(found) if foresee else found
 
 
 def _static(lighter: Lighter, tolerance: float) -> Lighter:
@@ -80,6 +76,25 @@ def _static(lighter: Lighter, tolerance: float) -> Lighter:
         return lighter
     modal, above = found
     return replace(lighter, curves=tuple(replace(s, modal=modal) for s in curves), above=above)
+
+
+def _without_unknowns(lighter: Lighter) -> Lighter:
+    """Contacts that are foreseen to stay stuck are springs, and those that stay open are not there."""
+    states = foreseen(lighter.curves)
+    if not states:
+        return lighter
+    curves = tuple(replace(s, contacts=_as_foreseen(s.contacts, states)) for s in lighter.curves)
+    contacts = tuple(number for i, number in enumerate(lighter.contacts) if i not in states)
+    numbered = {lighter.contacts[i]: state for i, state in states.items()}
+    return replace(lighter, curves=curves, contacts=contacts, states=numbered)
+
+
+def _as_foreseen(contacts: tuple[Contact, ...], states: States) -> tuple[Contact, ...]:
+    return tuple(
+        Spring(**vars(c)) if states.get(i) == STUCK else c
+        for i, c in enumerate(contacts)
+        if states.get(i) != OPEN
+    )
 
 
 def _stiffest(curves: tuple[Scene, ...]) -> Scene:
@@ -145,7 +160,3 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
     why = "without friction or stiffness, or nothing moves it: it carries nothing (no effect)"
     idle = [i for i in range(len(scene.contacts)) if i not in needed]
     return [f"contact {scene.contacts[i].name or i}: {why}" for i in idle]
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"

@@ -7,6 +7,7 @@ import numpy as np
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
 from fcm.response.displacement import displacements
+from fcm.response.foreseen import States, room
 from fcm.response.law import UNKNOWNS, ClosedForm, Law
 from fcm.response.leave_out import Lighter
 from fcm.response.newton import amplitudes, correct, scales
@@ -31,6 +32,15 @@ def restored(response: Response, lighter: Lighter) -> Response:
     return response
 
 
+def least_room(curve: Curve, scene: Scene, states: States) -> dict[int, float]:
+    """Of contacts foreseen to be stuck or open, how far they are from not being so, at the least."""
+    at = np.flatnonzero(np.isfinite(curve.frequency))
+    x = _unknowns(curve, scene, at)
+    u, v, v_mean = x[..., 0] + 1j * x[..., 1], x[..., 2] + 1j * x[..., 3], x[..., 4]
+    each = {i: room(scene.contacts[i], state, u[:, i], v[:, i], v_mean[:, i]) for i, state in states.items()}
+    return {i: float(spare.min(initial=np.inf)) for i, spare in each.items()}
+
+
 def checked(response: Response, lighter: Lighter) -> float:
     """Shift of the response, relative, when points of the curves are corrected with all modes."""
     per_curve = max(min(EACH_CHECKED, MOST_CHECKED // len(response.curves)), 1)
@@ -45,6 +55,8 @@ def checked(response: Response, lighter: Lighter) -> float:
 
 def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     """Give a curve the loops and regimes of the contacts that were not traced."""
+    if curve.points == 0:
+        traced, curve.loop, curve.regime = [], curve.loop[:, :0], curve.regime[:, :0]
     at = np.flatnonzero(np.isfinite(curve.frequency))
     group = group_of([scene])
     law = Law(group.mu, group.k_u, group.k_v, group.n_0, ClosedForm())

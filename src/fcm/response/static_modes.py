@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
-from fcm.response.structure import Group, group_of, modal_compliance, receptance, to_ports
+from fcm.response.linear import all_springs, linear_response, telling_frequencies
 from fcm.scene.model import Modal, Scene
 
 ABOVE = (2.0, 3.0, 4.5, 7.0, 10.0, 15.0, 25.0)  # times the range's end: where modes begin to be far above
@@ -22,7 +22,6 @@ PAYS = 0.6  # of the modes may remain; otherwise nothing is gained
 FEWEST = 30  # modes of a structure for which it is worth trying
 INDEPENDENT = 1e-10  # relative size below which a static response is a combination of the others
 MARGIN = 0.5  # of the tolerance, for the estimate that decides
-SPREAD = 24  # frequencies of the range at which linear responses are compared, besides resonances
 
 
 def with_static_modes(scene: Scene, tolerance: float) -> tuple[Modal, float] | None:
@@ -83,34 +82,12 @@ def _directions(scene: Scene) -> FloatArray:
 
 def _linear_error(full: Scene, fewer: Scene) -> float:
     """Greatest relative difference of the two linear responses, contacts all open and all stuck."""
-    low, high = full.frequency_range
     worst = 0.0
     for stuck in (0.0, 1.0):
-        at = _resonances(fewer, stuck)
-        omega = np.concatenate((np.linspace(low, high, SPREAD), at[(at > low) & (at < high)]))
-        one, other = (_linear_response(group_of([s]), omega, stuck) for s in (full, fewer))
+        springs = stuck * all_springs(full)
+        omega = telling_frequencies(fewer, springs)
+        one, other = (linear_response(scene, omega, springs) for scene in (full, fewer))
         size = np.abs(one).max(axis=1)
         difference = np.abs(one - other).max(axis=1)
         worst = max(worst, float((difference / np.where(size > 0.0, size, 1.0)).max()))
     return worst
-
-
-def _resonances(scene: Scene, stuck: float) -> FloatArray:
-    """Natural frequencies with springs for contacts."""
-    group, modal = group_of([scene]), scene.modal
-    springs = stuck * np.stack((group.k_u[0], group.k_v[0]), axis=-1).ravel()
-    ports = group.ports[0] / np.sqrt(modal.mass)[:, None]
-    square = np.linalg.eigvalsh(np.diag(modal.frequency**2) + (ports * springs) @ ports.T)
-    return np.asarray(np.sqrt(np.maximum(square, 0.0)), dtype=np.float64)
-
-
-def _linear_response(group: Group, omega: FloatArray, stuck: float) -> FloatArray:
-    """Complex amplitudes (frequency, dof) with springs for contacts."""
-    compliance, _ = modal_compliance(group, omega)
-    springs = stuck * np.stack((group.k_u, group.k_v), axis=-1).reshape(1, -1)
-    matrix = np.eye(springs.size) + receptance(group, compliance) * springs[:, None, :]
-    external = to_ports(group, compliance * group.force)
-    ports = np.linalg.solve(matrix, external[..., None])[..., 0]
-    load = group.force - (springs * ports) @ group.ports[0].T
-    response: FloatArray = (compliance * load) @ group.shapes[0]
-    return response

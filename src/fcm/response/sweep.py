@@ -6,14 +6,14 @@ import os
 import time
 from pathlib import Path
 
+from fcm.response import sentences
+from fcm.response.foreseen import ENOUGH
 from fcm.response.groups import Finished, Group, Work, lost_curve, one_by_one
 from fcm.response.kept import Kept, fingerprint
 from fcm.response.law import UNKNOWNS, ClosedForm, Coefficients
-from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out, sentence_on_modes
-from fcm.response.newton import CLOSE
-from fcm.response.newton import CLOSE
+from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
 from fcm.response.path import Progress
-from fcm.response.put_back import checked, restored
+from fcm.response.put_back import checked, least_room, restored
 from fcm.response.result import Curve, Response
 from fcm.response.structure import unknown_contacts
 from fcm.response.trace import METHODS, ResponseError
@@ -70,29 +70,36 @@ def trace(
     begin = time.perf_counter()
     curves = scene.each_curve()
     lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance)
-    sentences = list(lighter.sentences)
-    if tolerance is not None and method == "table" and table is None and lighter.idle_table:
-        sentences.append("the table: no contact has friction (no effect)")
-        table = ClosedForm()
     sweep = _Sweep(scene, method, table, progress, jobs or os.cpu_count() or 1, keep, resume)
-    response = sweep.run(lighter)
+    response, said = sweep.run(lighter), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or interrupted(response):
-            sentences.append(sentence_on_modes(lighter, shift))
+            said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
             lighter = leave_out(curves, 0.0)
             response = sweep.run(lighter)
     response = restored(response, lighter)
-    if uncorrected := sum(curve.uncorrected for curve in response.curves):
-        points = f"{uncorrected} point{'s' if uncorrected > 1 else ''}"
-        sentences.append(f"the last correction of {points}, which stay as they were traced, to {CLOSE:g}")
-    if stiff := sum(curve.without_table for curve in response.curves):
-        which = f"{stiff} curve{'s' if stiff > 1 else ''}"
-        sentences.append(f"the table, for {which} whose stiff contacts multiply its error: closed form")
-    response.left_out = sentences
+    if lighter.states:
+        said += _as_foreseen(sweep, response, lighter)
+    if sweep.table_idle:
+        said.append("the table: no contact needs it (no effect)")
+    response.left_out = [*said, *sentences.on_means(lighter), *sentences.on_points(response)]
     response.seconds = time.perf_counter() - begin
     return response
+
+
+def _as_foreseen(sweep: _Sweep, response: Response, lighter: Lighter) -> list[str]:
+    """Solve curves again on which contacts did not stay as foreseen, with all of them; what is to be said."""
+    rooms = [least_room(*each, lighter.states) for each in zip(response.curves, lighter.full, strict=True)]
+    wrong = [i for i, room in enumerate(rooms) if min(room.values()) < ENOUGH]
+    if wrong:
+        again = leave_out(tuple(lighter.full[i] for i in wrong), 0.0, foresee=False)
+        sweep.keep = None
+        for i, curve in zip(wrong, restored(sweep.run(again), again).curves, strict=True):
+            response.curves[i] = curve
+    right = [room for i, room in enumerate(rooms) if i not in wrong]
+    return sentences.on_contacts(lighter, right, len(wrong))
 
 
 class _Sweep:
@@ -108,6 +115,7 @@ class _Sweep:
     ) -> None:
         self.scene, self.method, self.table, self.progress = scene, method, table, progress
         self.jobs, self.keep, self.resume = jobs, keep, resume
+        self.table_idle = method == "table" and table is None  # until it is opened
 
     def run(self, lighter: Lighter) -> Response:
         """Trace all groups that are not finished already."""
@@ -117,7 +125,7 @@ class _Sweep:
         kept = Kept(several, mark, self.resume)
         left = {number: group for number, group in groups.items() if number not in kept.finished}
         try:
-            for number, curves in self._finished(left):
+            for number, curves in self._finished(left, self._coefficients(lighter)):
                 kept.add(number, curves)
             kept.remove()
         except KeyboardInterrupt:
@@ -126,8 +134,17 @@ class _Sweep:
                 raise
         return self._response(groups, kept.finished)
 
-    def _finished(self, groups: dict[int, Group]) -> Finished:
-        work = Work(self.method, self.table or _shipped_table() if self.method == "table" else None)
+    def _coefficients(self, lighter: Lighter) -> Coefficients | None:
+        """What the curves are followed with; a table only if a contact needs it."""
+        if self.method != "table" or self.table is not None:
+            return self.table
+        if lighter.idle_table:
+            return ClosedForm()
+        self.table_idle = False
+        return _shipped_table()
+
+    def _finished(self, groups: dict[int, Group], coefficients: Coefficients | None) -> Finished:
+        work = Work(self.method, coefficients)
         if self.jobs > 1 and len(groups) > 1:
             from fcm.response.cores import on_cores
 
