@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm.compare import MEASURES, comparison, methods
+from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
 from fcm.scene import load_scene
 from fcm.simulate import periodic
@@ -123,6 +123,19 @@ def test_where_the_exact_motion_is_not_found_the_closed_form_remains(fcm, quick,
         and f"no exact reference, compared with the closed form alone: the curve: {reason}" in run.err
     )
     assert "errors against harmonic balance, closed form" in run.out
+
+
+def test_an_exact_curve_that_takes_too_long_is_given_up(fcm, quick, monkeypatch):
+    monkeypatch.setattr(exact, "LIMIT", 0.0)
+    run = fcm("respond", quick, "--compare")
+    assert run.code == 0 and "the curve: not finished in 0 s of processor time" in run.err
+
+
+def test_without_a_whole_curve_there_is_nothing_to_compare(fcm, scene):
+    """An undamped resonance of the open contact."""
+    scene.write_text(scene.read_text().replace("0.05, 0.05", "0, 0").replace("n_0 = 5.0", "n_0 = -1e20"))
+    run = fcm("respond", scene, "--compare", "-o", "c.nc")
+    assert run.code == 3 and "no curve is complete, so there is nothing to compare" in run.err
 
 
 @pytest.mark.parametrize(

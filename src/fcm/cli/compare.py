@@ -41,10 +41,14 @@ def write_comparison(
     """Compare, print, write."""
     if not scene.has_range:
         raise click.UsageError(f"--compare needs curves; {scene.name} has no [response] frequency.")
-    from fcm.compare import compare
+    from fcm.compare import IncomparableError, compare
     from fcm.compare.output import summary, write_netcdf
 
-    comparison = compare(scene, None if table is None else Path(table), messages.progress, tolerance)
+    try:
+        comparison = compare(scene, None if table is None else Path(table), messages.progress, tolerance)
+    except IncomparableError as error:
+        messages.error(f"error: {error}")
+        click.get_current_context().exit(NOT_COMPLETED)
     messages.clear()
     result = summary(comparison)
     try:

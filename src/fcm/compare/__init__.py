@@ -1,6 +1,6 @@
 """A scene by every method: error against run time, and what the error consists of."""
 
-from fcm.compare.comparison import Comparison, compare, contributions
+from fcm.compare.comparison import Comparison, IncomparableError, compare, contributions
 from fcm.compare.errors import MEASURES, Reference, Shown
 
-__all__ = ["MEASURES", "Comparison", "Reference", "Shown", "compare", "contributions"]
+__all__ = ["MEASURES", "Comparison", "IncomparableError", "Reference", "Shown", "compare", "contributions"]

@@ -23,6 +23,10 @@ FLOOR = {CLOSED_FORM: 1e-9, EXACT: 1e-8}  # to which points are solved and peaks
 Progress = Callable[[float, str], None]
 
 
+class IncomparableError(RuntimeError):
+    """There is nothing to compare; the message says why."""
+
+
 @dataclass
 class Comparison:
     """Every run with its errors against both references; each list of errors is in the order of the runs."""
@@ -118,7 +122,9 @@ def compare(
     Raises
     ------
     ResponseError, TableError
-        If the scene cannot be solved, or a table not be read.
+        If the calculation cannot be begun, or a table not be read.
+    IncomparableError
+        If no curve reaches the end of its range.
     KeyboardInterrupt
         If it is interrupted before both references are there; after that, what is done is returned.
 
@@ -137,7 +143,12 @@ def compare(
         tables[f"table {table.name}"] = table
     methods = [Method(name, open_table(path)) for name, path in tables.items()]
     methods += [Method(CLOSED_FORM), Method(EXACT)]
-    out.left_out = trace(with_step(scene, max(STEPS)), tolerance=tolerance).left_out
+    first = trace(with_step(scene, max(STEPS)), tolerance=tolerance)
+    if not any(curve.complete for curve in first.curves):
+        raise IncomparableError(
+            f"no curve is complete, so there is nothing to compare: {first.curves[0].reason}"
+        )
+    out.left_out = first.left_out
     jobs = list(_jobs(methods, tolerance))
     _references(out, show)
     try:

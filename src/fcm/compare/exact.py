@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
+
 import numpy as np
 from scipy.optimize import minimize_scalar
 
@@ -11,16 +14,39 @@ from fcm.response.result import Curve
 from fcm.scene.model import Scene
 from fcm.simulate import SimulationError, State, harmonic_state, periodic, trace_exact
 
+LIMIT = 60.0  # [s] of processor time for a curve
 CLOSE = 1e-8  # to which the frequency of a peak is located, relative
 JUMP = 0.2  # relative change of amplitude from which a solution near a peak is one of another branch
 
 
 def exact_lines(scene: Scene, progress: Progress | None = None) -> list[Line]:
-    """The exact curves of a scene; those that cannot be followed to their end are not complete."""
-    curves = trace_exact(scene, None, progress).curves
-    if any(curve.reason.startswith("interrupted") for curve in curves):
-        raise KeyboardInterrupt
-    return [_line(one, curve) for one, curve in zip(scene.each_curve(), curves, strict=True)]
+    """The exact curves of a scene; those that cannot be followed to their end, in time, are not complete."""
+    scenes, lines = scene.each_curve(), []
+    for number, one in enumerate(scenes):
+        limit = _Limit(progress, number / len(scenes), 1.0 / len(scenes))
+        (curve,) = trace_exact(replace(one, curves=()), None, limit).curves
+        if limit.reached:
+            where = curve.reason.removeprefix("interrupted ")
+            curve = replace(curve, reason=f"not finished in {LIMIT:g} s of processor time, {where}")
+        elif curve.reason.startswith("interrupted"):
+            raise KeyboardInterrupt
+        lines.append(_line(one, curve))
+    return lines
+
+
+class _Limit:
+    """Progress of one of several curves, and the end of its time."""
+
+    def __init__(self, progress: Progress | None, begin: float, share: float) -> None:
+        self.progress, self.begin, self.share = progress, begin, share
+        self.end, self.reached = time.process_time() + LIMIT, False
+
+    def __call__(self, fraction: float, text: str) -> None:
+        if self.progress is not None:
+            self.progress(self.begin + self.share * fraction, text)
+        if time.process_time() > self.end:
+            self.reached = True
+            raise KeyboardInterrupt  # as one who waits would; what there is of the curve is returned
 
 
 def _line(scene: Scene, curve: Curve) -> Line:
