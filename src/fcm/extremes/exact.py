@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.response import Curve
 from fcm.scene.model import Scene
-from fcm.simulate import SimulationError, harmonic_state, periodic
+from fcm.simulate import Measure, SimulationError, harmonic_state, periodic
 
 SHARES = (0.02, 0.25, 0.5, 0.75, 0.98)  # where along a curve it is compared, beside its highest point
 FROM_FOLDS = 0.03  # relative distance in frequency within which a fold of the exact curve may lie elsewhere
@@ -28,7 +29,8 @@ class Beside:
 def beside_exact(scene: Scene, curve: Curve) -> list[Beside]:
     """Compare some stable points of a curve, away from its folds, with exact periodic solutions.
 
-    The exact motion is found by shooting from the point itself, and its fundamental compared.
+    The exact motion is found by shooting from the point itself, or else from the motion that begins at rest,
+    and its fundamental compared.
     """
     return [_beside(scene, curve, int(i)) for i in chosen(curve)]
 
@@ -47,12 +49,19 @@ def chosen(curve: Curve) -> list[int]:
 
 def _beside(scene: Scene, curve: Curve, i: int) -> Beside:
     frequency, truncation = float(curve.frequency[i]), float(curve.truncation_error[i])
-    try:
-        guess = harmonic_state(scene, frequency, curve.amplitude[i], curve.phase[i], curve.mean[i])
-        exact = periodic(scene, frequency, guess).measure
-    except SimulationError:
+    exact = _exact_near(scene, curve, i)
+    if exact is None:
         return Beside(frequency, float("nan"), truncation)
     ours = curve.amplitude[i] * np.exp(1j * curve.phase[i])
     theirs = exact.fundamental * np.exp(1j * exact.phase)
     size = float(np.abs(ours).max())
     return Beside(frequency, float(np.abs(theirs - ours).max()) / (size if size > 0.0 else 1.0), truncation)
+
+
+def _exact_near(scene: Scene, curve: Curve, i: int) -> Measure | None:
+    frequency = float(curve.frequency[i])
+    guess = harmonic_state(scene, frequency, curve.amplitude[i], curve.phase[i], curve.mean[i])
+    for start in (guess, None):
+        with suppress(SimulationError):
+            return periodic(scene, frequency, start).measure
+    return None

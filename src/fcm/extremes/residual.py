@@ -19,8 +19,9 @@ from fcm.response import Curve
 from fcm.scene.model import Contact, FloatArray, Modal, Scene
 
 ComplexArray = npt.NDArray[np.complex128]
-BALANCED, ROUNDINGS = 1e-9, 100.0  # a residual below these, of the forces and of the rounding, is none
-EPS, TINY = float(np.finfo(np.float64).eps), float(np.finfo(np.float64).tiny)
+BALANCED = 1e-9  # of the forces on a mode: less counts as balanced
+CORRECTED = 1e-13  # of the displacements: to this a point of a response is corrected
+TINY = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True)
@@ -28,15 +29,15 @@ class Unbalanced:
     """Greatest over the modes, at each point of a curve (point,), relative to the forces on the mode."""
 
     force: FloatArray  # what is unbalanced
-    rounding: FloatArray  # what the last digits of displacements and forces are worth
+    tolerance: FloatArray  # what a change of CORRECTED in displacements and forces is worth
 
 
 def unbalanced(scene: Scene, curve: Curve) -> Unbalanced:
     """Unbalanced modal forces at the points of a curve, relative [-].
 
     The unit is, for each mode, the sum of the sizes of the external and the contact forces on it. Stiff
-    contacts turn the last digit of a displacement into a force, without which no residual can be: `rounding`.
-    A displacement is the difference of forces over a stiffness, so its last digit may be one of theirs.
+    contacts turn the last digits of a displacement into a force, and no residual can be without: `tolerance`.
+    A displacement is the difference of forces over a stiffness, so its last digits may be theirs.
 
     Raises
     ------
@@ -86,14 +87,14 @@ def _stiffness(modal: Modal, omega: FloatArray) -> tuple[ComplexArray, FloatArra
 
 
 def _last_digits(scene: Scene, moved: FloatArray) -> FloatArray:
-    """Forces on each mode by a relative change of EPS in displacements of that size and in the preload."""
+    """Forces on each mode by a relative change of CORRECTED in such displacements and in the preload."""
     total = np.zeros_like(moved)
     for contact in scene.contacts:
         along, across = (np.abs(scene.modal.shapes @ d) for d in (contact.tangential, contact.normal))
-        f_u, f_n = contact.k_u * (moved @ along), contact.k_v * (moved @ across) + abs(contact.n_0)
+        f_u, f_n = contact.k_u * (moved @ along), contact.k_v * (moved @ across) + max(contact.n_0, 0.0)
         # friction follows its spring, or the normal force if it slips
         total += np.outer(f_u + contact.mu * f_n, along) + np.outer(f_n, across)
-    return EPS * total
+    return CORRECTED * total
 
 
 def contact_forces(

@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.extremes.conditioning import condition_number
 from fcm.extremes.exact import Beside, beside_exact
-from fcm.extremes.residual import BALANCED, ROUNDINGS, Unbalanced, unbalanced
+from fcm.extremes.residual import BALANCED, Unbalanced, unbalanced
 from fcm.response import Curve, trace
 from fcm.scene import bundled_scenes, load_scene
 
@@ -27,8 +27,8 @@ class Row:
     points: int
     uncorrected: int
     seconds: float  # by the table, all included
-    residual: float  # greatest along the curve, measured by what rounding does there
-    rounding: float  # at that point
+    residual: float  # greatest along the curve, measured by what is allowed there
+    tolerance: float  # at that point
     table: float  # greatest difference of peaks and folds by table and by closed form
     condition: float
     exact: list[Beside] = field(default_factory=list)
@@ -60,7 +60,7 @@ def measured(name: str) -> Row:
     by_table = trace(scene).curves[0]
     seconds = time.perf_counter() - begin
     curve = trace(scene, "closed-form").curves[0]
-    residual, rounding = _greatest(unbalanced(scene, curve))
+    residual, tolerance = _greatest(unbalanced(scene, curve))
     return Row(
         name=name,
         title=scene.title,
@@ -70,7 +70,7 @@ def measured(name: str) -> Row:
         uncorrected=by_table.uncorrected + curve.uncorrected,
         seconds=seconds,
         residual=residual,
-        rounding=rounding,
+        tolerance=tolerance,
         table=difference(by_table, curve),
         condition=condition_number(scene, curve),
         exact=beside_exact(scene, curve),
@@ -78,11 +78,11 @@ def measured(name: str) -> Row:
 
 
 def _greatest(left: Unbalanced) -> tuple[float, float]:
-    """The residual that exceeds its rounding most, and that rounding."""
+    """The residual that is greatest against what is allowed, and the tolerance at that point."""
     if left.force.size == 0:
         return float("nan"), float("nan")
-    worst = int((left.force / (BALANCED + ROUNDINGS * left.rounding)).argmax())
-    return float(left.force[worst]), float(left.rounding[worst])
+    worst = int((left.force / (BALANCED + left.tolerance)).argmax())
+    return float(left.force[worst]), float(left.tolerance[worst])
 
 
 def difference(one: Curve, other: Curve) -> float:

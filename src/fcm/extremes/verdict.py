@@ -2,8 +2,8 @@
 
 - its curve is complete and every point of it was corrected; or it stops where the amplitude has no limit,
   at a resonance that nothing damps;
-- at every point the full modal equations are balanced: what is left is below 1e-9 of the forces, or below a
-  hundred times what the last digits of displacements and forces are worth;
+- at every point the full modal equations are balanced: what is left is below 1e-9 of the forces, or below
+  what a change of the displacements by 1e-13 is worth, to which points are corrected;
 - table and closed form lead to the same peaks and folds, to 1e-6;
 - at each of some points away from the folds an exact periodic motion is found, whose fundamental differs by
   less than five times the error that is estimated for leaving out the higher harmonics, or than 1e-6.
@@ -12,7 +12,7 @@
 from __future__ import annotations
 
 from fcm.extremes.exact import Beside
-from fcm.extremes.residual import BALANCED, ROUNDINGS
+from fcm.extremes.residual import BALANCED
 from fcm.extremes.row import Row
 from fcm.response.path import REASONS, UNBOUNDED
 
@@ -37,9 +37,9 @@ def _incomplete(row: Row) -> str:
 
 
 def _unbalanced(row: Row) -> str:
-    if row.residual <= BALANCED + ROUNDINGS * row.rounding:
+    if not row.points or row.residual <= BALANCED + row.tolerance:
         return ""
-    return f"residual {row.residual:.1e}, rounding {row.rounding:.1e}"
+    return f"residual {row.residual:.1e}, allowed {BALANCED + row.tolerance:.1e}"
 
 
 def _table(row: Row) -> str:
