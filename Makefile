@@ -24,7 +24,7 @@ COMPARED   := yang1998-n5 two-contacts yang1998
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help bench-time bench-others report demo picture paper figures test check tables clean bench study
+.PHONY: help extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -116,6 +116,10 @@ bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions besi
 bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
 	cd $(OTHERS) && OPENBLAS_NUM_THREADS=1 bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
 		status=$$?; cat table.txt; exit $$status
+
+extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if one that passed does not
+	@mkdir -p build
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
 
 report: $(REPORT)/index.html  ## error against run time of the bundled scenes on a page, build/report/index.html
 
