@@ -38,7 +38,9 @@ class DrawnPoints:
 def read_points(path: Path) -> DrawnPoints:
     """Read what ``fcm respond --method exact -o`` has written; PlotError if the file is something else."""
     response = read_response(path)
-    with opened(path, "a file of exact motions", ("sweep",)) as dataset:
+    with opened(path, "a response file", ("frequency",)) as dataset:
+        if "sweep" not in dataset.variables:
+            raise PlotError(f"{path}: no exact motions; fcm respond --method exact -o FILE writes them")
         rows = np.asarray(dataset.variables["sweep"][:], dtype=str)
         sweeps = tuple(row[: len(c.frequency)] for row, c in zip(rows, response.curves, strict=True))
     return DrawnPoints(response, sweeps)

@@ -48,7 +48,8 @@ class Explorer:
     @property
     def reason(self) -> str:
         """Why the curve is not complete, else ''."""
-        return "" if self.complete else "; ".join(b.reason for b in self.branches if b.reason) or self.problem
+        reasons = dict.fromkeys(branch.reason for branch in self.branches if branch.reason)
+        return "" if self.complete else "; ".join(reasons) or self.problem
 
     @property
     def at(self) -> float:
@@ -57,7 +58,7 @@ class Explorer:
 
     def _first(self, omega: float) -> Point | None:
         try:
-            return first_point(self.equations, _solution(self.scene, omega))
+            return first_point(self.equations, solution_at(self.scene, omega))
         except SimulationError as error:
             self.problem = str(error)
             return None
@@ -74,7 +75,7 @@ class Explorer:
             del self.branches[0]
 
 
-def _solution(scene: Scene, omega: float) -> Orbit:
+def solution_at(scene: Scene, omega: float) -> Orbit:
     """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any."""
     near = _balanced(scene, omega)
     if near is not None and near.stable:

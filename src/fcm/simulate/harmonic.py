@@ -79,10 +79,11 @@ def balanced_state(scene: Scene, frequency: float) -> State | None:
         return None
     balance = Balance(group_of([with_contact(scene)]), ClosedForm())
     omega = np.array([frequency])
-    x, found = starting_points(balance, omega)
-    if not found[0]:
-        return None
-    X, mean = displacements(balance, x, omega)
+    with np.errstate(all="ignore"):  # at a resonance without damping there is none
+        x, found = starting_points(balance, omega)
+        if not found[0]:
+            return None
+        X, mean = displacements(balance, x, omega)
     return harmonic_state(scene, frequency, np.abs(X[0]), np.angle(X[0]), mean[0])
 
 

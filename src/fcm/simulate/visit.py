@@ -15,6 +15,8 @@ from fcm.response.jumps import Jump
 from fcm.scene.model import FloatArray, Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
 from fcm.simulate.branch import Progress, first_point, shown
+from fcm.simulate.errors import SimulationError
+from fcm.simulate.explore import solution_at
 from fcm.simulate.periodic import Orbit, shoot
 from fcm.simulate.run import cycles_from
 from fcm.simulate.sample import Sample, sampled
@@ -31,6 +33,7 @@ BEYOND = (
     0.1  # part of it, past the end of a branch, at which the motion is simulated: it lingers near the end
 )
 SETTLED = 0.1  # distance of a simulated state from the periodic solution to which it belongs
+MOST_NAMED = 5
 JUMP = 0.01  # relative change of an amplitude that is one
 
 
@@ -42,7 +45,7 @@ class Visitor:
         self.points: list[Sample] = []
         self.sweep: list[str] = []
         self.jumps: list[Jump] = []
-        self.problems: list[str] = []
+        self.restless: dict[str, None] = {}  # frequencies without steady motion, in order
         self._here: Point | None = None  # the periodic solution that is continued
         self._state = State.rest(scene)  # the motion, where there is none
         self._sample: Sample | None = None  # what is steady now
@@ -61,8 +64,12 @@ class Visitor:
     @property
     def reason(self) -> str:
         """Which frequencies have no steady motion, else ''."""
-        more = f", and so at {len(self.problems) - 1} more" if len(self.problems) > 1 else ""
-        return self.problems[0] + more if self.problems else ""
+        if not self.restless:
+            return ""
+        first = list(self.restless)[:MOST_NAMED]
+        more = f" and {len(self.restless) - MOST_NAMED} more" if len(self.restless) > MOST_NAMED else ""
+        cycles = sum(FREE_CYCLES)
+        return f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
 
     def _go(self, omega: float, sweep: str) -> None:
         """Bring the motion to a frequency."""
@@ -73,11 +80,26 @@ class Visitor:
             if self._here is None:
                 self._settle(self._state, omega)
             self._note_jump(sweep, lost, before, after or self._sample)
-        if self._sample is None or self._sample.frequency != omega:
+        if self._sample is None:
+            self._begin(omega)
+        elif self._sample.frequency != omega:
             self._settle(self._state, omega)
         if self._sample is None:
-            where, cycles = shown(self.scene, omega), sum(FREE_CYCLES)
-            self.problems.append(f"at {where} the motion has not become steady in {cycles} cycles")
+            self.restless[shown(self.scene, omega)] = None
+
+    def _begin(self, omega: float) -> None:
+        """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
+        try:
+            orbit = solution_at(self.scene, omega)
+        except SimulationError:  # none near harmonic balance, nor near the motion from rest
+            return
+        if orbit.stable:
+            self._take(first_point(self.equations, orbit))
+        else:
+            self._settle(State.rest(self.scene), omega)
+
+    def _take(self, point: Point) -> None:
+        self._here, self._sample, self._state = point, sampled(point), point.shot.state
 
     def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
         if before is not None and after is not None:
@@ -119,7 +141,7 @@ class Visitor:
         if not sample.stable:
             return None
         self._here, self._sample = rescaled(self.equations, found), sample
-        return found
+        return self._here
 
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
@@ -129,8 +151,7 @@ class Visitor:
             self._state = state
             orbit = shoot(system, state)
             if orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED:
-                self._here = first_point(self.equations, orbit)
-                self._sample = sampled(self._here)
+                self._take(first_point(self.equations, orbit))
                 return
             self._sample = repeating(system, state)
             if self._sample is not None:
