@@ -12,6 +12,7 @@ import pytest
 import xarray
 
 import fcm as package
+from fcm.response import ResponseError
 
 SCHEDULE = """
 [[schedule]]
@@ -96,6 +97,15 @@ def test_the_history_as_csv(fcm, both):
     assert {row["phase"] for row in rows} == {"1", "2"}
     assert {row["state shroud"] for row in rows} <= set("SEPN")
     assert float(rows[-1]["cycles"]) == 32.5
+
+
+def test_python_refuses_what_has_no_meaning(alone):
+    scene = package.load_scene(alone)
+    for arguments in ({"method": "magic"}, {"at": [1.0]}, {"method": "exact", "at": [-1.0]}):
+        with pytest.raises(ResponseError):
+            package.respond(scene, **arguments)
+    assert "frequency" not in package.respond(scene, "exact")
+    assert package.respond(scene, "exact", at=[1.2]).frequency.values.tolist() == [[1.2, 1.2]]
 
 
 def test_without_curves_csv_is_the_history(fcm, alone):

@@ -61,7 +61,7 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
 def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:
     if at is not None and method != "exact":
         raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
-    if at is None and not scene.has_range and scene.schedule:
+    if at is None and not scene.has_range and scene.schedule and method in (*METHODS, "exact"):
         return Response.without_curves(scene)
     if method == "exact":
         from fcm.simulate import trace_exact
