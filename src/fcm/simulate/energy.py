@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from fcm.scene.model import Contact, FloatArray
 from fcm.simulate.cycle import NODES, WEIGHTS
+from fcm.simulate.flow import ORDER, Flow
 from fcm.simulate.march import Segment
 from fcm.simulate.motion import Motion
 from fcm.simulate.system import NEGATIVE, POSITIVE, System
 
 MOST_STEPS = 1024  # at once
+_AT_NODES: WeakKeyDictionary[Flow, FloatArray] = WeakKeyDictionary()
 
 
 class Energy(NamedTuple):
@@ -91,10 +94,20 @@ def _states(segment: Segment) -> Iterator[tuple[FloatArray, FloatArray]]:
     while whole:
         steps = min(whole, MOST_STEPS)
         grid = flow.grid(y, steps)
-        nodes = np.concatenate([grid @ flow.matrix_within(x).T for x in NODES])
-        yield nodes, np.repeat(WEIGHTS * flow.step, steps)
+        yield (
+            np.concatenate([grid @ matrix.T for matrix in _at_nodes(flow)]),
+            np.repeat(WEIGHTS * flow.step, steps),
+        )
         y, whole = flow.advance(y, steps), whole - steps
-    yield np.array([flow.within(y, part * x) for x in NODES]), WEIGHTS * part * flow.step
+    inside = (part * NODES[:, None]) ** np.arange(ORDER + 1.0)
+    yield inside @ (flow.series @ y), WEIGHTS * part * flow.step
+
+
+def _at_nodes(flow: Flow) -> FloatArray:
+    """exp(A h x) at the quadrature's nodes x, (node, d, d): the same for every cycle."""
+    if flow not in _AT_NODES:
+        _AT_NODES[flow] = np.array([flow.matrix_within(x) for x in NODES])
+    return _AT_NODES[flow]
 
 
 def _stored(system: System, y: FloatArray) -> float:
