@@ -118,3 +118,18 @@ def test_the_room_is_nothing_where_the_loop_begins_to_change(state):
         linear = (0.0, 1.0, 0.0) if state == foreseen.STUCK else (0.0, 0.0, 0.0)
         linear = np.abs(np.transpose(F) - linear).max(axis=1) < 1e-9
         assert np.all(linear == inside)
+
+
+def test_friction_is_computed_only_where_there_is_any():
+    """Without friction a contact's other forces, and those of its neighbours, are the same."""
+    scene = with_loads(structure(12, 3, 20, 10.0), (0.2, 0.1, 0.3))
+    smooth, nearly = (
+        replace(scene, contacts=(replace(scene.contacts[0], mu=mu), *scene.contacts[1:]))
+        for mu in (0.0, 1e-9)
+    )
+    one, other = (trace(each, "closed-form", tolerance=0.0) for each in (smooth, nearly))
+    assert [text for text in one.left_out if "friction" in text] == [
+        "the friction of contact c0: mu or k_u is 0 (no effect)"
+    ]
+    for dof, peak in other.curves[0].peaks.items():
+        assert one.curves[0].peaks[dof] == pytest.approx(peak, rel=1e-7)

@@ -43,6 +43,7 @@ class Law:
         self.coefficients = coefficients
         # a spring without stiffness carries nothing: the divisor then does not matter
         self.ratio = mu / np.where(k_u > 0.0, k_u, 1.0)  # mu / k_u
+        self.rough = np.flatnonzero(((mu > 0.0) & (k_u > 0.0)).any(axis=0))  # contacts with friction
 
     def arguments(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(n0_bar, b_bar, phi) of each contact, from x (curve, contact, 5)."""
@@ -64,8 +65,20 @@ class Law:
         force = np.zeros((*x.shape[:-1], FORCES))
         tangent = np.zeros((*x.shape[:-1], FORCES, UNKNOWNS))
         self._normal(x, force, tangent)
-        self._friction(x, force, tangent)
+        if self.rough.size == self.k_u.shape[1]:
+            self._friction(x, force, tangent)
+        elif self.rough.size:
+            self._some_friction(x, force, tangent)
         return force, tangent
+
+    def _some_friction(self, x: FloatArray, force: FloatArray, tangent: FloatArray) -> None:
+        """The friction of those contacts that have any."""
+        some = self.rough
+        mu, k_u, k_v, n_0 = (p[:, some] for p in (self.mu, self.k_u, self.k_v, self.n_0))
+        law = Law(mu, k_u, k_v, n_0, self.coefficients)
+        forces, tangents = force[:, some], tangent[:, some]
+        law._friction(x[:, some], forces, tangents)
+        force[:, some], tangent[:, some] = forces, tangents
 
     def _normal(self, x: FloatArray, force: FloatArray, tangent: FloatArray) -> None:
         """(28) to (31): k_v b (N_b + N_s sin), less the preload that the structure at rest balances."""

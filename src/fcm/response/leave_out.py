@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.response.foreseen import OPEN, STUCK, States, foreseen
-from fcm.response.sentences import counted
+from fcm.response.sentences import counted, named
 from fcm.response.static_modes import with_static_modes
 from fcm.response.structure import Spring
 from fcm.scene.model import Contact, Modal, Scene
@@ -63,7 +63,8 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, foresee: 
         what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
         sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
     found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance)
-    return _without_unknowns(found) if foresee else found
+    found = _without_unknowns(found) if foresee else found
+    return replace(found, sentences=(*found.sentences, *_smooth_contacts(found)))
 
 
 def _static(lighter: Lighter, tolerance: float) -> Lighter:
@@ -160,3 +161,15 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
     why = "without friction or stiffness, or nothing moves it: it carries nothing (no effect)"
     idle = [i for i in range(len(scene.contacts)) if i not in needed]
     return [f"contact {scene.contacts[i].name or i}: {why}" for i in idle]
+
+
+def _smooth_contacts(lighter: Lighter) -> list[str]:
+    """Of contacts that are traced, those whose friction is not computed."""
+    smooth = [i for i in lighter.contacts if not any(_has_friction(s.contacts[i]) for s in lighter.full)]
+    if not smooth:
+        return []
+    return [f"the friction of {named(lighter.full[0].contacts, smooth)}: mu or k_u is 0 (no effect)"]
+
+
+def _has_friction(contact: Contact) -> bool:
+    return contact.mu > 0.0 and contact.k_u > 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from fcm.response.foreseen import OPEN, STUCK
 from fcm.response.newton import CLOSE
 from fcm.response.result import UNIT, Response
+from fcm.scene.model import Contact
 
 if TYPE_CHECKING:
     from fcm.response.leave_out import Lighter
@@ -24,6 +26,13 @@ def counted(count: int, what: str) -> str:
     ('1 mode', '2 modes')
     """
     return f"{count} {what}{'' if count == 1 else 's'}"
+
+
+def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
+    """Contacts by their names, or by their numbers, the first few of them."""
+    names = [contacts[i].name or str(i) for i in numbers]
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[:MOST_NAMES])}{more}"
 
 
 def on_modes(lighter: Lighter, shift: float) -> str:
@@ -48,10 +57,7 @@ def on_contacts(lighter: Lighter, rooms: Rooms, again: int) -> list[str]:
 
 
 def _on_contacts(lighter: Lighter, numbers: list[int], state: str, rooms: Rooms, again: int) -> str:
-    contacts, one = lighter.full[0].contacts, len(numbers) == 1
-    names = [contacts[i].name or str(i) for i in numbers]
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    who = f"contact{'' if one else 's'} {', '.join(names[:MOST_NAMES])}{more}"
+    who, one = named(lighter.full[0].contacts, numbers), len(numbers) == 1
     did, event = {STUCK: ("stuck", "slip"), OPEN: ("open", "close")}[state]
     if not rooms:
         return f"{who}: foreseen to stay {did}, but not so: solved again with {'it' if one else 'them'}"
