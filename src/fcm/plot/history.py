@@ -22,6 +22,7 @@ COLUMN = 3.35  # [inch] 85 mm, one column of a journal
 _HEIGHT, _PANEL = 2.5, 1.5  # [inch] of a single panel; of each further one
 _MOST_PANELS = 6
 _MOST_CYCLES = 60  # drawn as a line; more would be a solid area
+_MOST_BOUNDARIES = 40
 _BAND, _EDGE, _MEAN = "#a6c8e0", "#1f4e79", "#b34700"
 _LETTER = 0.026  # width of a letter of a label and of some space, relative to the axes
 _ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")
@@ -41,17 +42,16 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
         panels = figure.subplots(len(motions), sharex=True, squeeze=False)[:, 0]
         for axes, motion in zip(panels, motions, strict=True):
             _draw_motion(axes, motion, shown)
-            for boundary in history.boundaries[1:-1]:
-                axes.axvline(boundary, color="0.35", linewidth=0.6, linestyle=(0, (4, 3)))
+            _mark_phases(axes, history, shown)
             axes.use_sticky_edges = False
             axes.margins(y=0.05)
             axes.set_xlim(shown)
             axes.minorticks_on()
             name = f"Displacement {history.dof}".replace("$", r"\$")
-            axes.set_ylabel("\n".join(filter(None, (name, curve_label(motion.parameters)))))
+            axes.set_ylabel("\n".join(filter(None, (name, *curve_label(motion.parameters).split(", ")))))
         panels[-1].set_xlabel("Time (s)" if history.axis == "time" else "Cycles")
         _name_phases(panels[0], history, shown)
-        if handles := panels[0].get_legend_handles_labels()[0]:
+        if handles := max((axes.get_legend_handles_labels()[0] for axes in panels), key=len):
             figure.legend(handles=handles, loc="outside lower center", ncols=2)
     return figure
 
@@ -92,6 +92,14 @@ def _draw_line(axes: Axes, motion: DrawnMotion, shown: Window) -> None:
     steps = np.diff(x)
     gaps = np.flatnonzero(steps > 4.0 * np.median(steps if steps.size else 0.0)) + 1
     axes.plot(np.insert(x, gaps, np.nan), np.insert(u, gaps, np.nan), color=_EDGE, linewidth=0.8)
+
+
+def _mark_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
+    """A dashed line where a phase begins, unless they are too many to be told apart."""
+    inside = [x for x in history.boundaries[1:-1] if shown[0] < x < shown[1]]
+    if len(inside) <= _MOST_BOUNDARIES:
+        for boundary in inside:
+            axes.axvline(boundary, color="0.35", linewidth=0.6, linestyle=(0, (4, 3)))
 
 
 def _name_phases(axes: Axes, history: DrawnHistory, shown: Window) -> None:
