@@ -2,13 +2,16 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
+from fcm.report.accuracy import accuracy as page
 from fcm.scene import load_scene
 from fcm.simulate import periodic
 
@@ -46,6 +49,22 @@ def test_every_method_with_its_errors_and_costs(fcm, short):
     _the_parts_of_the_error(result)
     _the_file_holds_the_same(result)
     assert fcm("plot", "accuracy", "c.nc", "--of", "peak-frequency", "-o", "c.svg").code == 0
+    _the_page_shows_it(run.out, result)
+
+
+def _the_page_shows_it(text, result):
+    """With what is missing in it said."""
+    Path("c.json").write_text(text)
+    Path("others.txt").write_text("ratio < 5")
+    options = ["--scene", "c", "--others", "others.txt", "--extremes", "none.txt"]
+    done = CliRunner().invoke(page, [".", *options])
+    assert done.exit_code == 0, done.output
+    html = Path("index.html").read_text()
+    parts = result["contributions"]
+    assert f"<td>{parts['single harmonic']['errors']['peak']:.1e}</td>" in html
+    assert (
+        "ratio &lt; 5" in html and "make extremes makes it" in html and "What failed or was left out" in html
+    )
 
 
 def _the_error_of_the_harmonic_is_true(path, result):
@@ -151,6 +170,13 @@ def test_without_a_whole_curve_there_is_nothing_to_compare(fcm, scene):
 def test_options_without_meaning_are_refused(fcm, scene, options, said):
     run = fcm("respond", scene, "--compare", *options)
     assert run.code == 2 and said in run.err
+
+
+def test_a_scene_without_curves_is_refused(fcm, scene):
+    phase = "[[schedule]]\nfrequency = 1.2\ncycles = 3"
+    scene.write_text(scene.read_text().replace(f"[response]\nfrequency = {RANGE}", phase))
+    run = fcm("respond", scene, "--compare")
+    assert run.code == 2 and "--compare needs curves" in run.err
 
 
 def test_a_file_that_is_no_comparison_is_not_drawn(fcm, scene, tmp_path):
