@@ -185,3 +185,41 @@ main(['respond', 'scene.toml', '-o', 'a.nc', '--json'], prog_name='fcm')"""
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         assert np.isfinite(data["cycle_amplitude"][0, :, 0].filled(np.nan)).sum() == finished
         assert ("frequency" in data.variables) == left
+
+
+def test_the_motion_is_drawn_from_its_file(fcm, alone, tmp_path):
+    alone.write_text(alone.read_text() + SWEEP)
+    assert fcm("respond", alone, "-o", "a.nc").code == 0
+    for args, name in [
+        ((), "a-history.png"),
+        (("--dof", "v", "--against", "time", "-o", "b.svg"), "b.svg"),
+        (("--window", "28", "31", "--curve", "1", "-o", "c.pdf"), "c.pdf"),
+    ]:
+        done = fcm("plot", "history", "a.nc", *args)
+        assert done.code == 0 and done.err == f"wrote {name}\n" and (tmp_path / name).stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["--curve", "2"], "the file has the curves 0 to 0"),
+        (["--curve", "-1"], "-1 is not in the range"),
+        (["--window", "40", "50"], "shows nothing; the motion is from 0 to 32.5 cycles"),
+        (["--window", "nan", "5"], "shows nothing"),
+        (["--dof", "w"], "no degree of freedom 'w'; the file has u, v"),
+        (["-o", "a.txt"], "the name has to end in"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(fcm, alone, tmp_path, args, said):
+    fcm("respond", alone, "-o", "a.nc")
+    done = fcm("plot", "history", "a.nc", *args)
+    assert done.code == 2 and said in done.err and "Traceback" not in done.err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "scene.toml"]
+
+
+def test_the_wrong_kind_of_file_names_the_right_command(fcm, scene):
+    fcm("respond", scene, "-o", "curves.nc")
+    assert "try fcm plot response" in fcm("plot", "history", "curves.nc").err
+    scene.write_text(scene.read_text().replace("[response]\nfrequency = [0.8, 1.6]\n", SCHEDULE))
+    fcm("respond", scene, "-o", "motion.nc")
+    assert "try fcm plot history" in fcm("plot", "response", "motion.nc").err
