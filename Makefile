@@ -22,6 +22,9 @@ FIGURES    := $(foreach number,5 6 8 10 11 12 13 14 15,$(PAPER)/figure$(number).
 
 COMPARED   := yang1998-n5 two-contacts yang1998
 
+# many small matrices: threads that wait for one another cost more than they save
+export OPENBLAS_NUM_THREADS ?= 1
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
@@ -111,15 +114,15 @@ bench: $(VENV)/installed  ## run times beside one another: closed form, table, s
 	$(BIN)/python tests/benchmarks/speed.py
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python tests/benchmarks/motion.py
+	$(BIN)/python tests/benchmarks/motion.py
 
 bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
-	cd $(OTHERS) && OPENBLAS_NUM_THREADS=1 bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
+	cd $(OTHERS) && bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
 		status=$$?; cat table.txt; exit $$status
 
 extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if one that passed does not
 	@mkdir -p build
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
+	$(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
 
 report: $(REPORT)/index.html  ## error against run time of the bundled scenes on a page, build/report/index.html
 
@@ -134,7 +137,7 @@ $(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
 
 $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*.py) tables/fast.nc $(VENV)/installed
 	@mkdir -p $(@D)
-	OPENBLAS_NUM_THREADS=1 $(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
+	$(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
 
 clean:  ## remove what was made, but for the environment
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis

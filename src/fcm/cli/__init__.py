@@ -6,6 +6,9 @@ import click
 
 import fcm
 from fcm.cli.lazy import LazyGroup
+from fcm.threads import one_by_default
+
+one_by_default()
 
 COMMANDS = {
     "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import signal
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from typing import Any
 
 from fcm.response.groups import Finished, Group, Shares, Work, lost_curve
 from fcm.response.path import Progress
 from fcm.response.result import Curve
+from fcm.threads import one_in_children
 
 POLL = 0.2  # [s] between two looks at the progress of the processes
 DIED = "its process ended unexpectedly, perhaps for want of memory; try fewer --jobs"
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def on_cores(work: Work, groups: dict[int, Group], jobs: int, progress: Progress | None) -> Finished:
@@ -40,7 +38,7 @@ def _in_pool(
     share = Shares(groups, progress)
     array = context.Array("d", len(groups), lock=False)
     before = set(multiprocessing.active_children())
-    with _single_threads():
+    with one_in_children():
         pool = ProcessPoolExecutor(min(jobs, len(groups)), context, _begin, (work, array))
         try:
             futures = {
@@ -71,21 +69,6 @@ def _as_completed(futures: dict[Future[list[Curve]], int], share: Shares, array:
         for number, value in zip(futures.values(), array, strict=True):
             share.set(number, value)
         yield from done
-
-
-@contextmanager
-def _single_threads() -> Iterator[None]:
-    """Processes that are started use one thread each: there is one for every core already."""
-    old = {name: os.environ.get(name) for name in _THREADS}
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in old.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
 
 
 _work: Work
