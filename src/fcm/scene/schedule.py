@@ -21,11 +21,21 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
     for section in top.tables("schedule"):
         section.only("frequency", "cycles")
         frequency = section.number("frequency", POSITIVE) * UNITS[unit]
-        phases.append(Phase(frequency, section.number("cycles", POSITIVE)))
+        phases.append(Phase(frequency, _whole(section.number("cycles", POSITIVE))))
     total = sum(phase.cycles for phase in phases)
     if total > MOST_CYCLES:
         top.wrong("schedule", f"asks for {total:g} cycles; there can be {MOST_CYCLES}")
     return tuple(phases)
+
+
+def _whole(cycles: float) -> float:
+    """The cycles, without a rounding error beside a whole number of them.
+
+    >>> _whole(0.1 * 30), _whole(2.5)
+    (3.0, 2.5)
+    """
+    nearest = float(np.rint(cycles))
+    return nearest if nearest and abs(cycles - nearest) <= 1e-12 * nearest else cycles
 
 
 def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
