@@ -126,9 +126,10 @@ extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if
 
 report: $(REPORT)/index.html  ## error against run time of the bundled scenes on a page, build/report/index.html
 
-$(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py)
+$(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py) \
+		$(wildcard build/extremes.json $(OTHERS)/table.txt)
 	$(BIN)/python -m fcm.report accuracy $(REPORT) $(COMPARED:%=--scene %) \
-		--extremes build/extremes/table.txt --others $(OTHERS)/table.txt
+		--extremes build/extremes.json --others $(OTHERS)/table.txt
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 

@@ -13,6 +13,7 @@ import click
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.tables import Rows, every
 from fcm.files import replacing
+from fcm.report import extremes_table
 from fcm.report.made import facts
 from fcm.report.page import Page, Section, Table, render
 
@@ -38,6 +39,7 @@ CAPTION = (
     "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point "
     "down where the error is below what its reference can show."
 )
+MISSING = "{0}: not in this report; {1} makes it, and make report then takes it"
 
 
 @click.command()
@@ -57,20 +59,23 @@ def accuracy(
     begin = time.perf_counter()
     found = {name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in scenes}
     sections = [_scene(name, summary) for name, summary in found.items()]
-    printed = {
-        "Stiff and extreme cases": ("make extremes", extremes),
-        "Beside another package": ("make bench-others", others),
-    }
+    failed = [(name, text) for name, one in found.items() for text in _failures(one)]
     missing = []
-    for title, (command, path) in printed.items():
-        if path is not None and path.is_file():
-            sections.append(Section(title, commands=(path.read_text(encoding="utf-8").rstrip(),)))
-        else:
-            missing.append(f"{title}: not in this report; {command} makes it, and make report then takes it")
-    sections.append(_left_out(found, missing))
+    if extremes is not None and extremes.is_file():
+        cases = extremes_table.read_cases(extremes)
+        sections.append(extremes_table.section(cases))
+        failed += extremes_table.failures(cases)
+    else:
+        missing.append(MISSING.format("the stiff and extreme cases", "make extremes"))
+    if others is not None and others.is_file():
+        printed = others.read_text(encoding="utf-8").rstrip()
+        sections.append(Section("Beside another package", commands=("make bench-others", printed)))
+    else:
+        missing.append(MISSING.format("the comparison with another package", "make bench-others"))
+    sections.append(_left_out(found, failed, missing))
     output = folder / "index.html"
     with replacing(output) as partial:
-        partial.write_text(render(Page(TITLE, ABOUT, sections, facts())), encoding="utf-8")
+        partial.write_text(render(Page(TITLE, ABOUT, sections, facts(), facts_first=True)), encoding="utf-8")
     messages.info(f"wrote {output}: {len(found)} scenes, in {time.perf_counter() - begin:.1f} s")
 
 
@@ -93,9 +98,11 @@ def _table(rows: Rows) -> Table:
     return Table(tuple(rows[0]), [tuple(row) for row in rows[1:]])
 
 
-def _left_out(found: dict[str, dict[str, Any]], missing: Sequence[str]) -> Section:
+def _left_out(
+    found: dict[str, dict[str, Any]], failed: Sequence[tuple[str, str]], missing: Sequence[str]
+) -> Section:
     """What failed, what was not compared, and what the scenes did not need."""
-    rows = [(name, "failed", text) for name, one in found.items() for text in _failures(one)]
+    rows = [(name, "failed", text) for name, text in failed]
     rows += [(name, "left out", text) for name, one in found.items() for text in one["left_out"]]
     rows += [("the report", "left out", text) for text in missing]
     text = () if rows else ("Nothing failed, and nothing was left out.",)

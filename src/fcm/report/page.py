@@ -62,6 +62,7 @@ class Page:
     text: tuple[str, ...]
     sections: Sequence[Section]
     facts: Sequence[tuple[str, str]] = ()
+    facts_first: bool = False  # below the title instead of at the end
 
 
 def render(page: Page) -> str:
@@ -72,6 +73,7 @@ def render(page: Page) -> str:
     """
     links = "".join(f'<a href="#{_anchor(s)}">{escape(s.title)}</a> ' for s in page.sections)
     facts = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in page.facts)
+    facts = f"<dl>{facts}</dl>" if facts else ""
     parts = [
         "<!DOCTYPE html>",
         '<html lang="en">',
@@ -79,10 +81,11 @@ def render(page: Page) -> str:
         '<meta name="viewport" content="width=device-width, initial-scale=1">',
         f"<style>{_STYLE}</style></head>",
         f"<body><h1>{escape(page.title)}</h1>",
+        facts if page.facts_first else "",
         *_paragraphs(page.text),
         f"<nav>{links}</nav>",
         *(_section(section) for section in page.sections),
-        f"<h2>How this page was made</h2><dl>{facts}</dl>" if facts else "",
+        f"<h2>How this page was made</h2>{facts}" if facts and not page.facts_first else "",
         "</body></html>",
     ]
     return "\n".join(part for part in parts if part) + "\n"
