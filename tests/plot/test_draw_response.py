@@ -224,3 +224,31 @@ def test_errors_above_one_and_of_a_single_point_are_drawn():
     figure = draw_response(response(one))
     figure.draw_without_rendering()
     assert figure.axes[1].get_ylim()[1] == 3.0
+
+
+def test_frequencies_over_decades_are_on_a_logarithmic_axis():
+    curve = resonance(35.0, 1.5, 100.0, truncation_error=np.full(201, 0.1), table_error=np.full(201, 1e-3))
+    far = replace(curve, frequency=np.geomspace(1e-3, 1e3, 201))
+    for axes in draw_response(response(far)).axes:
+        assert axes.get_xscale() == "log"
+    for axes in draw_response(response(curve)).axes:
+        assert axes.get_xscale() == "linear"
+
+
+def test_the_table_error_is_found_at_its_place_on_a_logarithmic_axis():
+    frequency = np.geomspace(1e-4, 1e4, 201)
+    error = np.where(frequency < 1.0, 1e-3, 0.0)
+    curve = replace(resonance(35.0, 1.5, 100.0), frequency=frequency, table_error=error)
+    below = draw_response(response(curve)).axes[1]
+    (area,) = below.patches
+    values, edges, _baseline = area.get_data()
+    assert edges[60] == pytest.approx(1.0)
+    assert (values[:59] == 1e-3).all() and (values[61:] < 1e-20).all()
+
+
+def test_what_does_not_move_has_no_logarithmic_axis():
+    curve = resonance(35.0, 1.5, 100.0)
+    still = replace(curve, amplitude=0.0 * curve.amplitude)
+    draw_response(response(still))
+    with pytest.raises(PlotError, match="does not move"):
+        draw_response(response(still), log=True)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.read import DrawnCurve, FloatArray
+from fcm.plot.read import DrawnCurve, FloatArray, ends, wide
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,8 +64,7 @@ def _finish(axes: Axes) -> None:
 
 def _largest(curves: Sequence[DrawnCurve]) -> tuple[FloatArray, FloatArray]:
     """Edges of equal bins over the frequencies, and the largest error by the table in each, of any curve."""
-    ends = [limit for c in curves for limit in (np.nanmin(c.frequency), np.nanmax(c.frequency))]
-    edges = np.linspace(min(ends), max(ends), _BINS + 1)
+    edges = (np.geomspace if wide(curves) else np.linspace)(*ends(curves), _BINS + 1)
     largest = np.zeros(_BINS)
     for curve in curves:
         if curve.table_error is None:

@@ -16,6 +16,7 @@ from fcm.plot.errors import PlotError
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
+_WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 _SWEPT = "swept value"  # how the description of a swept value begins
 _NEEDED = ("frequency", "amplitude", "dof")
 
@@ -41,6 +42,18 @@ class DrawnResponse:
     dofs: tuple[str, ...]
     frequency_unit: str
     curves: tuple[DrawnCurve, ...]
+
+
+def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
+    """The lowest and the highest frequency of all."""
+    low = min(float(np.nanmin(curve.frequency)) for curve in curves)
+    return low, max(float(np.nanmax(curve.frequency)) for curve in curves)
+
+
+def wide(curves: Sequence[DrawnCurve]) -> bool:
+    """Whether the frequencies span so much that only a logarithmic axis shows the resonances."""
+    low, high = ends(curves)
+    return high > _WIDE * low > 0.0
 
 
 def read_response(path: Path) -> DrawnResponse:

@@ -11,7 +11,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols
 from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
-from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray
+from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
 
 if TYPE_CHECKING:
@@ -41,6 +41,9 @@ def draw_response(
     curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
     if not curves:
         raise PlotError("the file holds no point of any curve")
+    if log and not any((curve.amplitude[:, column] > 0.0).any() for curve in curves):
+        name = response.dofs[column]
+        raise PlotError(f"{name} does not move, so that its amplitude has no logarithmic axis; try --linear")
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
         colours = sequence_colours(len(curves))
@@ -51,6 +54,8 @@ def draw_response(
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
             name_points(figure, axes)
+        if wide(curves):
+            axes.set_xscale("log")
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         if below is not None:
             draw_errors(figure, below, curves, colours, width)
