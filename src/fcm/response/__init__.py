@@ -59,9 +59,11 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
 
 
 def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:
+    if method not in (*METHODS, "exact"):
+        raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
     if at is not None and method != "exact":
         raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
-    if at is None and not scene.has_range and scene.schedule and method in (*METHODS, "exact"):
+    if at is None and not scene.has_range and scene.schedule:
         return Response.without_curves(scene)
     if method == "exact":
         from fcm.simulate import trace_exact
