@@ -252,3 +252,11 @@ def test_what_does_not_move_has_no_logarithmic_axis():
     draw_response(response(still))
     with pytest.raises(PlotError, match="does not move"):
         draw_response(response(still), log=True)
+
+
+def test_a_level_curve_is_below_the_frame():
+    height = np.full((201, 2), 1e-8)
+    height[::2] += 1e-20
+    (axes,) = draw_response(response(replace(resonance(35.0, 1.5, 100.0), amplitude=height))).axes
+    bottom, top = axes.get_ylim()
+    assert bottom == 0.0 and top > 1.04e-8

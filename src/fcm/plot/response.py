@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_HEADROOM = 1.05  # at least, above the highest amplitude
 _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 _DASHES = (0, (3, 1.6))
@@ -126,8 +127,8 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
     axes.minorticks_on()
     if log:
         logarithmic_axis(axes)
-    else:
-        axes.set_ylim(bottom=0.0)
+    else:  # a curve without ups and downs would be drawn on the frame
+        axes.set_ylim(0.0, max(axes.get_ylim()[1], _HEADROOM * axes.dataLim.y1))
 
 
 def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int) -> None:
