@@ -102,3 +102,14 @@ def test_a_free_structure_without_contacts():
     _, found = curve(JENKINS, None)
     assert found.complete
     assert found.amplitude[:, 0] == pytest.approx(1.0 / found.frequency**2, rel=1e-12)
+
+
+def test_a_range_that_begins_at_a_resonance_that_only_the_contact_damps():
+    """An undamped mode at its own frequency has no receptance; the curve begins there all the same."""
+    undamped = BODY | {"frequency": [1.0, 3.0]}
+    starts = []
+    for low in (1.0, 1.0 - 1e-7):
+        _, found = curve(undamped, response={"frequency": [low, 1.7], "max_step": 0.2})
+        assert found.complete
+        starts.append(found.amplitude[0, 0])
+    assert starts[0] == pytest.approx(starts[1], rel=1e-5)

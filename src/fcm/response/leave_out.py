@@ -15,7 +15,7 @@ import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
 from fcm.response.foreseen import OPEN, STUCK, States, foreseen
-from fcm.response.sentences import counted, named
+from fcm.response.sentences import counted, has_friction, named
 from fcm.response.static_modes import with_static_modes
 from fcm.response.structure import Spring
 from fcm.scene.model import Contact, Modal, Scene
@@ -41,7 +41,7 @@ class Lighter:
     def idle_table(self) -> bool:
         """Whether no contact needs friction coefficients."""
         contacts = [c for s in self.curves for c in s.contacts if not isinstance(c, Spring)]
-        return not (self.whole or any(c.mu > 0.0 and c.k_u > 0.0 for c in contacts))
+        return not (self.whole or any(has_friction(c) for c in contacts))
 
 
 def keep_all(curves: tuple[Scene, ...]) -> Lighter:
@@ -165,11 +165,7 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
 
 def _smooth_contacts(lighter: Lighter) -> list[str]:
     """Of contacts that are traced, those whose friction is not computed."""
-    smooth = [i for i in lighter.contacts if not any(_has_friction(s.contacts[i]) for s in lighter.full)]
+    smooth = [i for i in lighter.contacts if not any(has_friction(s.contacts[i]) for s in lighter.full)]
     if not smooth:
         return []
     return [f"the friction of {named(lighter.full[0].contacts, smooth)}: mu or k_u is 0 (no effect)"]
-
-
-def _has_friction(contact: Contact) -> bool:
-    return contact.mu > 0.0 and contact.k_u > 0.0

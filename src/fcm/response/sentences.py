@@ -35,6 +35,11 @@ def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:
     return f"contact{'' if len(names) == 1 else 's'} {', '.join(names[:MOST_NAMES])}{more}"
 
 
+def has_friction(contact: Contact) -> bool:
+    """Whether a contact resists sliding."""
+    return contact.mu > 0.0 and contact.k_u > 0.0
+
+
 def on_modes(lighter: Lighter, shift: float) -> str:
     """What was replaced, with the bound that the check gives."""
     modal, fewer, unit = lighter.exact[0].modal, lighter.curves[0].modal, lighter.full[0].frequency_unit
@@ -57,8 +62,11 @@ def on_contacts(lighter: Lighter, rooms: Rooms, again: int) -> list[str]:
 
 
 def _on_contacts(lighter: Lighter, numbers: list[int], state: str, rooms: Rooms, again: int) -> str:
-    who, one = named(lighter.full[0].contacts, numbers), len(numbers) == 1
+    contacts, one = lighter.full[0].contacts, len(numbers) == 1
+    who = named(contacts, numbers)
     did, event = {STUCK: ("stuck", "slip"), OPEN: ("open", "close")}[state]
+    if state == STUCK and not any(has_friction(contacts[i]) for i in numbers):
+        did, event = "closed", "open"
     if not rooms:
         return f"{who}: foreseen to stay {did}, but not so: solved again with {'it' if one else 'them'}"
     share = max(1.0 / (1.0 + room[i]) for room in rooms for i in numbers)

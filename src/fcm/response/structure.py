@@ -23,6 +23,9 @@ IntArray = npt.NDArray[np.intp]
 BoolArray = npt.NDArray[np.bool_]
 
 
+LEAST_DAMPING = 1e-9  # twice the damping ratio of an undamped mode exactly at its own frequency
+
+
 @dataclass(frozen=True)
 class Group:
     """Curves of one layout (modes, degrees of freedom, contacts) as arrays; see `group_of`."""
@@ -143,6 +146,8 @@ def modal_compliance(group: Group, omega: FloatArray) -> tuple[ComplexArray, Com
     natural = group.frequency
     # the difference of squares as a product: exact next to an undamped resonance
     stiffness = (natural - w) * (natural + w) + 2j * (group.damping * natural * w)
+    if not stiffness.all():  # nothing damps a mode that is excited at its own frequency
+        stiffness = np.where(stiffness == 0.0, 1j * LEAST_DAMPING * natural**2, stiffness)
     compliance: AnyArray = 1.0 / (group.mass * stiffness)
     slope: AnyArray = compliance * (2.0 * w - 2j * (group.damping * natural)) / stiffness
     return compliance, slope
