@@ -42,7 +42,7 @@ picture: demo  ## the same, and its picture as the one of README.md
 
 paper: $(PAPER)/index.html  ## the figures of the paper on a page, build/paper/index.html, with its numbers and ours
 
-$(PAPER)/index.html: $(FIGURES) $(wildcard src/fcm/report/*.py)
+$(PAPER)/index.html: $(FIGURES) $(wildcard src/fcm/report/*_figures.py) $(addprefix src/fcm/report/,paper.py page.py rows.py made.py)
 	$(BIN)/python -m fcm.report paper $(PAPER)
 
 figures: $(FIGURES)  ## the pictures of that page only

@@ -23,6 +23,12 @@ def folded(tmp_path_factory):
     return path
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """The picture is not drawn; what would be is another test's."""
+    monkeypatch.setattr("fcm.cli.loop._draw", lambda *_args: None)
+
+
 def loops(done):
     assert done.code == 0, done.err
     return json.loads(done.out)["loops"]
@@ -38,7 +44,7 @@ def test_every_combination_is_drawn_once(fcm, tmp_path):
     assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
 
 
-def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm):
+def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm, undrawn):
     scaled = ("--mu", 0.4, "--k-u", 2e4, "--k-v", 1e4, "--n0", 16.0, "--a", 1e-3, "--b", 2e-3)
     (one,) = loops(fcm("plot", "loop", *scaled, "--json", "--units", "m", "N"))
     (other,) = loops(fcm("plot", "loop", *CONTACT, "--json"))
@@ -50,13 +56,13 @@ def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm):
     assert ratios["sequence"] == other["sequence"]
 
 
-def test_the_angle_may_begin_at_the_greatest_displacement(fcm):
+def test_the_angle_may_begin_at_the_greatest_displacement(fcm, undrawn):
     sine, cosine = (loops(fcm("plot", "loop", "--json", *more))[0] for more in ((), ("--cosine",)))
     turned = [(one["degrees"] - 90.0) % 360.0 for one in sine["transitions"]]
     assert [one["degrees"] for one in cosine["transitions"]] == pytest.approx(turned)
 
 
-def test_all_solutions_of_a_folded_curve(fcm, folded):
+def test_all_solutions_of_a_folded_curve(fcm, folded, undrawn):
     done = fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--json")
     found = loops(done)
     assert [(one["solution"], one["solutions"], one["stable"]) for one in found] == [
@@ -71,7 +77,7 @@ def test_all_solutions_of_a_folded_curve(fcm, folded):
             assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
 
 
-def test_one_of_them(fcm, folded):
+def test_one_of_them(fcm, folded, undrawn):
     (one,) = loops(fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--solution", 2, "--json"))
     assert one["solution"] == 2 and not one["stable"]
 
