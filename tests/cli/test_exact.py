@@ -1,0 +1,108 @@
+"""``fcm respond --method exact`` and ``--at``: files, messages, refusals, and the picture with its points."""
+
+import csv
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm import response
+
+AT = ["--method", "exact", "--at", "0.9", "--at", "1.1:1.3:3"]
+
+
+def refuse(*_args, **_more):
+    raise AssertionError("nothing is to be computed")
+
+
+def test_a_traced_curve_is_printed_and_written(fcm, scene, tmp_path):
+    scene.write_text(scene.read_text().replace("[0.8, 1.6]", "[1.2, 1.4]"))
+    done = fcm(
+        "respond", scene, "--method", "exact", "--max-step", "0.2", "-o", "a.nc", "--csv", "a.csv", "--json"
+    )
+    (curve,) = json.loads(done.out)["curves"]
+    assert done.code == 0 and curve["complete"] and curve["truncation_error"] == curve["table_error"] == 0.0
+    assert 0.0 < curve["closure_error"] < 1e-9
+    assert "by which a period does not close" in done.err.splitlines()[-1]
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        amplitude, fundamental = data["amplitude"][0, :, 0], data["fundamental"][0, :, 0]
+        assert "peak-to-peak" in data["amplitude"].long_name and "Floquet" in data["stable"].long_name
+        assert set(data["sweep"][:].ravel()) == {""}
+    with (tmp_path / "a.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == curve["points"] == len(amplitude)
+    assert [float(row["amplitude u"]) for row in rows] == amplitude.tolist()
+    assert [float(row["fundamental u"]) for row in rows] == fundamental.tolist()
+
+
+def test_the_curve_is_near_the_balanced_one(fcm, scene):
+    peaks = [
+        json.loads(fcm("respond", scene, "--json", "--max-step", "0.2", "--method", method).out)["curves"][0][
+            "peak"
+        ]
+        for method in ("exact", "closed-form")
+    ]
+    assert peaks[0]["u"]["amplitude"] == pytest.approx(peaks[1]["u"]["amplitude"], rel=0.02)
+
+
+def test_frequencies_are_visited_up_and_down(fcm, scene, tmp_path):
+    done = fcm("respond", scene, *AT, "-o", "a.nc")
+    assert done.code == 0
+    up = [0.9, 1.1, 1.2, 1.3]
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        assert data["frequency"][0].tolist() == pytest.approx(up + up[::-1])
+        assert data["sweep"][0].tolist() == ["up"] * 4 + ["down"] * 4
+
+
+def test_python_gives_the_same(fcm, scene, tmp_path):
+    from fcm import load_scene, respond
+
+    assert fcm("respond", scene, *AT, "-o", "a.nc").code == 0
+    data = respond(load_scene(str(scene)), "exact", at=[0.9, *np.linspace(1.1, 1.3, 3)])
+    with netCDF4.Dataset(tmp_path / "a.nc") as file:
+        np.testing.assert_array_equal(file["amplitude"][:], data.amplitude.values)
+
+
+def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
+    assert fcm("respond", scene, "-o", "curves.nc").code == 0
+    assert fcm("respond", scene, *AT, "-o", "exact.nc").code == 0
+    done = fcm("plot", "response", "curves.nc", "--points", "exact.nc", "-o", "a.png")
+    assert done.code == 0 and (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+    done = fcm("plot", "response", "exact.nc", "--points", "curves.nc", "-o", "b.png")
+    assert done.code == 2 and "--method exact" in done.err and not (tmp_path / "b.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["--at", "1"], "--at needs --method exact"),
+        (["--method", "closed-form", "--at", "1"], "--at needs --method exact"),
+        (["--method", "exact", "--at", "0"], "greater than 0"),
+        (["--method", "exact", "--at", "nan"], "greater than 0"),
+        (["--method", "exact", "--at", "1:2"], "FROM:TO:COUNT"),
+        (["--method", "exact", "--at", "1:2:3:4"], "FROM:TO:COUNT"),
+        (["--method", "exact", "--at", "1:2:x"], "FROM:TO:COUNT"),
+        (["--method", "exact", "--at", ""], "FROM:TO:COUNT"),
+        (["--method", "exact", "--at", "1:2:0"], "the count must be"),
+        (["--method", "exact", "--at", "1", "--max-step", "0.1"], "--max-step is of no use with --at"),
+        (["--method", "exact", "--table", "t.nc"], "--table is of no use"),
+        (["--method", "exact", "--keep-all"], "--keep-all is of no use"),
+        (["--method", "exact", "--leave-out-tolerance", "0"], "--leave-out-tolerance is of no use"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(fcm, scene, monkeypatch, args, said):
+    monkeypatch.setattr("fcm.simulate.trace_exact", refuse)
+    monkeypatch.setattr(response, "trace", refuse)
+    done = fcm("respond", scene, *args)
+    assert done.code == 2 and done.out == "" and said in done.err and "Traceback" not in done.err
+
+
+def test_a_resonance_without_damping_is_named_and_the_rest_written(fcm, scene, tmp_path):
+    text = scene.read_text().replace("[0.05, 0.05]", "[0.0, 0.0]").replace("n_0 = 5.0", "n_0 = -1e15")
+    scene.write_text(text)
+    done = fcm("respond", scene, "--method", "exact", "--max-step", "0.2", "-o", "a.nc")
+    assert done.code == 3 and "add damping" in done.out and "not complete" in done.err
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        known = data["frequency"][0].compressed()
+        assert known.min() == 0.8 and known.max() == 1.6  # both sides of it
