@@ -12,7 +12,7 @@ from fcm.contact.loop import Loop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
-from fcm.plot.style import house_style, new_figure
+from fcm.plot.style import COLUMN, TWO_COLUMNS, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,7 +26,6 @@ STATES: dict[str, tuple[str, dict[str, Any]]] = {  # name, and a look that survi
 }
 _LIMIT: dict[str, Any] = {"color": "0.6", "linewidth": 0.7, "linestyle": (0, (5, 2))}
 _MARK: dict[str, Any] = {"marker": "o", "markersize": 3.2, "markerfacecolor": "white", "markeredgewidth": 0.7}
-_SINGLE, _DOUBLE = 85.0 / 25.4, 170.0 / 25.4  # [inch] one and two columns of a journal
 _LOOP_HEIGHT, _TIME_HEIGHT = 1.75, 1.05  # [inch] of the two panels of a loop
 _LABELS, _LEGEND, _TITLE = 0.35, 0.75, 0.2  # [inch] of what is around them
 _ALONE = 1.25  # how much higher a loop alone is
@@ -101,7 +100,7 @@ def _panels(count: int, titled: bool) -> tuple[Figure, list[tuple[Axes, Axes]]]:
     columns = min(count, _MOST_COLUMNS)
     rows = -(-count // columns)
     height = rows * (_LOOP_HEIGHT + _TIME_HEIGHT + _LABELS) + _LEGEND + (_TITLE if titled else 0.0)
-    figure = new_figure(_SINGLE, _ALONE * height) if count == 1 else new_figure(_DOUBLE, height)
+    figure = new_figure(COLUMN, _ALONE * height) if count == 1 else new_figure(TWO_COLUMNS, height)
     grid = figure.add_gridspec(2 * rows, columns, height_ratios=[_LOOP_HEIGHT, _TIME_HEIGHT] * rows)
     places = (divmod(i, columns) for i in range(count))
     return figure, [

@@ -5,16 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fcm.plot.read import FloatArray
-from fcm.plot.style import house_style, new_figure, sequence_colours
+from fcm.plot.style import COLUMN, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+_HEIGHT = 2.7  # [inch]
 
 
 def draw_normal(n0_star: FloatArray, N_b: FloatArray, N_s: FloatArray) -> Figure:
     """N_b solid, N_s dashed, as in the paper; the thin lines are the limits of the intermittent contact."""
     with house_style():
-        figure = new_figure()
+        figure = new_figure(COLUMN, _HEIGHT)
         axes = figure.add_subplot()
         for limit in (-1.0, 1.0):
             axes.axvline(limit, color="0.6", linewidth=0.5, label="_limit")
@@ -25,5 +27,5 @@ def draw_normal(n0_star: FloatArray, N_b: FloatArray, N_s: FloatArray) -> Figure
         axes.set_ylabel("Coefficients of the normal load $N_b$, $N_s$ (–)")
         axes.margins(x=0.0, y=0.05)
         axes.minorticks_on()
-        axes.legend(loc="upper left")
+        axes.legend(loc="upper center")
     return figure

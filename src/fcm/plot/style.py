@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 WIDTH = 5.5  # [inch] 140 mm, one and a half columns
 HEIGHT = 3.7  # [inch]
+COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 
 STYLE: dict[Any, Any] = {
     "axes.formatter.limits": (-3, 4),
