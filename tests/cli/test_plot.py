@@ -31,7 +31,7 @@ def test_options_reach_the_picture(fcm, result, monkeypatch):
     seen = {}
     monkeypatch.setattr("fcm.plot.draw_response", lambda *a, **k: seen.update(k) or draw_response(*a, **k))
     assert fcm("plot", "response", result, "--dof", "v", "--log", "--no-errors").code == 0
-    assert seen == {"dof": "v", "log": True, "errors": False}
+    assert seen == {"dof": "v", "log": True, "errors": False, "points": None}
 
 
 @pytest.mark.parametrize(
