@@ -30,6 +30,7 @@ class Row:
     residual: float  # greatest along the curve, measured by what is allowed there
     tolerance: float  # at that point
     table: float  # greatest difference of peaks and folds by table and by closed form
+    without_table: bool  # the table was given up for the closed form, which is then compared with itself
     condition: float
     exact: list[Beside] = field(default_factory=list)
 
@@ -72,6 +73,7 @@ def measured(name: str) -> Row:
         residual=residual,
         tolerance=tolerance,
         table=difference(by_table, curve),
+        without_table=by_table.without_table,
         condition=condition_number(scene, curve),
         exact=beside_exact(scene, curve),
     )

@@ -11,6 +11,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 from fcm.extremes.exact import Beside
 from fcm.extremes.residual import BALANCED
 from fcm.extremes.row import Row
@@ -49,7 +51,7 @@ def _table(row: Row) -> str:
 
 
 def _exact(row: Row) -> str:
-    missing = [point for point in row.exact if point not in row.compared]
+    missing = [point for point in row.exact if not isfinite(point.difference)]
     if missing:
         where = ", ".join(f"{point.frequency:.6g}" for point in missing)
         estimate = max(point.truncation for point in missing)
