@@ -6,6 +6,7 @@ the displacement they resist: friction fundamental (2), normal fundamental (2), 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from fcm.contact.fourier import fourier_gradients
 from fcm.contact.limits import FloatArray
 from fcm.contact.normal import contact_angle
+from fcm.response.structure import IntArray
 
 UNKNOWNS, FORCES = 5, 6  # of one contact
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
@@ -44,6 +46,7 @@ class Law:
         # a spring without stiffness carries nothing: the divisor then does not matter
         self.ratio = mu / np.where(k_u > 0.0, k_u, 1.0)  # mu / k_u
         self.rough = np.flatnonzero(((mu > 0.0) & (k_u > 0.0)).any(axis=0))  # contacts with friction
+        self.elastic = np.flatnonzero((k_v > 0.0).any(axis=0))  # contacts with a normal force
 
     def arguments(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """(n0_bar, b_bar, phi) of each contact, from x (curve, contact, 5)."""
@@ -64,20 +67,20 @@ class Law:
         """Forces (curve, contact, 6) and their tangent (curve, contact, 6, 5) at x (curve, contact, 5)."""
         force = np.zeros((*x.shape[:-1], FORCES))
         tangent = np.zeros((*x.shape[:-1], FORCES, UNKNOWNS))
-        self._normal(x, force, tangent)
-        if self.rough.size == self.k_u.shape[1]:
-            self._friction(x, force, tangent)
-        elif self.rough.size:
-            self._some_friction(x, force, tangent)
+        for part, some in ((Law._normal, self.elastic), (Law._friction, self.rough)):
+            if some.size == self.k_u.shape[1]:
+                part(self, x, force, tangent)
+            elif some.size:
+                self._of_some(part, some, x, force, tangent)
         return force, tangent
 
-    def _some_friction(self, x: FloatArray, force: FloatArray, tangent: FloatArray) -> None:
-        """The friction of those contacts that have any."""
-        some = self.rough
+    def _of_some(
+        self, part: Callable[..., None], some: IntArray, x: FloatArray, force: FloatArray, tangent: FloatArray
+    ) -> None:
+        """A part of the forces of those contacts that have it."""
         mu, k_u, k_v, n_0 = (p[:, some] for p in (self.mu, self.k_u, self.k_v, self.n_0))
-        law = Law(mu, k_u, k_v, n_0, self.coefficients)
         forces, tangents = force[:, some], tangent[:, some]
-        law._friction(x[:, some], forces, tangents)
+        part(Law(mu, k_u, k_v, n_0, self.coefficients), x[:, some], forces, tangents)
         force[:, some], tangent[:, some] = forces, tangents
 
     def _normal(self, x: FloatArray, force: FloatArray, tangent: FloatArray) -> None:

@@ -64,7 +64,7 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, foresee: 
         sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
     found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance)
     found = _without_unknowns(found) if foresee else found
-    return replace(found, sentences=(*found.sentences, *_smooth_contacts(found)))
+    return replace(found, sentences=(*found.sentences, *_parts_of_contacts(found)))
 
 
 def _static(lighter: Lighter, tolerance: float) -> Lighter:
@@ -127,9 +127,14 @@ def _reaches(modal: Modal, direction: FloatArray) -> BoolArray:
 def _carries(scene: Scene, number: int) -> bool:
     """Whether a contact can exert any force."""
     contact: Contact = scene.contacts[number]
-    normal = contact.k_v > 0.0 and bool(_reaches(scene.modal, contact.normal).any())
-    friction = contact.mu > 0.0 and contact.k_u > 0.0 and (normal or contact.n_0 > 0.0)
+    normal = _springs_back(scene, contact)
+    friction = has_friction(contact) and (normal or contact.n_0 > 0.0)
     return normal or (friction and bool(_reaches(scene.modal, contact.tangential).any()))
+
+
+def _springs_back(scene: Scene, contact: Contact) -> bool:
+    """Whether a contact's normal load can change."""
+    return contact.k_v > 0.0 and bool(_reaches(scene.modal, contact.normal).any())
 
 
 def _moved(scene: Scene) -> BoolArray:
@@ -142,9 +147,12 @@ def _moved(scene: Scene) -> BoolArray:
 
 
 def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:
-    if len(needed) == len(scene.contacts):
+    """The scene with some contacts; those whose load cannot change have no normal stiffness."""
+    steady = [c.k_v > 0.0 and not _springs_back(scene, c) for c in scene.contacts]
+    if len(needed) == len(scene.contacts) and not any(steady):
         return scene
-    return replace(scene, contacts=tuple(scene.contacts[i] for i in needed))
+    contacts = [replace(c, k_v=0.0) if idle else c for c, idle in zip(scene.contacts, steady, strict=True)]
+    return replace(scene, contacts=tuple(contacts[i] for i in needed))
 
 
 def _with_modals(curves: tuple[Scene, ...], modals: dict[int, Modal]) -> tuple[Scene, ...]:
@@ -163,9 +171,14 @@ def _idle_contacts(scene: Scene, needed: tuple[int, ...]) -> list[str]:
     return [f"contact {scene.contacts[i].name or i}: {why}" for i in idle]
 
 
-def _smooth_contacts(lighter: Lighter) -> list[str]:
-    """Of contacts that are traced, those whose friction is not computed."""
+def _parts_of_contacts(lighter: Lighter) -> list[str]:
+    """Of contacts that are traced, those whose friction or whose normal force is not computed."""
+    contacts, said = lighter.full[0].contacts, []
     smooth = [i for i in lighter.contacts if not any(has_friction(s.contacts[i]) for s in lighter.full)]
-    if not smooth:
-        return []
-    return [f"the friction of {named(lighter.full[0].contacts, smooth)}: mu or k_u is 0 (no effect)"]
+    if smooth:
+        said.append(f"the friction of {named(contacts, smooth)}: mu or k_u is 0 (no effect)")
+    steady = [i for i in lighter.contacts if not any(_springs_back(s, s.contacts[i]) for s in lighter.full)]
+    if steady:
+        why = "k_v is 0, or nothing moves along it: the load is the preload"
+        said.append(f"the normal force of {named(contacts, steady)}: {why} (no effect)")
+    return said
