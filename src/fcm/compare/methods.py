@@ -37,8 +37,8 @@ class Run:
     lines: list[Line]
     seconds: float  # solving alone, in a program that has begun and has its table
     processor_seconds: float  # the same where nothing else takes the processor
-    calls: int  # of the solver for forces of the contacts, each for many curves or points at once
-    evaluations: int  # of the force of one contact; of `exact`: periods of the motion, each a call
+    calls: int  # of the solver for friction coefficients, each for many curves or points at once
+    evaluations: int  # of these, each of one contact; of `exact`: periods of the motion, each a call
 
     @property
     def points(self) -> int:
@@ -88,7 +88,7 @@ def solve(
 ) -> list[Line]:
     """The curves of a scene by a method; the arguments are those of `run`."""
     if method.name == EXACT:
-        return exact_lines(_lighter(scene, tolerance), progress)
+        return exact_lines(_lighter(scene, tolerance, foresee=False), progress)
     if not method.corrected:
         assert method.table is not None
         return _by_groups(_lighter(scene, tolerance), method.table, method.table)
@@ -108,11 +108,14 @@ def _counted(method: Method, scene: Scene, tolerance: float | None) -> tuple[int
     return sum(c.calls for c in counters), sum(c.evaluations for c in counters)
 
 
-def _lighter(scene: Scene, tolerance: float | None) -> Scene:
-    """The scene without what it does not need."""
+def _lighter(scene: Scene, tolerance: float | None, foresee: bool = True) -> Scene:
+    """The scene without what it does not need.
+
+    foresee : also without what is only foreseen not to be needed, which `trace` checks afterwards.
+    """
     if tolerance is None:
         return scene
-    return replace(scene, curves=leave_out(scene.each_curve(), tolerance).curves)
+    return replace(scene, curves=leave_out(scene.each_curve(), tolerance, foresee).curves)
 
 
 def _by_groups(scene: Scene, way: Coefficients | None, last: Coefficients) -> list[Line]:

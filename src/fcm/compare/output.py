@@ -53,7 +53,7 @@ def peaks(out: Comparison) -> list[Json]:
     for parameters, one, other in zip(out.parameters, exact, harmonic, strict=True):
         for dof in one.peaks if one.complete and other.points else ():
             (true, at), (found, found_at) = one.peaks[dof], other.peaks[dof]
-            if true > 0.0:
+            if true > 0.0 and np.isfinite(found):
                 rows.append(
                     {
                         "parameters": parameters,
@@ -62,7 +62,7 @@ def peaks(out: Comparison) -> list[Json]:
                         "harmonic": {"amplitude": found, "frequency": found_at / unit},
                         "error": found / true - 1.0,
                         "frequency_error": found_at / at - 1.0,
-                        "truncation_error": other.truncation.get(dof),
+                        "truncation_error": _number(other.truncation.get(dof, float("nan"))),
                     }
                 )
     return rows
@@ -73,6 +73,7 @@ def _reference(out: Comparison, name: str) -> Json:
     return {
         "max_step": one.max_step,
         "points": sum(line.points for line in one.lines),
+        "folds": [len(line.folds) for line in one.lines],
         "complete": all(line.complete for line in one.lines),
         "own_error": {measure: _greatest(values) for measure, values in one.own.items()},
     }
@@ -183,6 +184,11 @@ def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
         ("points", [one.points for one in runs], {"long_name": "points of all curves", "units": "1"}),
         ("seconds", [one.seconds for one in runs], {"long_name": "time to solve all curves", **seconds}),
         (
+            "processor_seconds",
+            [one.processor_seconds for one in runs],
+            {"long_name": "processor time to solve all curves", **seconds},
+        ),
+        (
             "start_seconds",
             [s[0] for s in starts],
             {"long_name": "time to begin and end a program", **seconds},
@@ -191,11 +197,14 @@ def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
         (
             "calls",
             [one.calls for one in runs],
-            {"long_name": "calls for contact forces, each for many points", "units": "1"},
+            {"long_name": "calls for friction coefficients, each for many points", "units": "1"},
         ),
         (
             "evaluations",
             [one.evaluations for one in runs],
-            {"long_name": "evaluations of the force of one contact; of exact: periods", "units": "1"},
+            {
+                "long_name": "evaluations of these, each of one contact; of exact: periods of the motion",
+                "units": "1",
+            },
         ),
     ]
