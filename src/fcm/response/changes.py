@@ -14,26 +14,58 @@ from fcm.response.branches import hang_together
 from fcm.response.law import UNKNOWNS, Law
 from fcm.response.points import Points, inserted
 from fcm.response.segment import Segments
-from fcm.response.structure import IntArray
+from fcm.response.structure import BoolArray, IntArray
 
-HALVINGS = 10  # of a segment, until the change lies between two points
-SHORTEST = (
-    1e-4  # a segment of less than this part of the curve's size is short enough: the follower's corners
-)
+ROUNDS = 3  # changes of a segment that are looked for
+HALVINGS = 8  # of a segment, until the change lies between two points
+SHORT = 1e-3  # a segment of less than this part of the curve's size needs no more points
+GRADES = np.array([0.125, 0.25, 0.5])  # shares of a segment next to a change, from the change
 
 
 def with_changes(exact: Balance, points: Points) -> Points:
-    """Two more points in each segment at whose ends the contacts are in different regimes."""
-    regime = _regimes(exact.take(points.curve).law, points.z)
-    differs = np.any(regime[1:] != regime[:-1], axis=1)
-    at = np.flatnonzero(differs & hang_together(points.branch))
+    """More points where the contacts' regimes change: on both sides of each change, and closer next to it."""
+    for _ in range(ROUNDS):
+        regime = _regimes(exact.take(points.curve).law, points.z)
+        at, segments = _long(exact, points, np.flatnonzero(_changes(points, regime)))
+        if at.size == 0:
+            break
+        points = _bracketed(exact, points, regime, at, segments)
+    return _graded(exact, points)
+
+
+def _changes(points: Points, regime: IntArray) -> BoolArray:
+    """Whether the regimes differ at the ends of each segment."""
+    changes: BoolArray = np.any(regime[1:] != regime[:-1], axis=1) & hang_together(points.branch)
+    return changes
+
+
+def _long(exact: Balance, points: Points, at: IntArray) -> tuple[IntArray, Segments]:
     segments = points.segments(at, exact)
-    at, segments = at[segments.length > SHORTEST], segments.take(np.flatnonzero(segments.length > SHORTEST))
+    some = np.flatnonzero(segments.length > SHORT)
+    return at[some], segments.take(some)
+
+
+def _graded(exact: Balance, points: Points) -> Points:
+    """Points at GRADES of the segments before and after each change: there a curve bends most."""
+    changes = _changes(points, _regimes(exact.take(points.curve).law, points.z))
+    around = np.concatenate(([False], changes, [False]))
+    inside = hang_together(points.branch) & ~changes
+    after, before = (_long(exact, points, np.flatnonzero(inside & s))[0] for s in (around[:-2], around[2:]))
+    place = [at[:, None] + shares for at, shares in ((after, GRADES), (before, 1.0 - GRADES))]
+    where = np.unique(np.concatenate([part.reshape(-1) for part in place]))
+    at = where.astype(np.intp)
+    new = points.segments(at, exact).points(exact, where - at)
+    ok = new.converged
+    return inserted(points, where[ok], new.z[ok], new.tangent[ok], fold=False)
+
+
+def _bracketed(exact: Balance, points: Points, regime: IntArray, at: IntArray, segments: Segments) -> Points:
+    """Two more points in each of the segments, on both sides of its first change."""
     law = exact.take(segments.curve).law
     share = np.stack((np.zeros(at.size), np.ones(at.size)))  # before and beyond the first change
     z = np.full((2, *segments.start.shape), np.nan)
     direction = z.copy()
-    for count in range(HALVINGS if at.size else 0):
+    for count in range(HALVINGS):
         cut = 0.5 if count % 2 == 0 else 0.45  # elsewhere, should there be no point in the middle
         middle = share[0] + cut * (share[1] - share[0])
         new = segments.points(exact, middle)
