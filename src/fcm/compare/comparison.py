@@ -73,7 +73,7 @@ class Comparison:
             if harmonic.complete and exact.complete and len(harmonic.folds) != len(exact.folds):
                 count = f"{len(harmonic.folds)} folds, the exact curve {len(exact.folds)}"
                 found.append(f"{name}: harmonic balance has {count}; they are not compared")
-        return found
+        return found + [text for one in self.runs if (text := _incomplete(one))]
 
     def add(self, one: Run) -> None:
         """A run and its errors."""
@@ -96,6 +96,15 @@ class Comparison:
             if (one.method, one.corrected, one.left_out, one.max_step) == (method, corrected, left_out, step):
                 return number
         return None
+
+
+def _incomplete(one: Run) -> str:
+    """What is missing in a run, else ''."""
+    stopped = sum(not line.complete for line in one.lines)
+    if one.method == EXACT or not stopped:  # of exact curves it is said which
+        return ""
+    name = one.method if one.corrected else f"{one.method}, as it is"
+    return f"{name}, longest step {one.max_step:g}: {stopped} of {len(one.lines)} curves not complete"
 
 
 def compare(

@@ -113,9 +113,4 @@ def _left_out(
 def _failures(summary: dict[str, Any]) -> list[str]:
     out = [f"no exact reference, compared with the closed form alone: {t}" for t in summary["without_exact"]]
     out += summary["notes"]
-    out += [
-        f"{one['method']}, max. step {one['max_step']:g}: curves not complete"
-        for one in summary["runs"]
-        if not one["complete"]
-    ]
     return out if summary["complete"] else [*out, "interrupted: some runs are missing"]
