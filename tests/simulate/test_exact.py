@@ -207,3 +207,18 @@ def test_cores_give_the_same():
     for a, b in zip(one.curves, two.curves, strict=True):
         np.testing.assert_array_equal(a.amplitude, b.amplitude)
         assert b.parameters == a.parameters
+
+
+def test_a_scene_without_contacts():
+    scene = replace(yang(), contacts=(), max_step=0.2)
+    curve = curve_of(scene)
+    assert curve.complete and curve.regime.shape == (curve.points, 0)
+    exact = [np.abs(linear(scene, omega, stuck=False)) for omega in curve.frequency]
+    assert curve.amplitude == pytest.approx(np.array(exact), rel=1e-8)
+    (visited,) = trace_exact(scene, at=[1.0]).curves
+    assert visited.amplitude[0] == pytest.approx(np.abs(linear(scene, 1.0, stuck=False)), rel=1e-8)
+
+
+def test_a_mode_that_is_free_to_drift():
+    curve = curve_of(one_mode(frequency=0.0, n_0=-100.0))
+    assert curve.points == 0 and "free to drift" in curve.reason

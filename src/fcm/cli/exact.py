@@ -76,3 +76,8 @@ def traced(
     response = trace_exact(scene, at, messages.progress, jobs=jobs, keep=keep, resume=resume)
     messages.clear()
     return response
+
+
+def interrupted(response: Response) -> bool:
+    """Whether a curve is not complete because the run was interrupted."""
+    return any(curve.reason.startswith("interrupted") for curve in response.curves)

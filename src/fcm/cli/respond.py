@@ -103,7 +103,6 @@ def respond(
     if resume and output is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     from fcm.response.output import summary
-    from fcm.response.sweep import interrupted
 
     keep = None if output is None else output.with_name(f"{output.name}.unfinished")
     options = {"jobs": jobs, "tolerance": None if keep_all else tolerance, "keep": keep, "resume": resume}
@@ -122,7 +121,7 @@ def respond(
         _write(messages, response, output, csv, history_csv)
     finally:  # a full disk does not take the result away
         click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, unit))
-    if keep is not None and interrupted(response):
+    if keep is not None and keep.is_file() and exact.interrupted(response):
         messages.warning(f"interrupted; what is finished is kept in {keep}: continue with --resume")
     _close(messages, result)
 

@@ -11,6 +11,7 @@ from fcm.simulate.measure import Measure
 from fcm.simulate.motion import History, Motion, Transition
 from fcm.simulate.periodic import Orbit, periodic
 from fcm.simulate.run import simulate, simulate_phases, simulate_schedule
+from fcm.simulate.sample import Sample
 from fcm.simulate.state import State
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Measure",
     "Motion",
     "Orbit",
+    "Sample",
     "SimulationError",
     "State",
     "Transition",

@@ -95,7 +95,8 @@ class Equations:
         """
         z, before = guess, np.inf
         rate = np.zeros(guess.size - 1)  # by frequency; not needed while that is held
-        known, regimes = guess, [""]  # where the rate is from
+        known: FloatArray = guess  # where the rate is from
+        regimes: list[str] = []
         for _ in range(MOST_CORRECTIONS):
             shot = self.shot(z)
             if shot is None:

@@ -61,7 +61,7 @@ def trace_orbits(
     Returns
     -------
     Branch
-        Its folds are located to 1e-8 of the arc, and so are the peaks of every degree of freedom.
+        Its folds are located to 1e-8 of the arc, the greatest amplitude of each degree of freedom to 1e-9.
 
     Raises
     ------
@@ -96,7 +96,10 @@ def first_point(equations: Equations, orbit: Orbit) -> Point:
     row = level(z.size, 1.0 if omega - low <= high - omega else -1.0)
     found = None if shot is None else equations.correct(z, equations.scale(shot), row)
     if found is None:
-        raise SimulationError(f"the solution at {omega:g} rad/s to start from cannot be improved")
+        raise SimulationError(
+            f"the solution at {omega:g} rad/s to start from is not determined: a mode is free to drift, or "
+            "resonates without damping; add damping, or try another range"
+        )
     return rescaled(equations, found)
 
 

@@ -152,12 +152,12 @@ class _Sweep:
                 if curves[0].reason.startswith(STOPPED):
                     break
                 kept.add(number, curves)
-            else:
-                kept.remove()
         except KeyboardInterrupt:
             if not done:
                 kept.remove()
                 raise
+        if len(kept.finished) in (0, len(self.scenes)):  # nothing to go on with, or nothing left
+            kept.remove()
         return [done.get(i) or lost_curve(scene, INTERRUPTED) for i, scene in enumerate(self.scenes)]
 
     def _finished(self, groups: dict[int, Group]) -> Finished:

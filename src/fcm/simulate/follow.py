@@ -25,6 +25,7 @@ CORNER_TRIES = 16  # directions around a corner in which its regimes are looked 
 REACHES = POINT * np.array([1e1, 1e2, 1e3, 1e4])  # distances at which they are
 BOUNDLESS = 1e9  # size of the motion, in units of that at the start, that only an undamped resonance reaches
 MOST_STEPS = 20_000
+MANY = 20  # transitions in a cycle with which contacts chatter
 CROWD, CROWDED = 100, 1e-3  # so many successive attempts that cover less arc than that
 
 
@@ -53,7 +54,7 @@ class Follower:
         covered = np.ones(CROWD)  # arc covered by the last attempts
         for count in range(MOST_STEPS):
             if covered.sum() < CROWDED:
-                self.reason = CHATTER
+                self.reason = CHATTER if len(self.point.shot.segments) > MANY else STALLED
                 return
             covered[count % CROWD] = 0.0
             new = self._attempt()
@@ -115,6 +116,8 @@ class Follower:
     def _landed(self, new: Point) -> Point | None:
         """The point at the end of the range, on the way to one beyond it."""
         here = self.point
+        if new.z[-1] == here.z[-1]:  # along the end of the range: free motion at an undamped resonance
+            return None
         end = self.high if new.z[-1] >= self.high else self.low
         share = (end - here.z[-1]) / (new.z[-1] - here.z[-1])
         guess = here.z + share * (new.z - here.z)
