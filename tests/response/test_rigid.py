@@ -47,9 +47,11 @@ def test_the_static_balance_is_that_of_the_exact_motion():
     modal = BODY | {"frequency": [0.0, 2.0], "damping": [0.02, 0.02], "shapes": [[0.8, 0.3], [-0.3, 0.9]]}
     scene, found = curve(modal, {"n_0": 20.0}, (("x", 1.0), ("y", 0.5)))
     at = int(found.amplitude[:, 0].argmax())
-    exact = periodic(scene, found.frequency[at]).measure
+    orbit = periodic(scene, found.frequency[at])
+    exact = orbit.measure
     error = 3.0 * found.truncation_error[at]
     assert set(found.regime[at]) == {"EPEN"} and 0.0 < error < 0.05
+    assert found.stable[at] and orbit.stable  # slip resists a drift
     assert found.amplitude[at] == pytest.approx(exact.fundamental, rel=error)
     assert found.mean[at] == pytest.approx(exact.mean, rel=0.05)
 

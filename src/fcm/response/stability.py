@@ -8,16 +8,18 @@ of exponents crosses the imaginary axis.
 
 Exponents are defined up to multiples of i omega, and of each family Hill's method gives several copies.
 Only the slow one counts, |Im lambda| <= omega / 2: a friction force is that of a steady cycle, and its
-tangent holds for amplitudes that change slowly against it.
+tangent holds for amplitudes that change slowly against it. A slow drift, though, is resisted by the
+contacts in proportion to its velocity; without this, structures free to drift would be called unstable.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from fcm.contact.drag import drift_resistance
 from fcm.contact.limits import FloatArray
 from fcm.response.balance import Balance
-from fcm.response.law import UNKNOWNS
+from fcm.response.law import UNKNOWNS, Law
 from fcm.response.slow import dense, following, some_modes, with_followers
 from fcm.response.springs import among_contacts
 from fcm.response.structure import BoolArray, Group
@@ -63,6 +65,7 @@ def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     for part in range(3):
         damping[:, i, part, i, part] = rate
         stiffness[:, i, part, i, part] += group.frequency**2 - (omega[:, None] ** 2 if part < 2 else 0.0)
+    damping[:, :, 2, :, 2] += _drag(group, balance.law, z)
     _let_drift(group, stiffness, damping, omega)
     # d/dt of Im(d exp(i omega t)) is Im((d' + i omega d) exp(i omega t)); i turns (Re, Im) by a right angle
     for row, column, sign in ((0, 1, -1.0), (1, 0, 1.0)):
@@ -79,6 +82,20 @@ def growth_rates(balance: Balance, z: FloatArray) -> FloatArray:
     slow = np.abs(exponents.imag) <= ZONE
     growth: FloatArray = np.where(slow, exponents.real, -np.inf).max(axis=1) * omega
     return growth
+
+
+def _drag(group: Group, law: Law, z: FloatArray) -> FloatArray:
+    """Resistance of the contacts to mean velocities, by modes over the modal mass, (point, mode, mode).
+
+    Each contact of the law answers with k_u / omega times its `drift_resistance`.
+    """
+    contacts = law.k_u.shape[1]
+    arguments = law.arguments(z[:, :-1].reshape(z.shape[0], contacts, UNKNOWNS))
+    each = drift_resistance(*(part.ravel() for part in np.broadcast_arrays(*arguments)))
+    drag = each.reshape(z.shape[0], contacts) * law.k_u / z[:, -1:]
+    tangential = group.ports[:, :, 0 : 2 * contacts : 2]
+    resistance: FloatArray = (tangential * drag[:, None, :]) @ tangential.swapaxes(1, 2)
+    return resistance / group.mass[:, :, None]
 
 
 def _let_drift(group: Group, stiffness: FloatArray, damping: FloatArray, omega: FloatArray) -> None:
