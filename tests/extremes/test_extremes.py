@@ -16,6 +16,7 @@ from fcm.extremes.conditioning import condition_number
 from fcm.extremes.known import changes, read_known
 from fcm.extremes.residual import unbalanced
 from fcm.response import trace
+from fcm.scene import SceneError
 
 KNOWN = Path(__file__).with_name("passed.txt")
 SAMPLE = (
@@ -46,6 +47,16 @@ def yang():
 
 def test_the_sample_passes(rows):
     assert not [(name, faults(row)) for name, row in rows.items() if faults(row)]
+
+
+def test_a_motion_that_is_rounding_noise_is_not_followed(rows):
+    """Two equal modes under a symmetric force leave v at 1e-14 of u."""
+    assert rows["equal-modes"].points < 1000
+
+
+def test_a_name_without_its_collection():
+    with pytest.raises(SceneError, match='did you mean "extreme/stiff-normal"'):
+        fcm.load_scene("stiff-normal")
 
 
 def test_every_scene_is_known_to_pass_or_said_not_to():
