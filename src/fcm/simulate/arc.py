@@ -19,6 +19,7 @@ from fcm.simulate.system import System, has_friction
 MOST_CORRECTIONS = 8
 ROUGH = 100.0  # times TOLERANCE: closed as well as rounding lets it, if no step improves it
 FREQUENCY_STEP = 1e-7  # of the difference quotient by frequency, relative
+KEPT_SYSTEMS = 4
 MOVED = 1e-3  # distance over which that quotient serves Newton's method
 
 
@@ -43,6 +44,7 @@ class Equations:
         carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
         self.free = np.flatnonzero(np.concatenate((np.ones(2 * modes, dtype=bool), carries)))
         self.size = 2 * modes + contacts
+        self._systems: dict[float, System] = {}
         self.periods = 0  # that have been computed
 
     def shot(self, z: FloatArray) -> Shot | None:
@@ -53,9 +55,17 @@ class Equations:
         x[self.free] = z[:-1]
         self.periods += 1
         try:
-            return Shot(System(self.scene, float(z[-1])), x, choose=True)
+            return Shot(self._system(float(z[-1])), x, choose=True)
         except SimulationError:
             return None
+
+    def _system(self, omega: float) -> System:
+        """The scene at a frequency; the last few are kept, for Newton's method while it is held."""
+        if omega not in self._systems:
+            if len(self._systems) == KEPT_SYSTEMS:
+                del self._systems[next(iter(self._systems))]
+            self._systems[omega] = System(self.scene, omega)
+        return self._systems[omega]
 
     def unknowns(self, shot: Shot) -> FloatArray:
         """z of a shot."""

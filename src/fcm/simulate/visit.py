@@ -26,8 +26,8 @@ from fcm.simulate.system import System
 
 FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
-ASTRAY = 0.5  # distance from what the direction foretells, relative to the way, beyond which a solution
-CLOSE = 0.02  # is another branch; but never within this distance
+ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
+CLOSE = 0.05  # is another branch; but never within this distance
 SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
 BEYOND = (
     0.1  # part of it, past the end of a branch, at which the motion is simulated: it lingers near the end
