@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-REPEATS = 3
+REPEATS = 2
 TIMEOUT = 60.0  # [s]
 _IMPORTS = {"exact": "import fcm.scene, fcm.simulate"}
 _PROGRAM = """
