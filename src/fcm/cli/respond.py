@@ -87,9 +87,10 @@ def respond(
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
 
-    By harmonic balance, or with --method exact as periodic solutions of the exact motion. The peaks, folds and errors of every curve are printed; the curves go to files. A [[schedule]] of the
-    scene is then simulated in time, without a time step; the amplitudes of its phases are printed, the
-    motion goes to the same file.
+    By harmonic balance, or with --method exact as periodic solutions of the exact motion. The peaks, folds
+    and errors of every curve are printed; the curves go to files. A [[schedule]] of the scene is then
+    simulated in time, without a time step; the amplitudes of its phases are printed, the motion goes to the
+    same file.
     """
     if compare:
         from fcm.cli.compare import refuse_other_options, write_comparison
