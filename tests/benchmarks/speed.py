@@ -1,6 +1,7 @@
 """Run times beside one another, in one process: ``make bench`` prints them as a table with their ratios.
 
-Absolute times depend on the machine and on what else it does; the ratios within a block much less.
+Processor times: they depend on the machine, and less than others on what else it does; the ratios within a
+block depend on it least.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ REPEATS = 5
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles
 
 
-def block(title: str, rows: list[Row], unit: float, name: str) -> None:
+def block(title: str, rows: list[Row], unit: float, name: str, repeats: int = REPEATS) -> None:
     """Median times per element, and the ratio to the first row; the rows take turns."""
     times: list[list[float]] = [[] for _ in rows]
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         for samples, (_, call, elements) in zip(times, rows, strict=True):
-            begin = time.perf_counter()
+            begin = time.process_time()
             call()
-            samples.append((time.perf_counter() - begin) / elements)
+            samples.append((time.process_time() - begin) / elements)
     medians = [float(np.median(samples)) for samples in times]
     print(f"\n{title}")
     for (what, _, _), median in zip(rows, medians, strict=True):
@@ -85,7 +86,7 @@ def curves() -> None:
     block("the ten curves of yang1998, everything included", rows, 1e-3, "ms a point")
 
 
-def many_curves(count: int = 200) -> None:
+def many_curves(count: int = 1000) -> None:
     table = fcm.open_table()
     base = fcm.load_scene("yang1998-n5")
     rng = np.random.default_rng(1)
@@ -95,17 +96,20 @@ def many_curves(count: int = 200) -> None:
         for mu, n_0 in draws
     )
     scene = replace(base, curves=drawn)
-    points = sum(curve.points for curve in trace(scene, table=table).curves)
+    points = sum(curve.points for curve in trace(scene, table=table, jobs=1).curves)
     rows: list[Row] = [
-        (f"{count} curves together", lambda: trace(scene, table=table), points),
-        (f"{count} curves together, closed form", lambda: trace(scene, "closed-form"), points),
+        ("together", lambda: trace(scene, table=table, jobs=1), points),
+        ("together, closed form", lambda: trace(scene, "closed-form", jobs=1), points),
     ]
-    block(f"{count} curves of random mu and n_0, everything included", rows, 1e-3, "ms a point")
+    block(f"{count} curves of random mu and n_0, everything included", rows, 1e-3, "ms a point", repeats=1)
 
 
 def main() -> None:
     print(f"fcm {fcm.__version__}, Python {sys.version.split()[0]}, numpy {np.__version__}")
-    print("median of 5 runs in turn; the last column is the ratio to the first row of the block")
+    print(
+        "processor time, the median of 5 runs in turn (one run of the thousand curves); "
+        "the last column is the ratio to the first row of the block"
+    )
     coefficients()
     curves()
     many_curves()
