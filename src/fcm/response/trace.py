@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
-from fcm.response.branches import all_branches
+from fcm.response.branches import all_branches, outcome
 from fcm.response.changes import with_changes
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.newton import CLOSE
@@ -52,7 +52,8 @@ def trace_group(
     points = with_folds(exact_balance, refined(exact_balance, with_changes(exact_balance, points)))
     results = Assembly(exact_balance, points, branches).curves(curves, scene.modal.dofs)
     if by_table:
-        _without_table(scene, curves, results, uncorrected, progress)
+        stopped = np.array([not outcome(branches, i)[0] for i in range(len(curves))])
+        _without_table(scene, curves, results, np.flatnonzero((uncorrected > 0) | stopped), progress)
     response = Response(
         scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
         scene.frequency_unit,
@@ -69,14 +70,13 @@ def _without_table(
     scene: Scene,
     curves: tuple[Scene, ...],
     results: list[Curve],
-    uncorrected: IntArray,
+    again: IntArray,
     progress: Progress | None,
 ) -> None:
     """Trace again, with the closed form, the curves that stop early or whose correction fails.
 
     The force of a contact much stiffer than the structure carries the table's error multiplied.
     """
-    again = np.flatnonzero(uncorrected | ~np.array([curve.complete for curve in results]))
     if again.size == 0:
         return
     whole = replace(scene, curves=tuple(curves[i] for i in again))
