@@ -64,7 +64,7 @@ def test_folds_of_the_paper_s_preload(folded):
     ids=["slip to stick", "folds", "folds 4e-5 apart"],
 )
 def test_peaks_and_folds_do_not_depend_on_the_step(scene):
-    fine, coarse = (curve_of(replace(scene, max_step=step)) for step in (0.05, 0.2))
+    fine, coarse = (curve_of(replace(scene, max_step=step)) for step in (0.02, 0.2))
     assert fine.complete and coarse.complete
     assert coarse.points < fine.points
     assert coarse.folds == pytest.approx(fine.folds, rel=1e-8)

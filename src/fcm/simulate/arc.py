@@ -72,8 +72,17 @@ class Equations:
         return np.append(shot.x[self.free], shot.system.omega)
 
     def scale(self, shot: Shot) -> FloatArray:
-        """Units in which the curve is measured: the size of the motion, the range of frequencies."""
-        return np.append(shot.scale[self.free] * np.sqrt(self.free.size), self.span)
+        """Units in which the curve is measured: the size of the motion, the range of frequencies.
+
+        Velocities are in units of displacement times the mode's own frequency, so that the higher harmonics
+        count by their displacements.
+        """
+        system, scale = shot.system, shot.scale.copy()
+        y = np.abs([segment.y for segment in shot.segments]).max(axis=0)
+        rates = np.maximum(self.scene.modal.frequency, system.omega)
+        length = max(y[system.q].max(), (y[system.p] / rates).max(), 1e-300)
+        scale[system.q], scale[system.p] = length, length * rates
+        return np.append(scale[self.free] * np.sqrt(self.free.size), self.span)
 
     def by_frequency(self, shot: Shot) -> FloatArray:
         """Derivative of the closure by the frequency, on the shot's own side of a corner: (unknown,)."""
