@@ -1,7 +1,7 @@
 """Whether a row of the catalogue passes, and in plain words why not. A row passes if all of this holds:
 
 - its curve is complete and every point of it was corrected; or it stops where the amplitude has no limit,
-  at a resonance that nothing damps;
+  at a resonance that hardly anything damps;
 - at every point the full modal equations are balanced: what is left is below 1e-9 of the forces, or below
   what a change of the displacements by 1e-13 is worth, to which points are corrected;
 - table and closed form lead to the same peaks and folds, to 1e-6;

@@ -84,7 +84,7 @@ def _bracketed(exact: Balance, points: Points, regime: IntArray, at: IntArray, s
 
 def _along(segments: Segments, step: FloatArray, direction: FloatArray) -> FloatArray:
     """Whether steps go along directions: scaled, (segment,)."""
-    product: FloatArray = (step * direction / segments.scale**2).sum(axis=1)
+    product: FloatArray = ((step / segments.scale) * (direction / segments.scale)).sum(axis=1)
     return product
 
 

@@ -96,9 +96,12 @@ class Law:
         N_s = (star * sin_1 + theta_1) / np.pi
         dN_s, dN_b = 2.0 * sin_1 / np.pi, theta_1 / np.pi
         direction = v / np.maximum(b, SMALLEST)[..., None]
-        mean = np.where(inside, variation * (sin_1 + star * theta_1) / np.pi, np.maximum(load, 0.0))
+        pulsating = variation * (sin_1 + star * theta_1) / np.pi - np.maximum(self.n_0, 0.0)
+        # closed throughout, without the preload: it may be far larger than what is left
+        closed = self.k_v * x[..., 4] + np.minimum(self.n_0, 0.0)
+        steady = np.where(load > 0.0, closed, -np.maximum(self.n_0, 0.0))
         force[..., 2:4] = (self.k_v * N_s)[..., None] * v
-        force[..., 5] = mean - np.maximum(self.n_0, 0.0)
+        force[..., 5] = np.where(inside, pulsating, steady)
         # v dN_s = direction dN_s (dv_mean - n0_star db)
         along = (self.k_v * dN_s)[..., None] * direction
         tangent[..., 2:4, 2:4] = -(along * star[..., None])[..., None] * direction[..., None, :]

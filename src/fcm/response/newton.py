@@ -17,7 +17,9 @@ from fcm.response.structure import BoolArray, IntArray
 
 MAX_ITERATIONS = 7  # Newton steps before a predictor is judged too far away
 CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every point is corrected later
-FLOOR = 1e-8  # a second step below this is at the rounding of the force: it would be 1e-16 otherwise
+EPS = float(np.finfo(np.float64).eps)
+HUGE = 1e100  # a step of this length, in the curve's own size, leads nowhere
+ROUNDINGS = 4.0  # a step that does not shrink and is no longer than this many roundings is one
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
 
@@ -113,7 +115,8 @@ def correct(
         fill(matrix, equations.evaluate(z[:, :-1], z[:, -1]), scale, right)
         matrix[:, -1, :] = row
         solution = solve_each(matrix, right)
-        lost |= ~np.isfinite(solution).all(axis=(1, 2))  # a singular matrix: it stays where it is
+        # a matrix that is singular, or nearly: it stays where it is
+        lost |= ~(np.abs(solution) < HUGE).all(axis=(1, 2))
         idle = (done | lost)[:, None]
         change = np.where(idle, 0.0, solution[:, :, 0])
         tangent = np.where(idle, tangent, solution[:, :, 1])
@@ -121,16 +124,27 @@ def correct(
         length = np.sqrt((change * change).sum(axis=1))
         done |= (length * length < close * before) & (length < 0.1 * before)
         done |= length < 1e-2 * close
-        done |= (length < FLOOR) & (before < FLOOR)
-        before = length
+        earlier, before = before, length
         if (done | lost).all():
             break
+    left = np.flatnonzero(~done & ~lost)
+    if left.size:
+        floor = ROUNDINGS * rounding(matrix[left], z[left] / scale[left])
+        done[left] = np.maximum(earlier[left], before[left]) < floor
     done &= ~lost
     tangent[lost] = np.nan
     norm = np.sqrt((tangent * tangent).sum(axis=1, keepdims=True))
     sign = np.linalg.slogdet(np.where(np.isfinite(matrix), matrix, 0.0))[0]
     ok = done & np.isfinite(norm[:, 0]) & (norm[:, 0] > 0.0)
     return Newton(z, ok, tangent / np.where(norm > 0.0, norm, 1.0), sign)
+
+
+def rounding(matrix: FloatArray, z: FloatArray) -> FloatArray:
+    """Length of the Newton step that a relative error of EPS in every number makes, (curve,), after Skeel."""
+    inverse = solve_each(matrix, np.broadcast_to(np.eye(z.shape[1]), matrix.shape))
+    step = np.abs(inverse) @ (np.abs(matrix) @ np.abs(z)[..., None])
+    length: FloatArray = EPS * np.sqrt((step * step).sum(axis=(1, 2)))
+    return np.where(np.isfinite(length), length, 0.0)
 
 
 def fill(matrix: FloatArray, at: Derivatives, scale: FloatArray, right: FloatArray) -> None:

@@ -36,7 +36,7 @@ REASONS = {
     COMPLETE: "",
     RETURNED: "the curve came back to the frequency where it began, and none was found from the other end",
     STALLED: "no further point could be found; try a smaller --max-step or another range",
-    UNBOUNDED: "the amplitude grows without limit, at a resonance that nothing damps; add damping",
+    UNBOUNDED: "the amplitude grows without limit, at a resonance that hardly anything damps; add damping",
     TOO_LONG: f"the curve did not leave the range within {LONGEST_PATH} steps; try a larger --max-step",
 }
 

@@ -92,7 +92,7 @@ def _raise_load(
         z = np.column_stack((x[some], weak[some]))
         full = np.ones(some.size)
         trace = follow(equations.take(some), z, weak[some], full, LOAD_STEP, boundless=np.inf)
-        last = np.searchsorted(trace.curve, np.arange(some.size), side="right") - 1
-        x[some] = trace.z[last, :-1]
-        found[some] = trace.status == COMPLETE
+        arrived = np.flatnonzero(trace.status == COMPLETE)
+        last = np.searchsorted(trace.curve, arrived, side="right") - 1
+        x[some[arrived]], found[some[arrived]] = trace.z[last, :-1], True
     return x, found

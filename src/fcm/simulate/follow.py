@@ -30,7 +30,7 @@ CROWD, CROWDED = 100, 1e-3  # so many successive attempts that cover less arc th
 
 
 STALLED = "no further solution could be found; try a smaller max_step or another range"
-UNBOUNDED = "the motion grows without limit, at a resonance that nothing damps; add damping"
+UNBOUNDED = "the motion grows without limit, at a resonance that hardly anything damps; add damping"
 CHATTER = (
     "the contacts chatter, and the states over the cycle change at almost every step; give the modes more "
     "damping, or the contacts less stiffness"
