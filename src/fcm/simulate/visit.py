@@ -29,9 +29,7 @@ FAR = 0.5  # distance along the curve, in units of the motion, that is not conti
 ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
 CLOSE = 0.05  # is another branch; but never within this distance
 SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
-BEYOND = (
-    0.1  # part of it, past the end of a branch, at which the motion is simulated: it lingers near the end
-)
+BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
 SETTLED = 0.1  # distance of a simulated state from the periodic solution to which it belongs
 MOST_NAMED = 5
 JUMP = 0.01  # relative change of an amplitude that is one
@@ -93,13 +91,15 @@ class Visitor:
             orbit = solution_at(self.scene, omega)
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
-        if orbit.stable:
-            self._take(first_point(self.equations, orbit))
-        else:
+        if not (orbit.stable and self._take(first_point(self.equations, orbit))):
             self._settle(State.rest(self.scene), omega)
 
-    def _take(self, point: Point) -> None:
-        self._here, self._sample, self._state = point, sampled(point), point.shot.state
+    def _take(self, point: Point) -> bool:
+        """Continue with a periodic solution, if it is stable."""
+        sample = sampled(point)
+        if sample.stable:
+            self._here, self._sample, self._state = point, sample, point.shot.state
+        return sample.stable
 
     def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
         if before is not None and after is not None:
@@ -113,8 +113,7 @@ class Visitor:
         step = omega - float(self._here.z[-1])
         smallest = SMALLEST * abs(step)
         while (left := omega - float(self._here.z[-1])) != 0.0:
-            near = self._near(omega if abs(step) >= abs(left) else omega - left + step)
-            if near is not None:
+            if self._near(omega if abs(step) >= abs(left) else omega - left + step):
                 step *= 2.0
                 continue
             step *= 0.25
@@ -122,26 +121,19 @@ class Visitor:
                 return False
         return True
 
-    def _near(self, omega: float) -> Point | None:
+    def _near(self, omega: float) -> bool:
         """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
         here = self._here
         assert here is not None
-        rate = here.tangent[-1] * here.scale[-1]
-        way = here.tangent * here.scale * ((omega - here.z[-1]) / rate) if rate else here.scale
-        length = float(np.linalg.norm(way / here.scale))
+        length = abs(omega - here.z[-1]) / max(abs(here.tangent[-1]) * here.scale[-1], 1e-300)  # of arc
         if length > FAR:
-            return None
-        guess = here.z + way
+            return False
+        guess = here.z + here.tangent * here.scale * (
+            length * np.sign((omega - here.z[-1]) * here.tangent[-1])
+        )
         guess[-1] = omega
-        row = level(guess.size)
-        found = self.equations.correct(guess, here.scale, row, max(ASTRAY * length, CLOSE))
-        if found is None:
-            return None
-        sample = sampled(found)
-        if not sample.stable:
-            return None
-        self._here, self._sample = rescaled(self.equations, found), sample
-        return self._here
+        found = self.equations.correct(guess, here.scale, level(guess.size), max(ASTRAY * length, CLOSE))
+        return found is not None and self._take(rescaled(self.equations, found))
 
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
@@ -150,8 +142,8 @@ class Visitor:
             *_, (_, state) = cycles_from(system, cycles, state)
             self._state = state
             orbit = shoot(system, state)
-            if orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED:
-                self._take(first_point(self.equations, orbit))
+            near = orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED
+            if orbit is not None and near and self._take(first_point(self.equations, orbit)):
                 return
             self._sample = repeating(system, state)
             if self._sample is not None:
