@@ -119,11 +119,13 @@ def _scale(system: System, segments: list[Segment]) -> FloatArray:
     """The size of the displacements, velocities and friction forces."""
     points = np.array([segment.y for segment in segments])
     y = np.abs(points).max(axis=0)
-    length = max(y[system.q].max(), y[system.p].max() / system.omega, 1e-300)
+    shapes = np.abs(system.scene.modal.shapes).max(axis=1)
+    per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its mass and its units
+    length = max((per_unit * y[system.q]).max(), (per_unit * y[system.p]).max() / system.omega, 1e-300)
     limit = np.array([contact.mu for contact in system.contacts]) * (np.abs(system.preload) + y[system.n])
     stiff = np.array([contact.k_u for contact in system.contacts]) * length
     force = np.maximum(np.maximum(y[system.f], np.minimum(limit, stiff)), 1e-300)
-    modes = np.full(system.modes, length)
+    modes = length / per_unit
     return np.concatenate((modes, modes * system.omega, force))
 
 
