@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -85,14 +86,14 @@ def outcome(seed: int) -> Outcome:
 def main(count: int = 200) -> None:
     reasons: Counter[str] = Counter()
     agree, differ = 0, []
-    for seed in range(count):
-        result = outcome(seed)
-        print(f"\r{seed + 1} of {count}", end="", file=sys.stderr, flush=True)
-        reasons.update(result.reasons)
-        if result.complete:
-            good = result.disagreement < AGREE
-            agree += good
-            differ += [] if good else [(seed, result.disagreement)]
+    with ProcessPoolExecutor() as processes:
+        for done, result in enumerate(processes.map(outcome, range(count)), start=1):
+            print(f"\r{done} of {count}", end="", file=sys.stderr, flush=True)
+            reasons.update(result.reasons)
+            if result.complete:
+                good = result.disagreement < AGREE
+                agree += good
+                differ += [] if good else [(result.seed, result.disagreement)]
     print(file=sys.stderr)
     print(f"{count} random scenes, each with the step limits {STEPS}")
     print(f"{agree:5d}  complete; peaks and folds agree between the steps to {AGREE:g}")
