@@ -129,28 +129,23 @@ def _block(
     stuck = np.flatnonzero(code == STUCK)
     some = SlipLimits(*(x[stuck] for x in limits))
     F[0, stuck], F[1, stuck], F[2, stuck] = stuck_force(n0_bar[stuck], b_bar[stuck], some), 1.0, 0.0
-    slipping = np.flatnonzero(code == SLIPPING)
-    path = cycle(n0_bar[slipping], b_bar[slipping], phi[slipping], SlipLimits(*(x[slipping] for x in limits)))
-    F[:, slipping] = _coefficients(path, n0_bar[slipping], b_bar[slipping])
     if gradients:
         dF[:, :, opened] = 0.0
         dF[:, :, stuck] = _stuck_gradients(n0_bar[stuck], b_bar[stuck], some)
-        dF[:, :, slipping] = _gradients(path, b_bar[slipping])
+    light = np.maximum(np.abs(n0_bar), b_bar) < LIGHT
+    for slipping, integrated in ((~light, _by_motion), (light, _by_force)):
+        which = np.flatnonzero((code == SLIPPING) & slipping)
+        if which.size:
+            n0, b = n0_bar[which], b_bar[which]
+            path = cycle(n0, b, phi[which], SlipLimits(*(x[which] for x in limits)))
+            F[:, which] = integrated(path, n0, b)
+            if gradients:
+                dF[:, :, which] = _gradients(path, b)
     return F, dF
 
 
-def _coefficients(path: Cycle, n0_bar: FloatArray, b_bar: FloatArray) -> FloatArray:
-    """(27): integrals of the force times 1/2, sin(theta), cos(theta), over pi."""
-    light = np.maximum(np.abs(n0_bar), b_bar) < LIGHT
-    if light.all():
-        return _by_force(path, n0_bar, b_bar)
-    if not light.any():
-        return _by_motion(path)
-    return np.where(light, _by_force(path, n0_bar, b_bar), _by_motion(path))
-
-
 def _by_force(path: Cycle, n0_bar: FloatArray, b_bar: FloatArray) -> FloatArray:
-    """The force itself integrated: +-n while slipping, and while sticking its change since the stick began.
+    """(27) by integrals of the force: +-n while slipping, while sticking its change since the stick began.
 
     The relative error is that of the arguments, however small they are against 1, the motion.
     """
@@ -171,8 +166,8 @@ def _by_force(path: Cycle, n0_bar: FloatArray, b_bar: FloatArray) -> FloatArray:
     return total / np.pi
 
 
-def _by_motion(path: Cycle) -> FloatArray:
-    """The difference u - w integrated over the contact, exact where the load is far above the force."""
+def _by_motion(path: Cycle, _n0_bar: FloatArray, _b_bar: FloatArray) -> FloatArray:
+    """(27) by integrals of u - w over the contact: faster, and exact where the load is not small."""
     final = path.spans[2].end
     u_b = np.where(path.opens, path.start.cos - final.cos, 0.0)
     sin_cos = path.start.sin * path.start.cos - final.sin * final.cos
