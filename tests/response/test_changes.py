@@ -22,6 +22,11 @@ def test_the_curve_does_not_step_back_at_a_sharp_corner():
     assert outcome(3).disagreement < AGREE
 
 
+def test_points_closer_than_the_error_of_the_table_stay_in_their_order():
+    # at the step of 0.1 the correction moved a point past its neighbour, which made two folds
+    assert outcome(139).disagreement < AGREE
+
+
 def test_the_regime_changes_between_points_close_to_each_other():
     curve = trace(load_scene("yang1998-n5")).curves[0]
     n0_bar, b_bar = curve.loop[:, 0, 0], curve.loop[:, 0, 1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -35,6 +35,10 @@ class Points:
     shift: FloatArray  # (point,) relative, by the correction
     fold: BoolArray  # (point,) where the frequency turns
 
+    def take(self, which: BoolArray) -> Points:
+        """Some of the points."""
+        return Points(*(getattr(self, f.name)[which] for f in fields(self)))
+
     def segments(self, at: IntArray, exact: Balance) -> Segments:
         """The segments from points at (segment,) to the points that follow them."""
         curve, z, d = self.curve[at], self.z, self.direction
@@ -66,7 +70,26 @@ def corrected(exact: Balance, branches: Branches, curves: int) -> tuple[Points, 
     along = np.sign((new.tangent * path.direction / scale).sum(axis=1, keepdims=True))
     direction = np.where(new.converged[:, None], along * scale * new.tangent, path.direction)
     points = Points(curve, path.curve, z, direction, shift, np.zeros(shift.size, dtype=bool))
-    return points, np.bincount(curve[~new.converged], minlength=curves)
+    return _in_order(exact, points), np.bincount(curve[~new.converged], minlength=curves)
+
+
+def _in_order(exact: Balance, points: Points) -> Points:
+    """Without points that their correction has moved past a neighbour, closer than the table's error was."""
+    for _ in range(ROUNDS):
+        same = hang_together(points.branch)
+        segments = points.segments(np.arange(same.size), exact)
+        step = segments.chord / segments.scale**2
+        ahead = [(step * d).sum(axis=1) for d in (segments.direction_start, segments.direction_end)]
+        back = np.flatnonzero(same & (ahead[0] < 0.0) & (ahead[1] < 0.0))
+        if back.size == 0:
+            break
+        inner = np.concatenate(([False], same)) & np.concatenate((same, [False]))
+        later = points.shift[back + 1] > points.shift[back]
+        moved = back + np.where(inner[back] & inner[back + 1], later, inner[back + 1])
+        keep = np.ones(points.curve.size, dtype=bool)
+        keep[moved[inner[moved]]] = False
+        points = points.take(keep)
+    return points
 
 
 def refined(exact: Balance, points: Points) -> Points:
