@@ -106,3 +106,10 @@ def test_a_resonance_without_damping_is_named_and_the_rest_written(fcm, scene, t
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         known = data["frequency"][0].compressed()
         assert known.min() == 0.8 and known.max() == 1.6  # both sides of it
+
+
+def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
+    done = fcm("respond", scene, "--method", "exact", "--at", "1e-12", "--csv", "a.csv")
+    assert done.code == 3 and "wrote a.csv" in done.err
+    assert (tmp_path / "a.csv").read_text().startswith("curve,branch,frequency [rad/s],amplitude u")
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == 1

@@ -281,7 +281,7 @@ def write_csv(response: Response, path: str | Path) -> None:
         for number, c in enumerate(response.curves):
             orbits = c.orbits
             parts = (c.amplitude, c.phase, c.mean, *(() if orbits is None else (orbits.fundamental,)))
-            values = np.stack(parts, axis=2).reshape(c.frequency.size, -1)
+            values = np.stack(parts, axis=2).reshape(c.frequency.size, len(columns))
             for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
                     [number, c.branch[k], *c.parameters.values(), repr(float(c.frequency[k] / scale))]
