@@ -112,3 +112,15 @@ def test_a_contact_without_friction_opens_and_closes_and_may_be_unstable():
         assert inner.sum() > 10 and between[inner].all()
         assert not curve.stable[inner].any() and curve.stable[~inner].all()
     assert none.folds == pytest.approx(hardly.folds, rel=1e-7)
+
+
+@pytest.mark.parametrize("seed", [2, 10])
+def test_stability_between_folds_ends_at_the_same_frequencies_whatever_the_step(seed):
+    crossings = []
+    for max_step in (0.2, 0.02):
+        (curve,) = trace(replace(random_scene(seed), max_step=max_step)).curves
+        changes = np.flatnonzero(np.diff(curve.stable.astype(int)))
+        last = np.where(curve.stable[changes], changes, changes + 1)  # the stable one of two points
+        crossings.append([f for f in curve.frequency[last] if f not in curve.folds])
+    assert crossings[0]
+    assert crossings[0] == pytest.approx(crossings[1], rel=1e-8)

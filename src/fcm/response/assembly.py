@@ -17,25 +17,22 @@ from fcm.response.path import REASONS, STALLED
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.regimes import regimes
 from fcm.response.result import UNIT, Curve
-from fcm.response.stability import stable_points
-from fcm.response.structure import AnyArray, IntArray, unknown_contacts
+from fcm.response.structure import AnyArray, BoolArray, IntArray, unknown_contacts
 from fcm.response.truncation import truncation_error
 from fcm.scene.model import Scene
 
 
 class Assembly:
-    """Corrected points of all curves, made into results."""
+    """Corrected points of all curves, and whether they are stable, made into results."""
 
-    def __init__(self, exact: Balance, points: Points, branches: Branches) -> None:
-        self.exact, self.points, self.branches = exact, points, branches
+    def __init__(self, exact: Balance, points: Points, stable: BoolArray, branches: Branches) -> None:
+        self.exact, self.points, self.stable, self.branches = exact, points, stable, branches
         self.z = z = points.z
         at_points = exact.take(points.curve)
         self.X, self.mean = displacements(at_points, z[:, :-1], z[:, -1])
         x = z[:, :-1].reshape(z.shape[0], exact.group.contacts, UNKNOWNS)
         self.loop, self.regime = at_points.law.loops(x), regimes(at_points.law, x)
         self.truncation_error = truncation_error(at_points, z)
-        linear = np.logical_and.reduce(np.isin(self.regime, ("E", "S")), axis=1)
-        self.stable = stable_points(at_points, z, linear)
         self.undetermined = drift.undetermined(at_points, z)
         self.same = hang_together(points.branch)
 

@@ -11,6 +11,7 @@ from fcm.response.assembly import Assembly
 from fcm.response.balance import Balance
 from fcm.response.branches import all_branches, outcome
 from fcm.response.changes import with_changes
+from fcm.response.crossings import with_stability
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.newton import CLOSE
 from fcm.response.path import Progress
@@ -50,7 +51,8 @@ def trace_group(
     if not by_table:
         points.shift[:] = 0.0
     points = with_folds(exact_balance, refined(exact_balance, with_changes(exact_balance, points)))
-    results = Assembly(exact_balance, points, branches).curves(curves, scene.modal.dofs)
+    points, stable = with_stability(exact_balance, points)
+    results = Assembly(exact_balance, points, stable, branches).curves(curves, scene.modal.dofs)
     if by_table:
         stopped = np.array([not outcome(branches, i)[0] for i in range(len(curves))])
         _without_table(scene, curves, results, np.flatnonzero((uncorrected > 0) | stopped), progress)
