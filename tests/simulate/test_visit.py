@@ -71,3 +71,9 @@ def test_order_and_repetition_do_not_matter():
     one, _ = visited(one_mode(), [1.2, 0.9, 1.2])
     other, _ = visited(one_mode(), [0.9, 1.2])
     np.testing.assert_array_equal(one.amplitude, other.amplitude)
+
+
+def test_a_frequency_too_low_to_follow_says_so():
+    curve, _ = visited(yang(5.0), [1e-9])
+    assert not curve.complete and curve.points == 0
+    assert curve.reason.startswith("a cycle at 1e-09 rad/s lasts")

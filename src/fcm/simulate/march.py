@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.scene.model import FloatArray
 from fcm.simulate.descent import first_descent
-from fcm.simulate.errors import SimulationError
+from fcm.simulate.errors import CycleError
 from fcm.simulate.flow import LONGEST, SHORTEST, Flow
 from fcm.simulate.system import NEGATIVE, OPEN, POSITIVE, STICK, System
 
@@ -54,7 +54,7 @@ def march(
             return segments, y_end, states
         time, y = time + position * flow.step, y_end
         if len(segments) > MOST_TRANSITIONS:
-            raise SimulationError(
+            raise CycleError(
                 f"more than {MOST_TRANSITIONS} transitions in one cycle at {system.omega:g} rad/s: "
                 "the contacts chatter; give the modes more damping, or the contacts less stiffness"
             )
@@ -63,7 +63,7 @@ def march(
 def _check_steps(system: System, states: str, duration: float) -> None:
     steps = duration / system.flow(states).step
     if steps > MOST_STEPS:
-        raise SimulationError(
+        raise CycleError(
             f"a cycle at {system.omega:g} rad/s lasts {steps:.1g} radians of the fastest motion; "
             "give the contacts less stiffness, leave the highest modes out, or raise the frequency"
         )
@@ -98,7 +98,7 @@ def settle(
             return y, states, powers
         y, states = _switched(system, y, states, [flow.owners[i] for i in failed])
         noise = 2.0 * noise  # states that take turns differ by rounding that was underrated
-    raise SimulationError(
+    raise CycleError(
         f"the contacts' states cannot be told apart at {system.omega:g} rad/s, now {states!r}; "
         "change a parameter of the contacts slightly"
     )

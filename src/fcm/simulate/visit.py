@@ -15,7 +15,7 @@ from fcm.response.jumps import Jump
 from fcm.scene.model import FloatArray, Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
 from fcm.simulate.branch import Progress, first_point, shown
-from fcm.simulate.errors import SimulationError
+from fcm.simulate.errors import CycleError, SimulationError
 from fcm.simulate.explore import solution_at
 from fcm.simulate.periodic import Orbit, shoot
 from fcm.simulate.run import cycles_from
@@ -44,6 +44,7 @@ class Visitor:
         self.sweep: list[str] = []
         self.jumps: list[Jump] = []
         self.restless: dict[str, None] = {}  # frequencies without steady motion, in order
+        self.refused: dict[str, str] = {}  # frequencies at which no cycle can be computed, and why
         self._here: Point | None = None  # the periodic solution that is continued
         self._state = State.rest(scene)  # the motion, where there is none
         self._sample: Sample | None = None  # what is steady now
@@ -61,13 +62,15 @@ class Visitor:
 
     @property
     def reason(self) -> str:
-        """Which frequencies have no steady motion, else ''."""
+        """Which frequencies have no steady motion, or none that can be computed, else ''."""
+        refused = next(iter(self.refused.values()), "")
         if not self.restless:
-            return ""
+            return refused
         first = list(self.restless)[:MOST_NAMED]
         more = f" and {len(self.restless) - MOST_NAMED} more" if len(self.restless) > MOST_NAMED else ""
         cycles = sum(FREE_CYCLES)
-        return f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
+        restless = f"at {', '.join(first)}{more} the motion does not become steady within {cycles} cycles"
+        return f"{restless}; {refused}" if refused else restless
 
     def _go(self, omega: float, sweep: str) -> None:
         """Bring the motion to a frequency."""
@@ -82,13 +85,16 @@ class Visitor:
             self._begin(omega)
         elif self._sample.frequency != omega:
             self._settle(self._state, omega)
-        if self._sample is None:
+        if self._sample is None and shown(self.scene, omega) not in self.refused:
             self.restless[shown(self.scene, omega)] = None
 
     def _begin(self, omega: float) -> None:
         """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
         try:
             orbit = solution_at(self.scene, omega)
+        except CycleError as error:
+            self.refused[shown(self.scene, omega)] = str(error)
+            return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
         if not (orbit.stable and self._take(first_point(self.equations, orbit))):
