@@ -20,6 +20,7 @@ CLOSE = 1e-8  # error of a point, estimated from quadratic convergence; every po
 EPS = float(np.finfo(np.float64).eps)
 HUGE = 1e100  # a step of this length, in the curve's own size, leads nowhere
 ROUNDINGS = 4.0  # a step that does not shrink and is no longer than this many roundings is one
+COARSEST = 1e-6  # and no longer than this
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a scale is at least this much of its own, and of the greatest, maximum
 
 
@@ -129,7 +130,7 @@ def correct(
             break
     left = np.flatnonzero(~done & ~lost)
     if left.size:
-        floor = ROUNDINGS * rounding(matrix[left], z[left] / scale[left])
+        floor = np.minimum(ROUNDINGS * rounding(matrix[left], z[left] / scale[left]), COARSEST)
         done[left] = np.maximum(earlier[left], before[left]) < floor
     done &= ~lost
     tangent[lost] = np.nan
