@@ -6,19 +6,12 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import save_picture
-from fcm.cli.files import check_output, output_option
+from fcm.cli.drawing import draws_file, picture_of, save_picture
 from fcm.cli.messages import Messages, pass_messages
-
-ENDINGS = (".png", ".svg", ".pdf")
 
 
 @click.command()
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path))
-@output_option(
-    "-o", "--output", endings=ENDINGS,
-    help="The picture to write: .png, .svg or .pdf.  [default: FILE with the ending .png]",
-)  # fmt: skip
+@draws_file(".png")
 @click.option(
     "--of", "quantity", type=click.Choice(["curve", "points", "peak", "peak-frequency", "fold"]),
     default="curve", show_default=True, help="What the error is of.",
@@ -33,7 +26,6 @@ def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str)
     """
     from fcm.plot.accuracy import draw_accuracy, read_accuracy
 
-    output = output or file.with_suffix(".png")
-    check_output(output, ENDINGS)
+    output = picture_of(file, output, ".png")
     save_picture(draw_accuracy(read_accuracy(file, quantity.replace("-", "_"))), output)
     messages.info(f"wrote {output}")

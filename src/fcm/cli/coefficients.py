@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.drawing import angles, save_picture, shorten
+from fcm.cli.drawing import ENDINGS, angles, save_picture, shorten
 from fcm.cli.files import output_option
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.plot import ENDINGS
 
 if TYPE_CHECKING:
     from fcm.contact.surface import Plane

@@ -3,15 +3,36 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli.files import check_output, output_option
 from fcm.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+ENDINGS = (".png", ".svg", ".pdf")
+
+
+def draws_file(ending: str) -> Callable[[Any], Any]:
+    """The argument FILE and the option -o of a command that draws a file of results."""
+    option = output_option(
+        "-o", "--output", endings=ENDINGS,
+        help=f"The picture to write: .png, .svg or .pdf.  [default: FILE with the ending {ending}]",
+    )  # fmt: skip
+    kind = click.Path(exists=True, dir_okay=False, readable=True, path_type=Path)
+    return lambda command: click.argument("file", type=kind)(option(command))
+
+
+def picture_of(file: Path, output: Path | None, ending: str) -> Path:
+    """Where the picture of a file of results goes."""
+    output = output or file.with_name(file.stem + ending)
+    check_output(output, ENDINGS)
+    return output
 
 
 def angles(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:

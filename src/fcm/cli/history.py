@@ -8,21 +8,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import save_picture
-from fcm.cli.files import check_output, output_option
+from fcm.cli.drawing import draws_file, picture_of, save_picture
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.plot import ENDINGS
 
 if TYPE_CHECKING:
     from fcm.plot.history_file import DrawnMotion
 
 
 @click.command()
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path))
-@output_option(
-    "-o", "--output", endings=ENDINGS,
-    help="The picture to write: .png, .svg or .pdf.  [default: FILE with the ending -history.png]",
-)  # fmt: skip
+@draws_file("-history.png")
 @click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
 @click.option(
     "--against", type=click.Choice(["cycles", "time"]), default="cycles", show_default=True,
@@ -56,8 +50,7 @@ def history(
     from fcm.plot.history import draw_history
     from fcm.plot.history_file import read_history
 
-    output = output or file.with_name(f"{file.stem}-history.png")
-    check_output(output, ENDINGS)
+    output = picture_of(file, output, "-history.png")
     read = read_history(file, dof, against)
     if curves:
         read = replace(read, motions=_chosen(read.motions, curves))

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.drawing import angles, save_picture
+from fcm.cli.drawing import ENDINGS, angles, save_picture
 from fcm.cli.files import check_output, output_option
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.plot import ENDINGS
 
 if TYPE_CHECKING:
     from fcm.cli.loop_cases import Case

@@ -6,12 +6,10 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.files import check_output, output_option
+from fcm.cli.drawing import draws_file, picture_of, save_picture
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
-from fcm.files import replacing
 
-ENDINGS = (".png", ".svg", ".pdf")
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
@@ -30,11 +28,7 @@ def plot() -> None:
 
 
 @click.command()
-@click.argument("file", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path))
-@output_option(
-    "-o", "--output", endings=ENDINGS,
-    help="The picture to write: .png, .svg or .pdf.  [default: FILE with the ending .png]",
-)  # fmt: skip
+@draws_file(".png")
 @click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
 @click.option(
     "--log/--linear", default=None,
@@ -59,12 +53,10 @@ def response(
 
     Unstable parts are dashed, and the errors of the curves drawn below them, where the file knows them.
     """
-    from fcm.plot import draw_response, read_points, read_response, save
+    from fcm.plot import draw_response, read_points, read_response
 
-    output = output or file.with_suffix(".png")
-    check_output(output, ENDINGS)
+    output = picture_of(file, output, ".png")
     marked = None if points is None else read_points(points)
     figure = draw_response(read_response(file), dof=dof, log=log, errors=errors, points=marked)
-    with replacing(output) as partial:
-        save(figure, partial)
+    save_picture(figure, output)
     messages.info(f"wrote {output}")
