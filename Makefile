@@ -8,6 +8,9 @@ DEMO   := build/demo
 PAPER  := build/paper
 REPORT := build/report
 
+# What is compiled: a list of modules in pyproject.toml.
+KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd)
+
 # What the pictures are made of, so that a change redoes only what it touches.
 CONTACT    := $(wildcard src/fcm/contact/*.py)
 SOLVER     := $(CONTACT) $(wildcard src/fcm/scene/*.py src/fcm/table/*.py src/fcm/response/*.py) tables/default.nc
@@ -27,7 +30,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
+.PHONY: help kernels extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -140,11 +143,15 @@ $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*
 	@mkdir -p $(@D)
 	$(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
 
+kernels:  ## compile the kernels in place after a change; BIN= names the folder of another Python
+	$(BIN)/python src/fcm/build_kernels.py
+
 clean:  ## remove what was made, but for the environment
 	rm -rf build dist .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	find src -name '*.abi3.so' -delete
 	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-$(VENV)/installed: pyproject.toml
+$(VENV)/installed: pyproject.toml $(KERNELS)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@

@@ -1,5 +1,8 @@
 """One contact, dimensionless (sections 2 to 4.2 of the paper): cycle, loop, Fourier coefficients."""
 
+import warnings
+
+from fcm.contact import normal_load
 from fcm.contact.fourier import fourier_coefficients, fourier_gradients
 from fcm.contact.loop import Loop, hysteresis_loop
 from fcm.contact.normal import normal_coefficients, normal_gradients
@@ -12,3 +15,14 @@ __all__ = [
     "normal_coefficients",
     "normal_gradients",
 ]
+
+if normal_load.__file__.endswith(".py"):
+    import multiprocessing
+
+    if multiprocessing.parent_process() is None:  # workers need not say it again
+        warnings.warn(
+            "the kernels of fcm run as Python, slower by a factor of a hundred: when it was installed they "
+            "were not compiled, for want of a C compiler",
+            RuntimeWarning,
+            stacklevel=2,
+        )

@@ -1,0 +1,31 @@
+"""Kernel: Fourier coefficients of the normal load, equations (30) and (31), with their derivatives."""
+
+import cython
+from cython.cimports.libc.math import atan2, fabs, sqrt
+
+PI = cython.declare(cython.double, 3.141592653589793)
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def normal_load(n0_star: cython.double) -> tuple[cython.double, cython.double, cython.double, cython.double]:
+    """N_b, N_s and their derivatives by n0_star: theta_1 / pi and 2 sin(theta_1) / pi."""
+    inside: cython.double = min(max(n0_star, -1.0), 1.0)
+    # 1 +- n0_star are exact where they are small, and carry theta_1 to full accuracy at both ends
+    closed: cython.double = sqrt(1.0 + inside)
+    open_: cython.double = sqrt(1.0 - inside)
+    theta_1: cython.double = 2.0 * atan2(closed, open_)
+    sin_1: cython.double = closed * open_
+    N_b: cython.double = (sin_1 + inside * theta_1) / PI
+    if fabs(n0_star) > 1.0:
+        N_b = max(n0_star, 0.0)
+    return N_b, (inside * sin_1 + theta_1) / PI, theta_1 / PI, 2.0 * sin_1 / PI
+
+
+def normal_loads(n0_star: cython.double[::1], N: cython.double[:, ::1]) -> None:
+    """The four numbers of `normal_load` of many contacts: n0_star (point,), N (4, point)."""
+    i: cython.Py_ssize_t
+    with cython.nogil:
+        for i in range(n0_star.shape[0]):
+            N[0, i], N[1, i], N[2, i], N[3, i] = normal_load(n0_star[i])

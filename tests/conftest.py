@@ -1,0 +1,40 @@
+"""What is tested are the kernels as they are in the sources: all compiled since the last change, or none."""
+
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def kernels() -> list[str]:
+    """The modules that pyproject.toml lists to be compiled."""
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["ext-modules"]
+    return [kernel["name"] for kernel in listed]
+
+
+def compiled() -> bool:
+    """Whether the kernels run as machine code; ends the session if some do and some do not."""
+    # imported here, before doctests are collected: pytest would load their sources beside the compiled ones
+    files = [Path(import_module(name).__file__) for name in kernels()]
+    machine = [file for file in files if file.suffix != ".py"]
+    stale = [file for file in machine if file.stat().st_mtime < _source(file).stat().st_mtime]
+    if stale or len(machine) not in (0, len(files)):
+        pytest.exit(
+            f"the compiled kernels are not those of the sources ({stale or machine}): make kernels", 3
+        )
+    return bool(machine)
+
+
+def _source(file: Path) -> Path:
+    return file.with_name(file.name.split(".")[0] + ".py")
+
+
+def pytest_configure(config):
+    config.stash["compiled"] = compiled()
+
+
+def pytest_report_header(config):
+    return "kernels: " + ("compiled" if config.stash["compiled"] else "run as Python")
