@@ -6,9 +6,11 @@ The names below are imported when first used, so that a command pays only for wh
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # typing alone would take as long as all the rest
 if TYPE_CHECKING:
+    from typing import Any
+
     from fcm.contact import (
         fourier_coefficients,
         fourier_gradients,

@@ -217,7 +217,14 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeyp
     monkeypatch.setattr("fcm.response.output.write_netcdf", full)
     done = fcm("respond", scene, "-o", "a.nc")
     assert done.code == 3 and "peak u" in done.out
-    assert done.err == "fcm: error: a.nc: No space left on device\n"
+    kept, error = done.err.splitlines()
+    assert kept.endswith("kept in a.nc.unfinished: continue with --resume")
+    assert error == "fcm: error: a.nc: No space left on device"
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("fcm.response.groups.trace_group", refuse)
+    assert fcm("respond", scene, "-o", "a.nc", "--resume").code == 0
+    assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
 def test_an_interrupted_run_says_so_and_leaves_nothing(scene, tmp_path):

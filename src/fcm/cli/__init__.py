@@ -1,29 +1,22 @@
-"""The program ``fcm``: one file a command, each imported only when it is called."""
+"""The program ``fcm``: one file a command, each imported only when it is called.
+
+Not even click is imported before it is needed: an interruption in the first moments would show where.
+"""
 
 from __future__ import annotations
 
-import click
+from importlib import import_module
 
-import fcm
-from fcm.cli.lazy import LazyGroup
-from fcm.threads import one_by_default
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
-one_by_default()
+    from fcm.cli.commands import COMMANDS, main
 
-COMMANDS = {
-    "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
-    "respond": ("fcm.cli.respond:respond", "Trace the response curves of a scene."),
-    "plot": ("fcm.cli.plot:plot", "Draw a result, or the coefficients of one contact."),
-}
+__all__ = ["COMMANDS", "main"]
 
 
-@click.group(
-    cls=LazyGroup,
-    lazy=COMMANDS,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Exit codes: 0 done; 2 the input is wrong; 3 the calculation could not be completed; "
-    "1 a defect of fcm.",
-)
-@click.version_option(fcm.__version__, "-V", "--version", message="%(prog)s %(version)s")
-def main() -> None:
-    """Friction contacts with variable normal load: tables, response curves, pictures."""
+def __getattr__(name: str) -> Any:
+    if name in __all__:
+        return getattr(import_module("fcm.cli.commands"), name)
+    raise AttributeError(f"module 'fcm.cli' has no attribute {name!r}")

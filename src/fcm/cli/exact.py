@@ -9,9 +9,8 @@ import click
 from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from fcm.response import Response
+    from fcm.run import Checkpoint
     from fcm.scene.model import Scene
 
 MOST_FREQUENCIES = 100_000
@@ -66,18 +65,13 @@ def check_options(method: str, at: tuple[float, ...] | None) -> None:
 
 
 def traced(
-    messages: Messages, scene: Scene, at: tuple[float, ...] | None, jobs: int, keep: Path | None, resume: bool
+    messages: Messages, scene: Scene, at: tuple[float, ...] | None, jobs: int, checkpoint: Checkpoint | None
 ) -> Response:
     """The exact curves of a scene, or its steady motions at frequencies."""
+    from fcm.run.progress import part
     from fcm.simulate import trace_exact
 
-    count = len(scene.each_curve())
-    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: exact")
-    response = trace_exact(scene, at, messages.progress, jobs=jobs, keep=keep, resume=resume)
+    shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
+    response = trace_exact(scene, at, shown, jobs=jobs, keep=checkpoint)
     messages.clear()
     return response
-
-
-def interrupted(response: Response) -> bool:
-    """Whether a curve is not complete because the run was interrupted."""
-    return any(curve.reason.startswith("interrupted") for curve in response.curves)

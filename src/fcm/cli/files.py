@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from fcm.files import partial_of
+
 
 def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> Callable[..., Any]:
     """An option for a file to write, checked while the command line is read."""
@@ -33,15 +35,33 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
         raise click.BadParameter(f"{str(path)!r}: {problem}.")
 
 
+def check_different(paths: dict[str, Path | None]) -> None:
+    """A usage error if two options name the same file to write, in whatever spelling."""
+    seen: dict[Path, str] = {}
+    for option, path in paths.items():
+        if path is None:
+            continue
+        if (other := seen.setdefault(path.resolve(), option)) != option:
+            raise click.UsageError(f"{other} and {option} name the same file, {str(path)!r}.")
+
+
 def _problem(path: Path, endings: tuple[str, ...]) -> str:
     if path.suffix.lower() not in endings:
         return f"the name has to end in {' or '.join(endings)}"
     if path.is_dir():
         return "it is a folder, not a file to write"
+    if path.exists() and not path.is_file():
+        return "it is no file that could be replaced"
     if not path.parent.is_dir():
         return f"there is no folder {str(path.parent)!r}"
     str(path).encode()
-    probe = path.with_name(f".{path.name}.{os.getpid()}")  # permissions alone know no read-only disk
-    probe.touch(exist_ok=False)
-    probe.unlink()
+    _try(path)
     return ""
+
+
+def _try(path: Path) -> None:
+    """Make what is written meanwhile, for permissions alone know no read-only disk and no longest name."""
+    target = path.resolve()
+    probe = partial_of(target)
+    os.close(os.open(probe, os.O_CREAT | os.O_WRONLY))
+    probe.unlink()

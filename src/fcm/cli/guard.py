@@ -2,41 +2,67 @@
 
 from __future__ import annotations
 
-import io
+import errno
 import os
 import sys
 import traceback
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from typing import Any, TextIO
 
 import click
 
+from fcm import signals
+from fcm.cli import terminal
 from fcm.cli.messages import Messages
 
 DEFECT = 1  # of fcm
 WRONG_INPUT = 2
-NOT_COMPLETED = 3
+NOT_COMPLETED = signals.NOT_COMPLETED
 
 _EXIT_CODES = (
     ("fcm.scene", "SceneError", WRONG_INPUT),
     ("fcm.table", "TableError", WRONG_INPUT),
     ("fcm.plot", "PlotError", WRONG_INPUT),
     ("fcm.response", "ResponseError", WRONG_INPUT),
+    ("fcm.run", "CheckpointError", WRONG_INPUT),
 )
+_NO_MEMORY = "error: not enough memory to complete the calculation"
+_NO_ROOM = ("failed to map", "cannot allocate memory", "failed to create thread")  # says who loads a library
 
 
 def guarded(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
     """``run(ctx)``; whatever it raises ends the program as the exit codes promise."""
+    if ctx.parent is not None:  # a command of a command: the outer one watches
+        return run(ctx)
+    taken = signals.take()
+    terminal.streams()
+    try:
+        return _watched(run, ctx)
+    finally:
+        if taken:
+            signals.give_back()
+            terminal.give_back()
+
+
+def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
     messages = ctx.ensure_object(Messages)
-    _print_any_name()
+    signals.works()
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _shown_by(messages)
-            return run(ctx)
-    except (click.ClickException, click.exceptions.Exit):
+            result = run(ctx)
+            sys.stdout.flush()
+        signals.ends(0)
+        return result
+    except click.ClickException as error:
         messages.clear()
+        signals.ends(error.exit_code)
+        raise
+    except click.exceptions.Exit as error:
+        messages.clear()
+        signals.ends(error.exit_code)
         raise
     except BrokenPipeError:
         _discard_output()
@@ -46,6 +72,7 @@ def guarded(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
         messages.error(line)
         if code == DEFECT and (messages.verbosity >= 1 or os.environ.get("FCM_DEBUG")):
             traceback.print_exception(error)
+        signals.ends(code)
         ctx.exit(code)
 
 
@@ -55,14 +82,29 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         kind = getattr(sys.modules.get(module), name, None)
         if kind is not None and isinstance(error, kind):
             return code, f"error: {error}"
-    if isinstance(error, KeyboardInterrupt | click.Abort):
-        return NOT_COMPLETED, "interrupted: the calculation was not completed"
-    if isinstance(error, MemoryError):
-        return NOT_COMPLETED, "error: not enough memory to complete the calculation"
+    if any(isinstance(one, KeyboardInterrupt | click.Abort) for one in _behind(error)):
+        return NOT_COMPLETED, signals.INTERRUPTED
+    if isinstance(error, MemoryError) or getattr(error, "errno", 0) == errno.ENOMEM or _no_room(error):
+        return NOT_COMPLETED, _NO_MEMORY
     if isinstance(error, OSError):
         _discard_output()
         return NOT_COMPLETED, f"error: {error.filename or 'output'}: {error.strerror or error}"
     return DEFECT, f"defect: {type(error).__name__}: {error} (-v shows where)"
+
+
+def _behind(error: BaseException) -> Iterator[BaseException]:
+    """An exception and those it came from: an import that is interrupted may say that it failed."""
+    seen: BaseException | None = error
+    for _ in range(100):
+        if seen is None:
+            return
+        yield seen
+        seen = seen.__cause__ or seen.__context__ if isinstance(seen, ImportError | SystemError) else None
+
+
+def _no_room(error: BaseException) -> bool:
+    """Whether a library could not be loaded for want of memory."""
+    return isinstance(error, ImportError) and any(text in str(error).lower() for text in _NO_ROOM)
 
 
 def _shown_by(messages: Messages) -> Callable[..., None]:
@@ -78,13 +120,6 @@ def _shown_by(messages: Messages) -> Callable[..., None]:
         messages.detail(f"  {category.__name__} at {filename}:{lineno}")
 
     return show
-
-
-def _print_any_name() -> None:
-    """Characters that the terminal does not have are escaped, not an error."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
 
 
 def _discard_output() -> None:

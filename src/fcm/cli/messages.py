@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import click
@@ -19,6 +20,7 @@ class Messages:
     verbosity: int = 0
     _drawn: float = field(default=0.0, repr=False)
     _width: int = field(default=0, repr=False)
+    _share: float = field(default=0.0, repr=False)
 
     def error(self, text: str) -> None:
         self._say(f"fcm: {text}")
@@ -36,24 +38,31 @@ class Messages:
             self._say(text)
 
     def progress(self, fraction: float, text: str = "") -> None:
-        """Redraw the progress line, on a terminal only and not too often."""
+        """Redraw the progress line, on a terminal only and not too often; it never goes back."""
         now = time.monotonic()
+        self._share = min(max(fraction, self._share), 1.0)
         if self.verbosity < 0 or now - self._drawn < _REDRAW or not sys.stderr.isatty():
             return
-        full = round(_BAR * min(max(fraction, 0.0), 1.0))
-        line = f"[{'#' * full}{'.' * (_BAR - full)}] {100 * fraction:3.0f} %  {text}"
-        click.echo("\r" + line.ljust(self._width), err=True, nl=False)
+        full = int(_BAR * self._share)
+        line = f"[{'#' * full}{'.' * (_BAR - full)}] {int(100 * self._share):3d} %  {text}"
+        self._draw(line.ljust(self._width))
         self._drawn, self._width = now, len(line)
 
     def _say(self, text: str) -> None:
         self.clear()
-        click.echo(text, err=True)
+        with suppress(OSError):  # a terminal that was closed takes no calculation with it
+            click.echo(text, err=True)
 
     def clear(self) -> None:
         """Take the progress line away."""
         if self._width:
-            click.echo("\r" + " " * self._width + "\r", err=True, nl=False)
+            self._draw(" " * self._width)
+            self._draw("")
             self._width = 0
+
+    def _draw(self, line: str) -> None:
+        with suppress(OSError):
+            getattr(sys.stderr, "redraw", sys.stderr.write)(line)
 
 
 pass_messages = click.make_pass_decorator(Messages, ensure=True)

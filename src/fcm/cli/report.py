@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from fcm.cli.terminal import plain
+
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
@@ -59,6 +61,7 @@ def swept(curve: Curve) -> list[str]:
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
     """Columns of equal width: numbers to the right, the last ``left`` to the left."""
+    rows = [[plain(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     right = len(widths) - left
     lines = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,22 +9,25 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import exact, schedule
-from fcm.cli.files import output_option
+from fcm.cli.files import check_different, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.report import all_lost_to_defects, as_table, cost_and_error, incomplete
+from fcm.cli.outputs import Outputs
+from fcm.cli.report import all_lost_to_defects, cost_and_error, incomplete
 
 if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.scene.model import Scene
 
+MANY_POINTS = 100_000  # some minutes, and files of 100 MB
+
 
 def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
     if value is None:
         return None
-    from fcm.scene.rules import FRACTION
+    from fcm.scene.rules import step_fault
 
-    if fault := FRACTION.fault(value):
+    if fault := step_fault(value):
         raise click.BadParameter(f"{fault}.")
     return value
 
@@ -103,28 +105,32 @@ def respond(
         raise click.UsageError("--table is of no use with --method closed-form.")
     if resume and output is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
-    from fcm.response.output import summary
-
-    keep = None if output is None else output.with_name(f"{output.name}.unfinished")
-    options = {"jobs": jobs, "tolerance": None if keep_all else tolerance, "keep": keep, "resume": resume}
+    check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(scene, max_step, history_csv)
-    if method == "exact" and (loaded.has_range or at):
-        response = exact.traced(messages, loaded, at, jobs, keep, resume)
-    elif loaded.has_range:
-        response = _traced(messages, loaded, method, table, options)
-    else:
-        response = _without_curves(loaded)
-    if loaded.schedule:
-        response.histories = schedule.simulated(messages, loaded, response)
-    result = summary(response)
-    unit = response.frequency_unit
-    try:
-        _write(messages, response, output, csv, history_csv)
-    finally:  # a full disk does not take the result away
-        click.echo(json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, unit))
-    if keep is not None and keep.is_file() and exact.interrupted(response):
-        messages.warning(f"interrupted; what is finished is kept in {keep}: continue with --resume")
-    _close(messages, result)
+    announce(messages, loaded, method, at)
+    options = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
+    outputs = Outputs(messages, output, csv, history_csv)
+    with outputs.kept(resume) as checkpoint:
+        if method == "exact" and (loaded.has_range or at):
+            response = exact.traced(messages, loaded, at, jobs, checkpoint)
+        elif loaded.has_range:
+            response = _traced(messages, loaded, method, table, {**options, "keep": checkpoint})
+        else:
+            response = _without_curves(loaded)
+        if loaded.schedule:
+            response.histories = schedule.simulated(messages, loaded, response)
+        result = outputs.write(response, to_json)
+    _close(messages, result, response.defects)
+
+
+def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...] | None) -> None:
+    """What is going to be computed; without being asked where that is a great deal."""
+    from fcm.scene.rules import least_points
+
+    count = len(scene.each_curve())
+    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
+    if at is None and scene.has_range and (points := least_points(scene)) > MANY_POINTS:
+        messages.info(f"at least {points} points: {count} curves in steps of {scene.max_step:g} at most")
 
 
 def _loaded(scene: str, max_step: float | None, history_csv: Path | None) -> Scene:
@@ -145,11 +151,11 @@ def _traced(
     messages: Messages, scene: Scene, method: str, table: str | None, options: dict[str, Any]
 ) -> Response:
     from fcm.response import trace
+    from fcm.run.progress import part
 
-    count = len(scene.each_curve())
-    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
-    opened = _opened(table)
-    response = trace(scene, method=method, table=opened, progress=messages.progress, **options)
+    opened, share = _opened(table), 0.5 if scene.schedule else 1.0
+    shown = part(messages.progress, 0.0, share)
+    response = trace(scene, method=method, table=opened, progress=shown, **options)
     messages.clear()
     if outside := getattr(opened, "outside", 0):
         messages.info(
@@ -171,27 +177,10 @@ def _with_step(scene: Scene, max_step: float) -> Scene:
     return replace(scene, max_step=max_step, curves=curves)
 
 
-def _write(
-    messages: Messages, response: Response, output: Path | None, csv: Path | None, history_csv: Path | None
-) -> None:
-    from fcm.response.output import write_csv, write_netcdf
-
-    table = write_csv if response.curves else schedule.write_csv
-    for path, write in ((output, write_netcdf), (csv, table), (history_csv, schedule.write_csv)):
-        if path is not None:
-            write(response, path)
-            messages.info(f"wrote {path}")
-
-
-def _tables(result: dict[str, Any], unit: str) -> str:
-    """The curves, then the phases of the schedule."""
-    histories = result.get("histories", [])
-    parts = [as_table(result, unit)] if result["curves"] or not histories else []
-    return "\n\n".join([*parts, schedule.as_table(histories, unit)] if histories else parts)
-
-
-def _close(messages: Messages, result: dict[str, Any]) -> None:
+def _close(messages: Messages, result: dict[str, Any], defects: list[str]) -> None:
     """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
+    for text in dict.fromkeys(defects):
+        messages.detail(text)
     for text in result["left_out"]:
         messages.info(f"left out: {text}")
     if result["curves"]:

@@ -46,13 +46,13 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
 
 def simulated(messages: Messages, scene: Scene, response: Response) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
+    from fcm.run.progress import part
     from fcm.simulate.histories import histories, not_begun
-    from fcm.simulate.record import INTERRUPTED
 
-    if any(curve.reason.startswith(INTERRUPTED) for curve in response.curves):
+    if response.interrupted:
         return not_begun(scene)
     try:
-        found = histories(scene, messages.progress)
+        found = histories(scene, part(messages.progress, 0.5 if response.curves else 0.0, 1.0))
     except KeyboardInterrupt:
         if not response.curves:
             raise

@@ -14,6 +14,7 @@ from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.table_study import write_study
+from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:
     from fcm.table.locate import Resolution
@@ -119,7 +120,7 @@ def _build(
     with Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
         part = None if scene is None else reached(messages, scene, resolution)
-        made_by += "" if scene is None else f" --for {scene}"
+        made_by += "" if scene is None else f" --for {plain(scene)}"
         table = build_table(output, resolution, points, progress, made_by, part)
     seconds = time.perf_counter() - began
     size = output.stat().st_size

@@ -11,7 +11,7 @@ from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
 from fcm.response.leave_out import TOLERANCE
-from fcm.response.sweep import interrupted, trace
+from fcm.response.sweep import trace
 from fcm.scene.model import Scene
 from fcm.table import open_table
 from fcm.table.store import DEFAULT
@@ -158,7 +158,7 @@ def compare(
     methods = [Method(name, open_table(path)) for name, path in tables.items()]
     methods += [Method(CLOSED_FORM), Method(EXACT)]
     first = trace(with_step(scene, max(STEPS)), tolerance=tolerance)
-    if interrupted(first):
+    if first.interrupted:
         raise KeyboardInterrupt
     if not any(curve.complete for curve in first.curves):
         raise IncomparableError(

@@ -10,7 +10,7 @@ from fcm.compare.lines import FloatArray, Line, line_of
 from fcm.response.law import ClosedForm, Coefficients
 from fcm.response.leave_out import leave_out
 from fcm.response.path import Progress
-from fcm.response.sweep import in_groups, interrupted, trace
+from fcm.response.sweep import in_groups, trace
 from fcm.response.trace import trace_group
 from fcm.scene.model import Scene
 
@@ -94,7 +94,7 @@ def solve(
         return _by_groups(_lighter(scene, tolerance), method.table, method.table)
     kind = "closed-form" if method.table is None else "table"
     response = trace(scene, kind, method.table, tolerance=tolerance)
-    if interrupted(response):
+    if response.interrupted:
         raise KeyboardInterrupt
     return [line_of(curve) for curve in response.curves]
 
@@ -121,6 +121,6 @@ def _lighter(scene: Scene, tolerance: float | None, foresee: bool = True) -> Sce
 def _by_groups(scene: Scene, way: Coefficients | None, last: Coefficients) -> list[Line]:
     """Follow with one source of coefficients, None for the last too; the points satisfy the last."""
     kind = "closed-form" if way is None else "table"
-    groups = in_groups(scene.each_curve()).values()
+    groups = in_groups(scene.each_curve())
     parts = (trace_group(replace(scene, curves=group), kind, way, exact=last) for group in groups)
     return [line_of(curve) for part in parts for curve in part.curves]

@@ -1,20 +1,24 @@
-"""Groups of curves traced one after the other in this process; what fails is lost alone."""
+"""Groups of curves that are traced together, as the batches of a sweep (`fcm.run`)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
+from fcm.response.jumps import Jump
 from fcm.response.law import Coefficients
 from fcm.response.path import Progress
-from fcm.response.result import DEFECT, Curve
-from fcm.response.trace import ResponseError, trace_group
+from fcm.response.result import DEFECT, Curve, Orbits
+from fcm.response.trace import trace_group
+from fcm.run import Lost
 from fcm.scene.model import Scene
 
-Group = tuple[Scene, ...]
-Finished = Iterator[tuple[int, list[Curve]]]
+Group = Sequence[Scene]
+KINDS = (Curve, Orbits, Jump)  # what results consist of
+_BY_POINT = ("amplitude", "phase", "mean", "regime", "loop", "stable", "table_error", "truncation_error")
 
 
 @dataclass(frozen=True)
@@ -24,22 +28,38 @@ class Work:
     method: str
     table: Coefficients | None
 
-    def curves(self, group: Group, progress: Progress | None = None) -> list[Curve]:
-        """Trace a group; if that fails, each of its curves alone, and those that fail then are lost."""
-        try:
-            return self.traced(group, progress)
-        except ResponseError:
-            raise
-        except Exception as error:
-            if len(group) == 1:
-                what = "" if isinstance(error, MemoryError) else f"{DEFECT}, "
-                return [lost_curve(group[0], f"{what}{type(error).__name__}: {error}")]
-        return [self.curves((scene,))[0] for scene in group]
-
-    def traced(self, group: Group, progress: Progress | None) -> list[Curve]:
-        """The curves of a group; whatever cannot be foreseen is raised."""
-        whole = replace(group[0], curves=group)
+    def __call__(self, group: Group, progress: Progress) -> list[Curve]:
+        whole = replace(group[0], curves=tuple(group))
         return trace_group(whole, self.method, self.table, progress).curves
+
+
+def anonymous(scenes: Group) -> list[Scene]:
+    """The scenes without what no curve depends on: where they came from."""
+    return [replace(scene, name="", title="", curves=()) for scene in scenes]
+
+
+def fit(groups: Sequence[Group], number: int, results: Any) -> bool:
+    """Whether results that were read from a file can be the curves of the group with this number."""
+    if not 0 <= number < len(groups) or not isinstance(results, list):
+        return False
+    group = groups[number]
+    return len(results) == len(group) and all(map(_fits, group, results))
+
+
+def _fits(scene: Scene, curve: Any) -> bool:
+    if not isinstance(curve, Curve) or vars(curve).keys() != {field.name for field in fields(Curve)}:
+        return False
+    arrays = [curve.frequency, *(getattr(curve, name) for name in _BY_POINT)]
+    if not all(isinstance(array, np.ndarray) and array.ndim for array in arrays):
+        return False
+    return curve.parameters == scene.parameters and len({array.shape[0] for array in arrays}) == 1
+
+
+def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:
+    """A result of a sweep; a curve without points where there is none."""
+    if isinstance(result, Lost):
+        return lost_curve(scene, f"{DEFECT}, {result.reason}" if result.defect else result.reason)
+    return lost_curve(scene, reason) if result is None else result
 
 
 def lost_curve(scene: Scene, reason: str) -> Curve:
@@ -62,30 +82,3 @@ def lost_curve(scene: Scene, reason: str) -> Curve:
         folds=[],
         seconds=0.0,
     )
-
-
-def one_by_one(work: Work, groups: Mapping[int, Group], progress: Progress | None) -> Finished:
-    """Trace the groups in this process."""
-    share = Shares(groups, progress)
-    for number, group in groups.items():
-        yield number, work.curves(group, share.of(number))
-        share.set(number, 1.0)
-
-
-class Shares:
-    """How much of each group is finished, shown as the progress of all."""
-
-    def __init__(self, groups: Mapping[int, Group], progress: Progress | None) -> None:
-        self.sizes = {number: len(group) for number, group in groups.items()}
-        self.done = dict.fromkeys(groups, 0.0)
-        self.progress = progress
-
-    def of(self, number: int) -> Progress:
-        return lambda fraction, _text: self.set(number, 0.999 * fraction)
-
-    def set(self, number: int, fraction: float) -> None:
-        self.done[number] = fraction
-        if self.progress is not None:
-            total = sum(self.sizes.values())
-            traced = sum(self.sizes[n] * f for n, f in self.done.items())
-            self.progress(traced / total, f"{int(traced)} of {total} curves")

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from fcm.simulate.histories import Histories
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
+INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out
+NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
 
@@ -117,6 +119,7 @@ class Response:
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
     histories: Histories | None = None  # of the scene's schedule
+    defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 
     @staticmethod
     def without_curves(scene: Scene) -> Response:
@@ -129,6 +132,11 @@ class Response:
         """Whether every curve reached the end of its range, and of the schedule if there is one."""
         simulated = self.histories is None or self.histories.complete
         return simulated and all(curve.complete for curve in self.curves)
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether curves are missing, or cut off, because the run was interrupted."""
+        return any(curve.reason.startswith(INTERRUPTED) for curve in self.curves)
 
     @property
     def parameters(self) -> list[dict[str, float]]:

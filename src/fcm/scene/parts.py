@@ -10,11 +10,12 @@ from typing import Any
 from fcm.scene.errors import quoted
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
-from fcm.scene.rules import FRACTION, POSITIVE, RULES
+from fcm.scene.rules import FRACTION, POSITIVE, RULES, SHORTEST_STEP, step_fault
 from fcm.scene.section import Section
 
 Dofs = Sequence[str] | None
 MAX_STEP = 0.05  # longest step along a curve when the scene names none
+NARROWEST = 1e-12  # range of frequencies, relative: rounding is some thousandth of it
 
 
 def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
@@ -96,6 +97,8 @@ def read_response(top: Section, unit: str) -> tuple[tuple[float, float], float]:
         return NO_RANGE, MAX_STEP
     section.only("frequency", "max_step")
     step = section.number("max_step", FRACTION, default=MAX_STEP)
+    if step < SHORTEST_STEP:  # and not nan, which is a mistake already
+        section.wrong("max_step", step_fault(step))
     if "frequency" not in section.data and top.data.get("schedule"):
         return NO_RANGE, step
     ends = section.vector("frequency", POSITIVE)
@@ -108,4 +111,7 @@ def read_response(top: Section, unit: str) -> tuple[tuple[float, float], float]:
     if low >= high:
         order = "goes down" if low > high else "is empty"
         section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; give the lower one first")
+    elif high - low < NARROWEST * high:
+        what = f"its ends differ by {(high - low) / high:.0e} of themselves, and must by {NARROWEST:g}"
+        section.wrong("frequency", f"is too narrow to follow a curve through: {what} or more")
     return (low, high), step

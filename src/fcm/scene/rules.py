@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import ceil, inf, isfinite
 from numbers import Real
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.errors import shown
-from fcm.scene.model import FloatArray
+from fcm.scene.model import FloatArray, Scene
 
 IndexArray = npt.NDArray[np.intp]
 
@@ -59,6 +59,24 @@ ANY = Rule("a number")
 POSITIVE = Rule("greater than 0", low=0.0, zero=False)
 NOT_NEGATIVE = Rule("at least 0", low=0.0)
 FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
+
+SHORTEST_STEP = 1e-5  # relative to a curve's extent: it then has a hundred thousand points and more
+
+
+def step_fault(step: float) -> str:
+    """What is wrong with the longest step along a curve; empty when nothing is."""
+    if (fault := FRACTION.fault(step)) or step >= SHORTEST_STEP:
+        return fault
+    return (
+        f"must be at least {SHORTEST_STEP:g}, is {shown(step)}, by which a curve has at least "
+        f"{1.0 / step:.0e} points"
+    )
+
+
+def least_points(scene: Scene) -> int:
+    """Points that the curves of a scene have at the least, for the longest step that is allowed."""
+    return sum(ceil(1.0 / curve.max_step) for curve in scene.each_curve())
+
 
 RULES = {
     "mass": POSITIVE,

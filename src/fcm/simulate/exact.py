@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from fcm.response.groups import Finished, Group, Work, lost_curve, one_by_one
-from fcm.response.kept import Kept, fingerprint
+from fcm.response.curve_sweep import CurveSweep, checkpoint_of
+from fcm.response.groups import Group
 from fcm.response.path import Progress
-from fcm.response.result import UNIT, Curve, Response
-from fcm.response.sweep import INTERRUPTED
+from fcm.response.result import INTERRUPTED, UNIT, Curve, Response
 from fcm.response.trace import ResponseError
+from fcm.run import Checkpoint, Interrupted, fingerprint
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
 from fcm.simulate.errors import SimulationError
@@ -24,7 +24,7 @@ from fcm.simulate.orbit_curve import traced_curve, visited_curve
 from fcm.simulate.visit import Visitor
 
 METHOD = "exact"
-STOPPED = "interrupted at "  # how the reason of a curve begins that an interruption has cut off
+STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 
 
 def trace_exact(
@@ -33,7 +33,7 @@ def trace_exact(
     progress: Progress | None = None,
     *,
     jobs: int = 1,
-    keep: Path | None = None,
+    keep: Path | Checkpoint | None = None,
     resume: bool = False,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
@@ -66,11 +66,16 @@ def trace_exact(
     >>> [round(fold, 6) for fold in response.curves[0].folds]
     [1.239829, 1.193559]
     """
-    begin = time.perf_counter()
-    work = ExactWork(METHOD, None, _checked(scene, at))
-    curves = _Sweep(work, scene.each_curve(), progress, jobs or os.cpu_count() or 1).run(keep, resume)
-    contacts = tuple(contact.name for contact in scene.each_curve()[0].contacts)
-    response = Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
+    begin, scenes, frequencies = time.perf_counter(), scene.each_curve(), _checked(scene, at)
+    with checkpoint_of(keep, resume) as checkpoint:
+        sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint)
+        mark = fingerprint(METHOD, frequencies)
+        curves = sweep.curves(ExactWork(frequencies), [(one,) for one in scenes], mark, progress)
+        contacts = tuple(contact.name for contact in scenes[0].contacts)
+        response = Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
+        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
+            checkpoint.done()
+    response.defects = sweep.defects
     response.seconds = time.perf_counter() - begin
     return response
 
@@ -90,18 +95,21 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
 
 
 @dataclass(frozen=True)
-class ExactWork(Work):
+class ExactWork:
     """How each curve is made: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
 
-    def traced(self, group: Group, progress: Progress | None) -> list[Curve]:
+    def __call__(self, group: Group, progress: Progress) -> list[Curve]:
         return [self._curve(scene, progress) for scene in group]
 
-    def _curve(self, scene: Scene, progress: Progress | None) -> Curve:
+    def _curve(self, scene: Scene, progress: Progress) -> Curve:
         begin = time.perf_counter()
         curve = _traced(scene, progress) if self.at is None else _visited(scene, self.at, progress)
-        return replace(curve, seconds=time.perf_counter() - begin)
+        curve = replace(curve, seconds=time.perf_counter() - begin)
+        if curve.reason.startswith(STOPPED):
+            raise Interrupted([curve])
+        return curve
 
 
 def _traced(scene: Scene, progress: Progress | None) -> Curve:
@@ -125,44 +133,3 @@ def _visited(scene: Scene, at: tuple[float, ...], progress: Progress | None) -> 
     except SimulationError as error:
         reason = str(error)
     return visited_curve(scene, visitor, reason)
-
-
-@dataclass
-class _Sweep:
-    """The curves of a scene, each on its own; what is finished survives an interruption."""
-
-    work: ExactWork
-    scenes: Sequence[Scene]
-    progress: Progress | None
-    jobs: int
-
-    def run(self, keep: Path | None, resume: bool) -> list[Curve]:
-        several = keep if len(self.scenes) > 1 else None
-        mark = b""
-        if several is not None:
-            mark = fingerprint(tuple(self.scenes), METHOD, self.work.at, len(self.scenes))
-        kept = Kept(several, mark, resume)
-        left: dict[int, Group] = {
-            i: (scene,) for i, scene in enumerate(self.scenes) if i not in kept.finished
-        }
-        done = {number: curves[0] for number, curves in kept.finished.items()}
-        try:
-            for number, curves in self._finished(left):
-                done[number] = curves[0]
-                if curves[0].reason.startswith(STOPPED):
-                    break
-                kept.add(number, curves)
-        except KeyboardInterrupt:
-            if not done:
-                kept.remove()
-                raise
-        if len(kept.finished) in (0, len(self.scenes)):  # nothing to go on with, or nothing left
-            kept.remove()
-        return [done.get(i) or lost_curve(scene, INTERRUPTED) for i, scene in enumerate(self.scenes)]
-
-    def _finished(self, groups: dict[int, Group]) -> Finished:
-        if self.jobs > 1 and len(groups) > 1:
-            from fcm.response.cores import on_cores
-
-            return on_cores(self.work, groups, self.jobs, self.progress)
-        return one_by_one(self.work, groups, self.progress)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import json
-import tempfile
 import zlib
 from collections.abc import Mapping
 from contextlib import suppress
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 
 import fcm
+from fcm.files import replacing
 from fcm.table import seal
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
@@ -57,14 +57,9 @@ def write(
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(target.parent))
     attributes = _attributes(arrays, error, history, part)
-    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
-        partial = Path(folder) / "table.nc"
-        try:
-            _write(partial, arrays, attributes)
-        except RuntimeError as reason:  # what netCDF makes of a full disk
-            raise OSError(errno.EIO, f"could not be written ({reason})", str(target)) from None
+    with replacing(path) as partial:
+        _write(partial, arrays, attributes)
         seal.attach(partial)
-        partial.replace(target)
 
 
 def _attributes(arrays: Arrays, error: Mapping[str, Any], history: str, part: Part | None) -> dict[str, Any]:

@@ -1,0 +1,29 @@
+"""The commands of ``fcm``, each imported only when it is called."""
+
+from __future__ import annotations
+
+import click
+
+import fcm
+from fcm.cli.lazy import LazyGroup
+from fcm.threads import one_by_default
+
+one_by_default()
+
+COMMANDS = {
+    "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),
+    "respond": ("fcm.cli.respond:respond", "Trace the response curves of a scene."),
+    "plot": ("fcm.cli.plot:plot", "Draw a result, or the coefficients of one contact."),
+}
+
+
+@click.group(
+    cls=LazyGroup,
+    lazy=COMMANDS,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Exit codes: 0 done; 2 the input is wrong; 3 the calculation could not be completed; "
+    "1 a defect of fcm.",
+)
+@click.version_option(fcm.__version__, "-V", "--version", message="%(prog)s %(version)s")
+def main() -> None:
+    """Friction contacts with variable normal load: tables, response curves, pictures."""

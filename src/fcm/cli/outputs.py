@@ -1,0 +1,95 @@
+"""The files of ``fcm respond``: written whole, and what they are made of kept until they are."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli import schedule
+from fcm.cli.messages import Messages
+from fcm.cli.report import as_table
+from fcm.cli.terminal import plain
+
+if TYPE_CHECKING:
+    from fcm.response import Response
+    from fcm.run import Checkpoint
+
+
+class Outputs:
+    """What one run writes: netCDF, CSV of the curves, CSV of the motion, a summary."""
+
+    def __init__(
+        self, messages: Messages, output: Path | None, csv: Path | None, history_csv: Path | None
+    ) -> None:
+        self.messages, self.output, self.csv, self.history_csv = messages, output, csv, history_csv
+        self.checkpoint: Checkpoint | None = None
+
+    @contextmanager
+    def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
+        """What is finished is kept beside the output as long as that is not written."""
+        if self.output is None:
+            yield None
+            return
+        from fcm.files import remove_stale
+        from fcm.run import Checkpoint
+        from fcm.run.checkpoint import unfinished
+
+        with Checkpoint(unfinished(self.output), resume) as self.checkpoint:
+            remove_stale(self.output.resolve())
+            try:
+                yield self.checkpoint
+            except BaseException:
+                self._say_kept("what is finished is kept")
+                raise
+
+    def write(self, response: Response, to_json: bool) -> dict[str, Any]:
+        """Write all files and print the summary; the curves are then no longer kept."""
+        from fcm.response.output import summary
+
+        result = summary(response)
+        try:
+            for path, write in self._files(response):
+                self._write(response, path, write)
+        finally:  # a full disk does not take the result away
+            text = json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, response)
+            click.echo(text)
+        if response.interrupted:
+            self._say_kept("interrupted; what is finished is kept")
+        elif self.checkpoint is not None:
+            self.checkpoint.done()
+        return result
+
+    def _files(self, response: Response) -> list[tuple[Path, Callable[[Response, Path], None]]]:
+        from fcm.response import output
+
+        table = output.write_csv if response.curves else schedule.write_csv
+        files = (
+            (self.output, output.write_netcdf),
+            (self.csv, table),
+            (self.history_csv, schedule.write_csv),
+        )
+        return [(path, write) for path, write in files if path is not None]
+
+    def _write(self, response: Response, path: Path, write: Callable[[Response, Path], None]) -> None:
+        """Write a file; a part of the curves does not take the place of what an earlier run has finished."""
+        if response.interrupted and self.checkpoint is not None and path.exists():
+            self.messages.info(f"{plain(path)} is left as it was")
+            return
+        write(response, path)
+        self.messages.info(f"wrote {plain(path)}")
+
+    def _say_kept(self, what: str) -> None:
+        if self.checkpoint is not None and not self.checkpoint.empty:
+            self.messages.warning(f"{what} in {plain(self.checkpoint.path)}: continue with --resume")
+
+
+def _tables(result: dict[str, Any], response: Response) -> str:
+    """The curves, then the phases of the schedule."""
+    histories, unit = result.get("histories", []), response.frequency_unit
+    parts = [as_table(result, unit)] if result["curves"] or not histories else []
+    return "\n\n".join([*parts, schedule.as_table(histories, unit)] if histories else parts)

@@ -1,0 +1,51 @@
+"""All curves of a scene by whatever computes them: in batches, on cores, kept while they are not written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
+from fcm.response.path import Progress
+from fcm.response.result import NOT_BEGUN, Curve
+from fcm.run import Checkpoint, Compute, Lost, Results, fingerprint, place_for, sweep
+
+
+@dataclass
+class CurveSweep:
+    """Where curves are computed and kept: the same for everything that one run computes."""
+
+    jobs: int  # processes
+    checkpoint: Checkpoint | None
+    defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
+
+    def curves(
+        self, compute: Compute, batches: Sequence[Group], mark: bytes, progress: Progress | None
+    ) -> list[Curve]:
+        """The curves of all batches in order; those that could not be had say why.
+
+        mark : digest of everything besides the scenes that decides the results.
+        """
+        kept = Results()
+        if self.checkpoint is not None:
+            whole = fingerprint(mark, [anonymous(batch) for batch in batches])
+            kept = self.checkpoint.results(whole, KINDS, lambda i, found: fit(batches, i, found))
+        outcome = sweep(compute, batches, place_for(self.jobs if len(batches) > 1 else 1), kept, progress)
+        curves: list[Curve] = []
+        for number, batch in enumerate(batches):
+            found = outcome.of(number) or [None] * len(batch)
+            curves += [as_curve(scene, one, NOT_BEGUN) for scene, one in zip(batch, found, strict=True)]
+            self.defects += [one.defect for one in found if isinstance(one, Lost) and one.defect]
+        return curves
+
+
+@contextmanager
+def checkpoint_of(keep: Path | Checkpoint | None, resume: bool) -> Iterator[Checkpoint | None]:
+    """The checkpoint of a run: the caller's, who knows when it is not needed any more, or one of its own."""
+    if not isinstance(keep, Path):
+        yield keep
+        return
+    with Checkpoint(keep, resume) as own:
+        yield own

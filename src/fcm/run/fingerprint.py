@@ -1,0 +1,80 @@
+"""What results depend on, in 32 bytes: what was asked for, and the program that answers."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import platform
+from collections.abc import Iterable
+from dataclasses import fields, is_dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy
+
+import fcm
+
+PROGRAM = (".py", ".so", ".pyd")  # endings of files that decide what is computed
+TABLE, LAST = ".nc", 64  # a table ends in a checksum of all its bytes (`fcm.table.seal`)
+
+
+def fingerprint(*parts: Any) -> bytes:
+    """Digest of dataclasses, arrays, plain values and collections of them, and of this program.
+
+    >>> fingerprint(1.0, "a") == fingerprint(1.0, "a"), fingerprint(("a", "b")) == fingerprint(("ab",))
+    (True, False)
+    """
+    seen: dict[int, bytes] = {}
+    return hashlib.sha256(program(Path(fcm.__file__).parent) + _digest(parts, seen)).digest()
+
+
+@cache
+def program(folder: Path) -> bytes:
+    """Digest of the sources in a folder, as they are, and of what they are run by."""
+    versions = (
+        fcm.__version__,
+        platform.python_version(),
+        platform.machine(),
+        np.__version__,
+        scipy.__version__,
+    )
+    digest = hashlib.sha256(repr(versions).encode())
+    for path in sorted(folder.rglob("*")):
+        if path.suffix in (*PROGRAM, TABLE):
+            content = path.read_bytes() if path.suffix != TABLE else _end(path)
+            digest.update(f"{path.relative_to(folder)} {len(content)} ".encode() + content)
+    return digest.digest()
+
+
+def _end(path: Path) -> bytes:
+    with path.open("rb") as file:
+        file.seek(max(file.seek(0, 2) - LAST, 0))
+        return file.read()
+
+
+def _digest(value: Any, seen: dict[int, bytes]) -> bytes:
+    """Digest of a value; of those that curves share it is computed once."""
+    if id(value) in seen:
+        return seen[id(value)]
+    name = type(value).__qualname__
+    if isinstance(value, np.ndarray):
+        found = hashlib.sha256(f"{name} {value.shape} {value.dtype}".encode() + value.tobytes()).digest()
+    elif is_dataclass(value) and not isinstance(value, type):
+        found = _of(name, (getattr(value, field.name) for field in fields(value)), seen)
+    elif isinstance(value, dict):
+        found = _of(name, (part for item in value.items() for part in item), seen)
+    elif isinstance(value, tuple | list):
+        found = _of(name, value, seen)
+    elif isinstance(value, str | bytes | int | float | complex | None):
+        return hashlib.sha256(f"{name} {value!r}".encode()).digest()
+    else:
+        found = hashlib.sha256(pickle.dumps(value)).digest()
+    seen[id(value)] = found
+    return found
+
+
+def _of(name: str, parts: Iterable[Any], seen: dict[int, bytes]) -> bytes:
+    digests = [_digest(part, seen) for part in parts]
+    return hashlib.sha256(f"{name} {len(digests)} ".encode() + b"".join(digests)).digest()

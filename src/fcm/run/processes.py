@@ -1,0 +1,124 @@
+"""Processes on this machine, one batch at a time each; one that dies takes no other with it.
+
+A worker is a program of its own, not a copy of this one: it imports nothing of the caller's, shows nothing,
+takes no signal, and ends when this process does, be that by ``kill -9`` (see `fcm.run.worker`).
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
+from typing import BinaryIO, cast
+
+from fcm import signals
+from fcm.run.frames import BATCH, PROGRESS, SHARE, STOP, WORK, receive, send
+from fcm.run.places import Died
+from fcm.run.work import Attempt, Batch, Compute, Progress
+from fcm.threads import one_each
+
+
+class Processes:
+    """So many processes, each begun when it is first needed."""
+
+    def __init__(self, compute: Compute, count: int) -> None:
+        self.width = count
+        self._work = pickle.dumps(compute, protocol=5)
+        self._idle: list[_Worker] = []
+        self._busy: set[_Worker] = set()
+        self._lock, self._closed = threading.Lock(), False
+        self._threads = ThreadPoolExecutor(count, initializer=_take_no_signal)
+
+    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
+        return self._threads.submit(self._compute, batch, progress)
+
+    def stop(self) -> None:
+        with self._lock:
+            for worker in self._busy:
+                worker.send(STOP)
+
+    def close(self) -> None:
+        with signals.undisturbed():
+            with self._lock:
+                self._closed = True
+                workers = [*self._idle, *self._busy]
+            for worker in workers:
+                worker.end()
+            self._threads.shutdown(wait=True, cancel_futures=True)
+            for worker in workers:
+                worker.release()
+
+    def _compute(self, batch: Batch, progress: Progress) -> Attempt:
+        """In a thread of this process: have one batch computed by a worker."""
+        worker = self._taken()
+        try:
+            done = worker.compute(batch, progress)
+        finally:
+            with self._lock:
+                self._busy.discard(worker)
+        if done is None:
+            worker.end()
+            worker.release()
+            raise Died
+        with self._lock:
+            self._idle.append(worker)
+        return done
+
+    def _taken(self) -> _Worker:
+        with self._lock:
+            if self._closed:
+                raise Died
+            worker = self._idle.pop() if self._idle else _Worker(self._work)
+            self._busy.add(worker)
+        return worker
+
+
+class _Worker:
+    def __init__(self, work: bytes) -> None:
+        folders = os.pathsep.join(folder or os.getcwd() for folder in sys.path)  # noqa: PTH109
+        self.process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "fcm.run.worker"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, **one_each(), "PYTHONPATH": folders},
+        )
+        self._sending = threading.Lock()
+        self.send(WORK, work)
+
+    def send(self, kind: bytes, data: bytes = b"") -> None:
+        with self._sending, suppress(OSError, ValueError):  # that it is gone is seen when it is listened to
+            send(cast("BinaryIO", self.process.stdin), kind, data)
+
+    def compute(self, batch: Batch, progress: Progress) -> Attempt | None:
+        """The results of a batch; None if the process has ended."""
+        self.send(BATCH, pickle.dumps(batch, protocol=5))
+        while (frame := receive(cast("BinaryIO", self.process.stdout))) is not None:
+            kind, data = frame
+            if kind != PROGRESS:
+                done: Attempt = pickle.loads(data)
+                return done
+            progress(SHARE.unpack(data)[0], "")
+        return None
+
+    def end(self) -> None:
+        """Nothing it has is needed."""
+        self.process.kill()
+        self.process.wait()
+
+    def release(self) -> None:
+        """Nobody listens to it any more."""
+        for stream in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):
+                cast("BinaryIO", stream).close()
+
+
+def _take_no_signal() -> None:
+    """A process takes over what its starter blocks: signals are for the one that began it all."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_BLOCK, signals.ALL)

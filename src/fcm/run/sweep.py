@@ -1,0 +1,163 @@
+"""A sweep: all batches computed somewhere, kept as they are finished, and interrupted without loss."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from dataclasses import dataclass, field
+from typing import Any
+
+from fcm.run.checkpoint import Results
+from fcm.run.places import Died, Factory, Here, Place, Threads
+from fcm.run.processes import Processes
+from fcm.run.progress import Bar
+from fcm.run.work import Attempt, Batch, Compute, Lost, Progress
+
+POLL = 0.1  # [s] between two looks at the progress of others
+GRACE = 0.8  # [s] in which those who are asked to stop may hand over what they have
+DIED = "its process ended unexpectedly, perhaps for want of memory; try fewer --jobs"
+
+
+@dataclass
+class Outcome:
+    """The results of each batch that is there, `Lost` in the place of those that could not be had."""
+
+    results: dict[int, list[Any]] = field(default_factory=dict)
+    parts: dict[int, list[Any]] = field(default_factory=dict)  # of batches that were interrupted
+    interrupted: bool = False
+
+    def of(self, number: int) -> list[Any] | None:
+        """What there is of a batch."""
+        return self.results.get(number) or self.parts.get(number)
+
+
+def place_for(jobs: int, *, threads: bool = False) -> Factory:
+    """Where to compute on so many cores of this machine."""
+    if jobs == 1:
+        return lambda compute, _count: Here(compute)
+    kind = Threads if threads else Processes
+    return lambda compute, count: kind(compute, min(jobs, count))
+
+
+def sweep(
+    compute: Compute,
+    batches: Sequence[Batch],
+    at: Factory | None = None,
+    kept: Results | None = None,
+    progress: Progress | None = None,
+) -> Outcome:
+    """Compute all batches.
+
+    Parameters
+    ----------
+    compute
+        Computes a batch: one result for each item. It calls its progress now and then, from which an
+        interruption is raised; it may answer with `Interrupted` and a part of its results. For processes it
+        and its results are pickled.
+    batches
+        Their results do not depend on where and in which order they are computed.
+    at
+        Where to compute: `place_for(jobs)`, or for any executor of `concurrent.futures`
+        ``lambda compute, count: Elsewhere(compute, executor)``; by default this process.
+    kept
+        What is finished already, and where every batch goes that is finished from now on.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If it is interrupted before anything is finished; later, what is finished is returned.
+    """
+    return _Sweep(compute, batches, at or place_for(1), kept or Results(), progress).run()
+
+
+class _Sweep:
+    def __init__(
+        self,
+        compute: Compute,
+        batches: Sequence[Batch],
+        at: Factory,
+        kept: Results,
+        progress: Progress | None,
+    ) -> None:
+        self.compute, self.batches, self.at, self.kept = compute, batches, at, kept
+        self.outcome = Outcome(dict(kept.finished))
+        self.bar = Bar([len(batch) for batch in batches], kept.finished, progress)
+        self.waiting: dict[Future[Attempt], int] = {}
+
+    def run(self) -> Outcome:
+        left = [number for number in range(len(self.batches)) if number not in self.outcome.results]
+        died = self._at_once(left)
+        for number in died:
+            if not self.outcome.interrupted and self._at_once([number]):
+                self.outcome.results[number] = [Lost(DIED) for _ in self.batches[number]]
+        outcome = self.outcome
+        if outcome.interrupted and not outcome.results and not any(outcome.parts.values()):
+            raise KeyboardInterrupt
+        return outcome
+
+    def _at_once(self, left: Sequence[int]) -> list[int]:
+        """Compute batches at one place; those whose process has died."""
+        if not left:
+            return []
+        place, died = self.at(self.compute, len(left)), []
+        try:
+            for number, done in self._computed(place, left):
+                if done is None:
+                    died.append(number)
+                elif done.interrupted:
+                    raise _Stopped(number, done.results)
+                else:
+                    self._finish(number, done.results)
+        except KeyboardInterrupt as stop:
+            self.outcome.interrupted = True
+            if isinstance(stop, _Stopped):
+                self.outcome.parts[stop.number] = stop.results
+            self._hand_over(place)
+        finally:
+            place.close()
+            self.waiting.clear()
+        return died
+
+    def _computed(self, place: Place, left: Sequence[int]) -> Iterator[tuple[int, Attempt | None]]:
+        todo, draw = deque(left), isinstance(place, Here)
+        while todo or self.waiting:
+            while todo and len(self.waiting) < place.width:
+                number = todo.popleft()
+                self.waiting[place.submit(self.batches[number], self.bar.of(number, draw))] = number
+            done, _ = wait(self.waiting, POLL, FIRST_COMPLETED)
+            for future in done:
+                yield self.waiting.pop(future), _result(future)
+            self.bar.draw()
+
+    def _finish(self, number: int, results: list[Any]) -> None:
+        self.outcome.results[number] = results
+        if not any(isinstance(one, Lost) for one in results):  # what is lost is tried again by the next run
+            self.kept.add(number, results)
+        self.bar.finish(number)
+
+    def _hand_over(self, place: Place) -> None:
+        """Ask everybody for what they have; whoever has no answer at once has none."""
+        place.stop()
+        done, _ = wait(self.waiting, GRACE)
+        for future in done:
+            number, found = self.waiting[future], _result(future)
+            if found is not None and not found.interrupted:
+                self._finish(number, found.results)
+            elif found is not None:
+                self.outcome.parts[number] = found.results
+
+
+class _Stopped(KeyboardInterrupt):
+    """A batch was interrupted where it was computed."""
+
+    def __init__(self, number: int, results: list[Any]) -> None:
+        super().__init__()
+        self.number, self.results = number, results
+
+
+def _result(future: Future[Attempt]) -> Attempt | None:
+    try:
+        return future.result()
+    except (Died, CancelledError):
+        return None

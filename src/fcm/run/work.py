@@ -1,0 +1,63 @@
+"""One batch computed: whatever fails in it is lost alone, and an interruption gives what there is."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+Progress = Callable[[float, str], None]  # finished fraction and a text
+Batch = Sequence[Any]
+Compute = Callable[[Batch, Progress], list[Any]]  # one result for each item of a batch
+
+
+class Interrupted(KeyboardInterrupt):
+    """Raised by a `Compute` that was interrupted and has a part of its results to show."""
+
+    def __init__(self, results: list[Any]) -> None:
+        super().__init__()
+        self.results = results
+
+
+@dataclass(frozen=True)
+class Lost:
+    """In the place of a result: why there is none."""
+
+    reason: str
+    defect: str = ""  # the traceback, if the reason is a defect of the program
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """What came of a batch."""
+
+    results: list[Any]
+    interrupted: bool = False  # the results are then a part, or none
+
+
+def attempt(compute: Compute, batch: Batch, progress: Progress) -> Attempt:
+    """Compute a batch; if that fails each of its items alone, and those that fail then are lost."""
+    try:
+        return Attempt(compute(batch, progress))
+    except Interrupted as stopped:
+        return Attempt(stopped.results, interrupted=True)
+    except KeyboardInterrupt:
+        return Attempt([], interrupted=True)
+    except Exception as error:
+        if len(batch) == 1:
+            return Attempt([_lost(error)])
+    alone: list[Any] = []
+    for item in batch:
+        one = attempt(compute, (item,), progress)
+        if one.interrupted:
+            return Attempt([], interrupted=True)
+        alone += one.results
+    return Attempt(alone)
+
+
+def _lost(error: Exception) -> Lost:
+    what = f"{type(error).__name__}: {error}"
+    if isinstance(error, MemoryError):
+        return Lost(what)
+    return Lost(what, "".join(traceback.format_exception(error)))

@@ -1,0 +1,82 @@
+"""A process that computes batches for another: ``python -m fcm.run.worker``.
+
+Batches come by its standard input, results go by its standard output. When the input ends, the process that
+started it is gone, however that came about, and so is this one: at once, in the middle of a batch.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+import threading
+import time
+from queue import SimpleQueue
+from typing import BinaryIO
+
+from fcm.run.frames import BATCH, PROGRESS, RESULT, SHARE, STOP, WORK, receive, send
+from fcm.run.places import until
+from fcm.run.work import Lost, attempt
+
+SELDOM = 0.1  # [s] between two words of progress
+
+
+def main() -> None:
+    """Compute what comes, until nothing comes any more."""
+    results = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library may print is no result
+    tasks: SimpleQueue[bytes] = SimpleQueue()
+    stopped = threading.Event()
+    threading.Thread(target=_listen, args=(sys.stdin.buffer, tasks, stopped), daemon=True).start()
+    work = tasks.get()
+    try:
+        compute = pickle.loads(work)
+    except Exception as error:
+        compute = _Unknown(f"what is to be computed is not known in a process of its own: {error}")
+    progress = until(stopped, _Said(results))
+    while True:
+        done = attempt(compute, pickle.loads(tasks.get()), progress)
+        _sent(results, RESULT, pickle.dumps(done, protocol=5))
+
+
+def _listen(stream: BinaryIO, tasks: SimpleQueue[bytes], stopped: threading.Event) -> None:
+    while (frame := receive(stream)) is not None:
+        kind, data = frame
+        if kind in (WORK, BATCH):
+            tasks.put(data)
+        elif kind == STOP:
+            stopped.set()
+    os._exit(0)
+
+
+class _Said:
+    """Progress, said now and then."""
+
+    def __init__(self, results: BinaryIO) -> None:
+        self.results, self.last = results, 0.0
+
+    def __call__(self, fraction: float, _text: str) -> None:
+        if (now := time.monotonic()) - self.last > SELDOM:
+            self.last = now
+            _sent(self.results, PROGRESS, SHARE.pack(fraction))
+
+
+class _Unknown:
+    """In the place of a function that cannot be had."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = reason
+
+    def __call__(self, batch: object, _progress: object) -> list[Lost]:
+        raise RuntimeError(self.reason)
+
+
+def _sent(results: BinaryIO, kind: bytes, data: bytes) -> None:
+    try:
+        send(results, kind, data)
+    except OSError:
+        os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,122 @@
+"""Signals that end a program: Ctrl-C, SIGTERM and SIGHUP are one thing, an interruption.
+
+While the program loads, nothing is to be saved: it ends at once with one line. While it works, it is a
+KeyboardInterrupt, so that finished work is written. When it has ended, only the interpreter is left to be
+shut down: it ends at once, with the exit code that was decided.
+
+This module imports next to nothing, for it is the first thing that the program does.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import FrameType
+    from typing import Any
+
+NOT_COMPLETED = 3  # exit code
+INTERRUPTED = "interrupted: the calculation was not completed"
+ONE = (
+    1.0  # [s] signals closer together are one interruption: `timeout` sends two, a terminal that closes more
+)
+AGAIN = 0.005  # [s] after which an interruption that nobody could raise is raised again
+ALL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+_LOADS, _WORKS, _ENDS = range(3)
+
+
+class _Program:
+    """What an interruption means now."""
+
+    def __init__(self) -> None:
+        self.phase, self.code, self.last = _LOADS, NOT_COMPLETED, -ONE
+        self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
+        self.before: dict[int, Any] = {}
+
+    def interrupted(self, _number: int, _frame: FrameType | None) -> None:
+        if self.phase == _LOADS:
+            os.write(2, f"fcm: {INTERRUPTED}\n".encode())
+        if self.phase != _WORKS:
+            os._exit(self.code)
+        now = time.monotonic()
+        if now - self.last >= ONE:
+            self.last = now
+            self.again(_number, _frame)
+
+    def again(self, _number: int, _frame: FrameType | None) -> None:
+        if self.shields:
+            self.waits = True
+        else:
+            raise KeyboardInterrupt
+
+    def lost(self, unraisable: Any) -> None:
+        """An exception that nobody could catch: an interruption comes again, others concern nobody."""
+        if issubclass(unraisable.exc_type, KeyboardInterrupt) and hasattr(signal, "setitimer"):
+            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
+
+_program: _Program | None = None
+
+
+def take() -> bool:
+    """Take signals as interruptions; False if that is so already, or is not for this thread to do.
+
+    A signal that is ignored stays so: `nohup` and the shell's `&` ask for it.
+    """
+    global _program
+    if _program is not None:
+        return False
+    program = _Program()
+    try:
+        for number in ALL:
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                program.before[number] = signal.signal(number, program.interrupted)
+        if hasattr(signal, "SIGALRM"):
+            program.before[signal.SIGALRM] = signal.signal(signal.SIGALRM, program.again)
+    except ValueError:  # not the main thread
+        return False
+    sys.unraisablehook = program.lost
+    _program = program
+    return True
+
+
+def give_back() -> None:
+    """Leave the signals as they were found."""
+    global _program
+    if _program is not None:
+        for number, handler in _program.before.items():
+            signal.signal(number, handler)
+        sys.unraisablehook = sys.__unraisablehook__
+        _program = None
+
+
+def works() -> None:
+    """From now on there may be something to save."""
+    if _program is not None:
+        _program.phase = _WORKS
+
+
+def ends(code: int) -> None:
+    """Nothing is left to be saved, and the exit code decided."""
+    if _program is not None:
+        _program.phase, _program.code = _ENDS, code
+
+
+class undisturbed:  # noqa: N801
+    """``with undisturbed():`` what must not stop halfway; an interruption is raised after it."""
+
+    def __enter__(self) -> None:
+        if _program is not None:
+            _program.shields += 1
+
+    def __exit__(self, *_: object) -> None:
+        if _program is not None:
+            _program.shields -= 1
+            if _program.waits and not _program.shields:
+                _program.waits = False
+                raise KeyboardInterrupt
