@@ -65,6 +65,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 )  # fmt: skip
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
 @click.option(
+    "--largest-file", type=click.FloatRange(min=0.0, min_open=True), default=1000.0, show_default=True,
+    metavar="MB", help="Largest file of modes or matrices that is read, unpacked.",
+)  # fmt: skip
+@click.option(
     "--compare",
     is_flag=True,
     help="Run the scene by every method: error against run time, instead of curves.",
@@ -85,6 +89,7 @@ def respond(
     resume: bool,
     tolerance: float,
     keep_all: bool,
+    largest_file: float,
     compare: bool,
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
@@ -98,7 +103,9 @@ def respond(
         from fcm.cli.compare import refuse_other_options, write_comparison
 
         refuse_other_options()
-        write_comparison(messages, _loaded(scene, max_step, None), table, tolerance, output, to_json)
+        write_comparison(
+            messages, _loaded(scene, max_step, None, largest_file), table, tolerance, output, to_json
+        )
         return
     exact.check_options(method, at)
     if table is not None and method != "table":
@@ -106,7 +113,7 @@ def respond(
     if resume and output is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
-    loaded = _loaded(scene, max_step, history_csv)
+    loaded = _loaded(scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
     options = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
     outputs = Outputs(messages, output, csv, history_csv)
@@ -133,10 +140,10 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
         messages.info(f"at least {points} points: {count} curves in steps of {scene.max_step:g} at most")
 
 
-def _loaded(scene: str, max_step: float | None, history_csv: Path | None) -> Scene:
+def _loaded(scene: str, max_step: float | None, history_csv: Path | None, largest_file: float) -> Scene:
     from fcm.scene import load_scene
 
-    loaded = load_scene(scene)
+    loaded = load_scene(scene, largest_file=round(largest_file * 1e6))
     schedule.check_options(loaded, history_csv)
     return loaded if max_step is None else _with_step(loaded, max_step)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib.resources import files
@@ -11,15 +10,18 @@ from typing import Any
 
 from fcm.scene.address import replaced
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
+from fcm.scene.files import LARGEST, Files
 from fcm.scene.modal import UNITS, modal_of, read_modal
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.parts import contact_of, force_of, read_contacts, read_forces, read_response
 from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
 from fcm.scene.sweep import Swept, combinations, read_sweep
+from fcm.scene.toml import read_toml
 
 KEYS = ("title", "frequency_unit", "modal", "contact", "force", "response", "sweep", "schedule", "start")
-LARGEST_FILE = 100_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
+
+MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
 
 
 def bundled_scenes() -> tuple[str, ...]:
@@ -38,8 +40,10 @@ def _bundled() -> Path:
     return Path(str(files("fcm") / "scenes"))
 
 
-def load_scene(path_or_name: str | Path) -> Scene:
+def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Scene:
     """The scene of a TOML file, or of a bundled name; SceneError names every mistake.
+
+    A file of modes or matrices beside it may have `largest_file` bytes when it is unpacked.
 
     >>> scene = load_scene("yang1998")
     >>> scene.modal.dofs, scene.contacts[0].mu, len(scene.curves)
@@ -47,14 +51,20 @@ def load_scene(path_or_name: str | Path) -> Scene:
     >>> scene.curves[0].parameters
     {'contact.shroud.n_0': 100.0}
     """
-    if str(path_or_name) in bundled_scenes():
-        path = _bundled() / f"{path_or_name}.toml"
-        return scene_from_dict(_parsed(path, str(path_or_name)), str(path_or_name), path.parent)
-    path = Path(path_or_name)
-    return scene_from_dict(_parsed(path, str(path)), str(path), path.parent)
+    bundled = str(path_or_name) in bundled_scenes()
+    path = _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
+    return scene_from_dict(
+        read_toml(path, str(path_or_name)), str(path_or_name), path.parent, largest_file=largest_file
+    )
 
 
-def scene_from_dict(data: Mapping[str, Any], name: str = "scene", folder: str | Path = ".") -> Scene:
+def scene_from_dict(
+    data: Mapping[str, Any],
+    name: str = "scene",
+    folder: str | Path = ".",
+    *,
+    largest_file: int = LARGEST,
+) -> Scene:
     """The scene of a dict with a file's keys; a file of modes is looked for in the folder.
 
     >>> modal = {"dofs": ["u"], "frequency": [1.0], "damping": 0.01, "shapes": [[1.0]]}
@@ -70,7 +80,7 @@ def scene_from_dict(data: Mapping[str, Any], name: str = "scene", folder: str | 
         mistakes.raise_if_any()
     top.only(*KEYS)
     unit = _unit(top)
-    parts: dict[str, Any] = {"modal": read_modal(top, Path(folder), unit)}
+    parts: dict[str, Any] = {"modal": read_modal(top, Files(Path(folder), largest_file), unit)}
     parts["contact"] = read_contacts(top, parts["modal"]["dofs"])
     parts["force"] = read_forces(top, parts["modal"]["dofs"])
     ends, step = read_response(top, unit)
@@ -121,6 +131,11 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
         where = f"sweep with {where}" if where else ""
         if curve.has_range and not _moved(curve):
             mistakes.add(where, "the forces move no mode, so the response is zero")
+        masses = curve.modal.mass
+        if masses.max() > MASS_RATIO * masses.min():
+            low, high = masses.min(), masses.max()
+            what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
+            mistakes.add(where, f"{what}: beside the light ones nothing is left of the heavy ones")
         for contact in curve.contacts:
             if not contact.tangential.any():
                 mistakes.add(where, f"contact {quoted(contact.name)} has only zero tangential weights")
@@ -143,40 +158,16 @@ def _unit(top: Section) -> str:
     return "rad/s"
 
 
-def _parsed(path: Path, source: str) -> dict[str, Any]:
-    """The tables of a TOML file."""
+def _there(path_or_name: str | Path) -> Path:
+    """The path of a scene's file."""
+    path = Path(path_or_name)
     try:
-        return tomllib.loads(_text(path, source))
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(source, [f"is not valid TOML: {error}"]) from None
-    except RecursionError:
-        raise SceneError(source, ["is nested too deeply"]) from None
-    except SceneError:
-        raise
-    except ValueError:  # Python's limit on the digits of an integer, or of a date
-        raise SceneError(source, ["has a number or a date that cannot be read"]) from None
-
-
-def _text(path: Path, source: str) -> str:
-    """The text of a file, whatever is wrong with it said plainly."""
-    try:
-        if path.is_dir():
-            raise SceneError(source, ["is a folder; name the TOML file in it"])
-        if not path.exists():
-            raise SceneError(source, [_not_there(str(path))])
-        if not (path.is_file() or path.is_fifo()):
-            raise SceneError(source, ["is a device, not a file"])
-        if path.stat().st_size > LARGEST_FILE:
-            raise SceneError(source, ["is too large; keep its modes in a file of their own"])
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SceneError(source, ["is not UTF-8 text, so it is not a TOML file"]) from None
-    except OSError as error:
-        raise SceneError(source, [f"cannot be read: {error.strerror or error}"]) from None
-    except SceneError:
-        raise
-    except ValueError as error:  # a path with a null character
-        raise SceneError(source, [f"cannot be read: {error}"]) from None
+        if path.exists():
+            return path
+    except (OSError, ValueError) as error:  # a name that is too long, or has a null character
+        reason = getattr(error, "strerror", None) or error
+        raise SceneError(str(path), [f"cannot be read: {reason}"]) from None
+    raise SceneError(str(path), [_not_there(str(path))])
 
 
 def _not_there(path: str) -> str:

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from math import pi
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fcm.scene.errors import kind, quoted
-from fcm.scene.modal_file import ModalFileError, read_modal_file
+from fcm.scene.files import DataFileError, Files
+from fcm.scene.modal_file import read_modal_file
 from fcm.scene.model import FloatArray, Modal
 from fcm.scene.rules import RULES, as_float
-from fcm.scene.section import Section
+from fcm.scene.section import Section, otherwise_written, same_names, unfit_name
 
 KEYS = ("dofs", "mass", "frequency", "damping", "shapes")
 UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
 
 
-def read_modal(top: Section, folder: Path, unit: str) -> dict[str, Any]:
+def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
     """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
     section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
-    section = _with_file(section, folder, unit) if section else None
+    section = _with_file(section, files, unit) if section else None
     if section is None:
         return dict.fromkeys(KEYS)
     section.only(*KEYS, "file")
@@ -49,16 +48,18 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     return Modal(dofs=draft["dofs"], **arrays)
 
 
-def _with_file(section: Section, folder: Path, unit: str) -> Section | None:
+def _with_file(section: Section, files: Files, unit: str) -> Section | None:
     """The section with what its file holds; a key given inline takes precedence."""
     if "file" not in section.data:
         return section
     name = section.text("file")
     if not name:
+        if section.data["file"] == "":
+            section.wrong("file", "is empty; name a file of modes")
         return None
     try:
-        found = read_modal_file(folder / name)
-    except ModalFileError as error:
+        found = read_modal_file(name, files)
+    except DataFileError as error:
         section.wrong("file", str(error))
         return None
     if "angular_frequency" in found:
@@ -77,12 +78,12 @@ def _dofs(section: Section) -> tuple[str, ...] | None:
     for index, name in enumerate(names):
         if not isinstance(name, str):
             section.wrong(f"dofs[{index}]", f"must be a string, is {kind(name)}")
-        elif not name.strip() or not name.isprintable():
-            section.wrong(f"dofs[{index}]", f"{quoted(name)} is not a name that can be printed")
+        elif fault := unfit_name(name):
+            section.wrong(f"dofs[{index}]", fault)
     words = [name for name in names if isinstance(name, str)]
-    for name, count in Counter(words).items():
-        if count > 1:
-            section.wrong("dofs", f"{quoted(name)} is there {count} times; each must be there once")
+    for name, group in same_names(words):
+        what = f"{quoted(name)} is there {len(group)} times{otherwise_written(group)}"
+        section.wrong("dofs", f"{what}; each must be there once")
     return tuple(words) if len(words) == len(names) else None
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from math import nan
 from typing import Any
@@ -11,20 +10,22 @@ from fcm.scene.errors import quoted
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, SHORTEST_STEP, step_fault
-from fcm.scene.section import Section
+from fcm.scene.section import Section, same_names, unfit_name
 
 Dofs = Sequence[str] | None
+NARROWEST = 1e-10  # relative width of a range: its points are still some 1e5 roundings apart
 MAX_STEP = 0.05  # longest step along a curve when the scene names none
-NARROWEST = 1e-12  # range of frequencies, relative: rounding is some thousandth of it
 
 
 def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
     """The contacts as read, in the words of the file."""
     sections = top.tables("contact")
     drafts = [_contact(section, dofs) for section in sections]
-    for name, count in Counter(draft["name"] for draft in drafts if draft["name"]).items():
-        if count > 1:
-            top.wrong("contact", f"{count} contacts are named {quoted(name)}; a name must be there once")
+    for name, group in same_names(draft["name"] for draft in drafts if draft["name"]):
+        written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
+        top.wrong(
+            "contact", f"{len(group)} contacts are named {quoted(name)}{written}; a name must be there once"
+        )
     return drafts
 
 
@@ -32,8 +33,8 @@ def _contact(section: Section, dofs: Dofs) -> dict[str, Any]:
     name = section.text("name")
     if name:
         section.path += f" {quoted(name)}"
-    if isinstance(section.data.get("name"), str) and not (name.strip() and name.isprintable()):
-        section.wrong("name", f"{quoted(name)} is not a name that can be printed")
+    if isinstance(section.data.get("name"), str) and (fault := unfit_name(name)):
+        section.wrong("name", fault)
     section.only("name", "tangential", "normal", "mu", "k_u", "k_v", "n_0", "gap")
     draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
     load = _load(section)

@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from math import nan
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
 
 from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import ANY, Rule, as_float
+
+LONGEST_NAME = (
+    100  # bytes of a name: "contact.NAME.tangential.NAME" names a variable of a file, of 256 at most
+)
 
 
 class Section:
@@ -155,6 +160,35 @@ class Section:
             what = f"unknown degree of freedom {quoted(dof)}; modal.dofs are {choices(dofs)}"
             self.wrong(key, what, dof, dofs)
         return not unknown
+
+
+def unfit_name(name: str) -> str:
+    """What is wrong with a name of a contact or a degree of freedom; empty when nothing is.
+
+    >>> unfit_name(""), unfit_name("tip"), unfit_name("x" * 101)
+    ('"" is not a name that can be printed', '', 'is too long for a name: 101 bytes, of 100 at most')
+    """
+    if not name.strip() or not name.isprintable():
+        return f"{quoted(name)} is not a name that can be printed"
+    size = len(name.encode())
+    return f"is too long for a name: {size} bytes, of {LONGEST_NAME} at most" if size > LONGEST_NAME else ""
+
+
+def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
+    """Names that are equal once their characters are composed: in a file they would be one.
+
+    >>> same_names(["u", "v", "u"])
+    [('u', ['u', 'u'])]
+    """
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(name if name.isascii() else normalize("NFC", name), []).append(name)
+    return [(name, group) for name, group in groups.items() if len(group) > 1]
+
+
+def otherwise_written(group: list[str]) -> str:
+    """A remark for names that look the same and are not, since their characters are composed otherwise."""
+    return "" if len(set(group)) == 1 else " (in other Unicode characters)"
 
 
 def _floats(values: Sequence[object]) -> list[float]:

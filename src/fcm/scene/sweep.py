@@ -85,6 +85,10 @@ def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
         section.mistakes.add(path, 'put the whole key path in quotes, as in "contact.shroud.n_0" = [1, 2]')
         return None
     address = addresses.find(str(key), path, section.mistakes)
+    if address is not None and "/" in str(key):
+        section.mistakes.add(
+            path, "a file cannot hold a name with a slash; give the number instead, as in contact.0"
+        )
     values = _values(section, path, str(key), value)
     if values is None:
         return None

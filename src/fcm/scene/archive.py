@@ -1,0 +1,48 @@
+"""Arrays of a NumPy archive (.npz): only those asked for, and none larger than it says it is."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Collection
+from math import prod
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.errors import quoted
+from fcm.scene.files import DataFileError, Files
+
+Arrays = dict[str, npt.NDArray[Any]]
+
+
+def read_npz(path: Path, wanted: Collection[str] | None, files: Files) -> Arrays:
+    """The arrays of an archive by their names; all of them when none is asked for by name."""
+    with path.open("rb") as file:
+        if file.read(6) == b"\x93NUMPY":
+            raise DataFileError(f"{quoted(path.name)} holds a single array; write it with numpy.savez")
+    with zipfile.ZipFile(path) as archive:
+        members = {one.filename.removesuffix(".npy"): one for one in archive.infolist()}
+        chosen = {name: one for name, one in members.items() if wanted is None or name in wanted}
+        files.check_size(path, sum(one.file_size for one in chosen.values()))
+        found = {}
+        for name, one in chosen.items():
+            with archive.open(one) as stream:
+                found[name] = _array(stream, one.file_size)
+        return found
+
+
+def _array(stream: IO[bytes], size: int) -> npt.NDArray[Any]:
+    """An array whose header agrees with the number of bytes that there are."""
+    version = np.lib.format.read_magic(stream)
+    header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+    shape, by_column, kind = header(stream)
+    if kind.hasobject:
+        raise ValueError(
+            "Object arrays cannot be loaded: they are pickles; write dofs as an array of strings"
+        )
+    if prod(shape) * kind.itemsize > size:
+        raise ValueError("its arrays are larger than the file")
+    values = np.frombuffer(stream.read(), dtype=kind, count=prod(shape))
+    return values.reshape(shape, order="F" if by_column else "C").copy()

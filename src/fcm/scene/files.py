@@ -1,0 +1,61 @@
+"""Files that a scene names beside itself: where they are, and how much of them is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from fcm.scene.errors import quoted
+
+LONGEST_PATH = 400  # characters of a path shown in a message
+LARGEST = 1_000_000_000  # bytes of a file beside a scene, unpacked: what fits in any machine's memory twice
+
+
+class DataFileError(ValueError):
+    """A file of modes, matrices or names that cannot be read."""
+
+
+@dataclass(frozen=True)
+class Files:
+    """The files beside a scene."""
+
+    folder: Path = Path()
+    largest: int = LARGEST  # bytes, unpacked
+
+    @contextmanager
+    def opened(self, name: str) -> Iterator[Path]:
+        """The path of a file that is there and not too large; whatever fails within is said of the file."""
+        path = self.folder / name
+        try:
+            if not path.is_file():
+                raise DataFileError(f"{_shown(path)} is {'a folder' if path.is_dir() else 'not there'}")
+            self.check_size(path, path.stat().st_size)
+            yield path
+        except DataFileError:
+            raise
+        except Exception as error:  # whatever a damaged file does to its reader, the file is at fault
+            reason = str(error).partition("\n")[0] or type(error).__name__
+            raise DataFileError(f"{_shown(path)} cannot be read: {reason[:200]}") from None
+
+    def check_size(self, path: Path, size: int) -> None:
+        """Refuse a file that is too large when it is unpacked."""
+        if size > self.largest:
+            raise DataFileError(
+                f"{_shown(path)} holds {megabytes(size)}; at most {megabytes(self.largest)} are read: "
+                "raise the limit by --largest-file (in Python, largest_file)"
+            )
+
+
+def megabytes(size: int) -> str:
+    """Bytes in the unit of the option.
+
+    >>> megabytes(3_000_000_000)
+    '3000 MB'
+    """
+    return f"{size / 1e6:.4g} MB" if size < 1e9 else f"{size / 1e6:.0f} MB"
+
+
+def _shown(path: Path) -> str:
+    return quoted(str(path), LONGEST_PATH)

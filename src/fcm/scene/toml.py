@@ -1,0 +1,49 @@
+"""The tables of a TOML file; whatever is wrong with the file is said plainly."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from fcm.scene.errors import SceneError
+
+LARGEST_FILE = 10_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
+DEEPEST_KEY = 16  # parts of a dotted key: the parser takes the square of their number in time and memory
+
+# at the beginning of a line, a header or an inline table: a part and a dot, again and again
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_DEEP_KEY = re.compile(rf"(?:^|[\[{{,])[ \t]*+(?:{_PART}[ \t]*+\.[ \t]*+){{{DEEPEST_KEY}}}", re.MULTILINE)
+
+
+def read_toml(path: Path, source: str) -> dict[str, Any]:
+    """The tables of a TOML file, which messages call `source`."""
+    text = _text(path, source)
+    if deep := _DEEP_KEY.search(text):
+        line = text.count("\n", 0, deep.start() + 1) + 1
+        raise SceneError(source, [f"line {line}: unknown key, of more than {DEEPEST_KEY} parts"])
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(source, [f"is not valid TOML: {error}"]) from None
+    except RecursionError:
+        raise SceneError(source, ["is nested too deeply"]) from None
+    except ValueError:  # Python's limit on the digits of an integer, or of a date
+        raise SceneError(source, ["has a number or a date that cannot be read"]) from None
+
+
+def _text(path: Path, source: str) -> str:
+    """The text of a file."""
+    try:
+        if path.is_dir():
+            raise SceneError(source, ["is a folder; name the TOML file in it"])
+        if not (path.is_file() or path.is_fifo()):
+            raise SceneError(source, ["is a device, not a file"])
+        if path.stat().st_size > LARGEST_FILE:
+            raise SceneError(source, ["is too large; keep its modes in a file of their own"])
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise SceneError(source, ["is not UTF-8 text, so it is not a TOML file"]) from None
+    except OSError as error:
+        raise SceneError(source, [f"cannot be read: {error.strerror or error}"]) from None
