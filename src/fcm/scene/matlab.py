@@ -1,7 +1,8 @@
 """Arrays of a MATLAB file (.mat), read by a process of its own.
 
-scipy's reader can crash the interpreter on a damaged file, and unpacks whatever a file says it holds. So it
-runs in a child with a limit on its memory: whatever becomes of it, here there are arrays or an error.
+scipy's reader can crash the interpreter on a damaged file, and unpacks whatever a file says it holds. So the
+file's tags are checked first, and the reader runs in a child with a limit on its memory: whatever becomes of
+it, here there are arrays or an error.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import fcm
 from fcm.scene.archive import Arrays
 from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError, Files, megabytes
+from fcm.scene.matlab_tags import check_tags
 
 SPARE = 500_000_000  # bytes of memory for the reader itself
 COPIES = 3  # of the arrays, while they are read, converted and written
@@ -53,6 +55,7 @@ def child(arguments: list[str]) -> None:
         _limit_memory(COPIES * int(largest) + SPARE)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
+            check_tags(Path(path).read_bytes(), wanted, int(largest))
             arrays = loaded(Path(path), wanted)
         size = sum(array.nbytes for array in arrays.values())
         if size > int(largest):
@@ -80,6 +83,7 @@ def loaded(path: Path, wanted: Collection[str]) -> Arrays:
 def _parts(value: Any) -> list[tuple[str, Any]]:
     """A variable as plain arrays: a sparse matrix as the parts of one by coordinates."""
     if hasattr(value, "tocoo"):
+        value.check_format(full_check=True)
         coo = value.tocoo()
         shape = np.array(coo.shape)
         return [(".row", coo.row), (".col", coo.col), (".data", coo.data), (".shape", shape)]

@@ -86,9 +86,7 @@ def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
         return None
     address = addresses.find(str(key), path, section.mistakes)
     if address is not None and "/" in str(key):
-        section.mistakes.add(
-            path, "a file cannot hold a name with a slash; give the number instead, as in contact.0"
-        )
+        section.mistakes.add(path, "a file cannot hold a name with a slash; give its number, as in contact.0")
     values = _values(section, path, str(key), value)
     if values is None:
         return None
