@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from fcm import fourier_coefficients, hysteresis_loop
-from fcm.contact.fourier import BLOCK
 from fcm.contact.loop import sequences
 
 EXTREMES = [0.0, -0.0, 1.0, 5e-324, 1e-300, 1e154, 1e155, 1e300, 1e308, np.finfo(float).max]
@@ -49,12 +48,12 @@ def test_arguments_are_left_alone():
 
 
 def test_a_point_does_not_depend_on_its_neighbours():
-    """Points are done in blocks; the last bit of each is the same in any block and any company."""
+    """The last bit of each is the same in any company."""
     rng = np.random.default_rng(1)
-    x = rng.uniform(0.0, 2.0, (3, BLOCK + 3))
+    x = rng.uniform(0.0, 2.0, (3, 1000))
     together = np.array(fourier_coefficients(*x))
-    for i in (0, 1, BLOCK - 1, BLOCK, BLOCK + 2):
-        np.testing.assert_allclose(together[:, i], fourier_coefficients(*x[:, i]), rtol=0.0, atol=1e-16)
+    for i in (0, 1, 500, 999):
+        np.testing.assert_array_equal(together[:, i], fourier_coefficients(*x[:, i]))
 
 
 @pytest.mark.parametrize("position", [0, 1, 2])

@@ -1,237 +1,302 @@
-"""One steady cycle of the contact, event by event in closed form (sections 3.2 to 3.4).
+"""Kernel: one steady cycle of the contact, event by event in closed form (sections 3.2 to 3.4, appendix).
 
-The slip motion w moves only when a limit of `limits` pushes it. Between consecutive extremes of the two
-limits each limit has no maximum (minimum) inside, so over such a *span* the whole of sections 3.2.1 to
-3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most one slip, which lasts until
-the end of the span. A cycle has at most three spans: those ended by theta_P, by theta_N, and by the
-separation (or by theta_N again when the contact never opens). Nothing has to be searched for,
-and a rounding error can shift an event but never choose a wrong sequence by more than that error.
+While the contact is closed, |f| <= n says that the slip motion w = u - f lies between
+
+    lower(theta) = sin(theta) - n(theta) =  ell_1 cos(theta - theta_P) - n0_bar
+    upper(theta) = sin(theta) + n(theta) = -ell_2 cos(theta - theta_N) + n0_bar
+
+Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
+slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
+the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most
+one slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P,
+by theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be
+searched for, and a rounding error can shift an event but never choose a wrong sequence by more than that.
 """
 
-from __future__ import annotations
+import cython
+from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, sin, sqrt
 
-from typing import NamedTuple
+PI = cython.declare(cython.double, 3.141592653589793)
+LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
+FARTHEST = cython.declare(cython.double, 1e304)
+SHRINK = cython.declare(cython.double, 2.0**-32)
 
-import numpy as np
-
-from fcm.contact.limits import BoolArray, FloatArray, SlipLimits, angle_from, slip_limits
-
-STUCK, SLIPPING, OPEN = 0, 1, 2  # what a contact does over a cycle, see `behaviour`
-
-
-class Direction(NamedTuple):
-    """An angle by its sine and cosine."""
-
-    sin: FloatArray
-    cos: FloatArray
+# what a contact does over a cycle
+UNKNOWN = cython.declare(cython.int, -1)  # an argument is no number
+STUCK = cython.declare(cython.int, 0)  # above the slip limit (25)
+SLIPPING = cython.declare(cython.int, 1)
+OPEN = cython.declare(cython.int, 2)  # below n0 = -b
 
 
-class Span(NamedTuple):
-    """Stick, then slip (either may be absent), up to the next extreme of a limit or the separation."""
-
-    length: FloatArray  # [rad]
-    slip: FloatArray  # the last part of length, [rad]
-    side: FloatArray  # +1 positive slip, -1 negative slip, 0 none
-    w_start: FloatArray
-    w_end: FloatArray
-    end: Direction
-    slope: FloatArray  # d w / d theta at the end of the slip, times side
-    curvature: FloatArray  # -d2 w / d theta2 there, times side
-    turns: BoolArray  # True where the slip ends because its own limit turns there
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def arc(y: cython.double) -> tuple[cython.double, cython.double, cython.double]:
+    """sin(y), 1 - cos(y) and y - sin(y), each to full relative accuracy."""
+    sin_half: cython.double = sin(0.5 * y)
+    sine: cython.double = 2.0 * sin_half * cos(0.5 * y)
+    return sine, 2.0 * sin_half * sin_half, beyond_sine(y, sine)
 
 
-class Cycle(NamedTuple):
-    """The cycle from its start: the end of separation or, where there is none, the end of negative slip."""
-
-    limits: SlipLimits
-    opens: BoolArray  # True where the contact separates
-    theta_1: FloatArray  # half the contact duration [rad], pi where the contact never opens
-    closing_rate: FloatArray  # b sin(theta_1), d n / d theta when the contact closes
-    start: Direction
-    pull: FloatArray  # at the start, d w = -pull d n at fixed theta: what the first stick region remembers
-    spans: tuple[Span, Span, Span]
-
-
-def behaviour(n0_bar: FloatArray, b_bar: FloatArray, limits: SlipLimits) -> FloatArray:
-    """STUCK above the slip limit (25), OPEN below n0 = -b, else SLIPPING."""
-    code = np.where(overlap(n0_bar, b_bar, limits) > 0.0, SLIPPING, STUCK)
-    code = np.where(n0_bar < b_bar, SLIPPING, code)
-    return np.where((n0_bar <= -b_bar) | ((b_bar == 0.0) & (n0_bar <= 0.0)), OPEN, code)
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def beyond_sine(y: cython.double, sine: cython.double) -> cython.double:
+    """y - sin(y), to full relative accuracy."""
+    square: cython.double = y * y
+    if y < 0.02:
+        return y * square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
+    return y - sine
 
 
-def overlap(n0_bar: FloatArray, b_bar: FloatArray, limits: SlipLimits) -> FloatArray:
-    """How far the greatest lower limit exceeds the least upper one: ell_1 + ell_2 - 2 n0, see (25)."""
-    return (limits.ell_1_excess - (n0_bar - b_bar)) + (limits.ell_2_excess - (n0_bar - b_bar))
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def angle_from(
+    sin_0: cython.double, cos_0: cython.double, sin_1: cython.double, cos_1: cython.double
+) -> cython.double:
+    """Angle from direction 0 forward to direction 1, in [0, 2 pi) [rad]."""
+    turn: cython.double = atan2(sin_1 * cos_0 - cos_1 * sin_0, cos_1 * cos_0 + sin_1 * sin_0)
+    return turn + 2.0 * PI if turn < 0.0 else turn
 
 
-def stuck_force(n0_bar: FloatArray, b_bar: FloatArray, limits: SlipLimits) -> FloatArray:
-    """Mean force of a contact that never slips: the admissible one nearest to zero."""
-    low = limits.ell_2_excess - (n0_bar - b_bar)
-    high = (n0_bar - b_bar) - limits.ell_1_excess
-    return np.minimum(np.maximum(0.0, low), np.maximum(high, low))
+@cython.cclass
+class Cycle:
+    """Goes through the cycle of a contact, span by span; what is made of the spans is for subclasses to say.
 
+    Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
+    ``closing_rate`` is b sin(theta_1), d n / d theta when it closes. It starts in the direction ``first``, at
+    the end of the separation or, where there is none, of negative slip. ``pull``: there d w = -pull d n at
+    fixed theta, which is what a first stick remembers.
 
-class _Mark(NamedTuple):
-    """What a span needs to know of the angle that ends it; index 0 for positive, 1 for negative slip."""
-
-    at: Direction
-    lower: FloatArray
-    upper: FloatArray
-    slope: tuple[FloatArray, FloatArray]
-    curvature: tuple[FloatArray, FloatArray]
-
-
-def _marks(n0_bar: FloatArray, b_bar: FloatArray, limits: SlipLimits) -> tuple[_Mark, _Mark]:
-    """theta_P and theta_N."""
-    zero = np.zeros_like(b_bar)
-    lower_P = limits.ell_1_excess - (n0_bar - b_bar)
-    upper_N = (n0_bar - b_bar) - limits.ell_2_excess
-    end_P = _Mark(
-        at=Direction(limits.sin_P, limits.cos_P),
-        lower=lower_P,
-        upper=2.0 * limits.sin_P - lower_P,
-        slope=(zero, -2.0 * limits.cos_P),
-        curvature=(limits.ell_1, limits.ell_1 - 2.0 * limits.sin_P),
-    )
-    end_N = _Mark(
-        at=Direction(limits.sin_N, limits.cos_N),
-        lower=2.0 * limits.sin_N - upper_N,
-        upper=upper_N,
-        slope=(2.0 * limits.cos_N, zero),
-        curvature=(limits.ell_2 + 2.0 * limits.sin_N, limits.ell_2),
-    )
-    return end_P, end_N
-
-
-def cycle(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray, limits: SlipLimits | None = None) -> Cycle:
-    """The steady cycle of contacts that slip (`behaviour` is SLIPPING); all arguments of one shape."""
-    limits = slip_limits(b_bar, phi) if limits is None else limits
-    mark_P, mark_N = _marks(n0_bar, b_bar, limits)
-    opens = n0_bar < b_bar
-    # b +- n0 are exact or nearly so where they are small, and carry theta_1 to full accuracy at both ends
-    above = np.sqrt(np.where(opens, b_bar + n0_bar, 1.0))
-    below = np.sqrt(np.where(opens, b_bar - n0_bar, 0.0))
-    theta_1 = 2.0 * np.arctan2(above, below)
-    closing_rate = above * below
-    start, last = _ends(n0_bar, b_bar, limits, mark_N, opens, closing_rate)
-    length = 2.0 * theta_1
-    to_P = angle_from(*start, limits.sin_P, limits.cos_P)
-    to_N = np.where(opens, angle_from(*start, limits.sin_N, limits.cos_N), length)
-
-    # The marks in the order in which they come; one that the contact does not reach is replaced by the last.
-    # A contact that never opens always comes by theta_P, if only at the very end.
-    to_P = np.where(opens, to_P, np.minimum(to_P, length))
-    has_P, has_N = (to_P < length) | ~opens, to_N < length
-    P_first = has_P & (~has_N | (to_P <= to_N))
-    N_first = has_N & ~P_first
-    P_second, N_second = has_P & N_first, has_N & P_first
-    to_1 = np.where(P_first, to_P, np.where(N_first, to_N, length))
-    to_2 = np.where(P_second, to_P, np.where(N_second, to_N, length))
-    marks = (
-        _choose(P_first, mark_P, N_first, mark_N, last),
-        _choose(P_second, mark_P, N_second, mark_N, last),
-        last,
-    )
-    turns = ((P_first, N_first), (P_second, N_second), (np.zeros_like(opens), ~opens))
-
-    # (20) to (22): what follows the separation
-    slips_at_once = np.where(
-        opens & (start.cos >= closing_rate), 1.0, np.where(opens & (-start.cos >= closing_rate), -1.0, 0.0)
-    )
-    w = np.where(opens, start.sin, mark_N.upper)
-    spans: list[Span] = []
-    for mark, (is_P, is_N), span_length in zip(marks, turns, (to_1, to_2 - to_1, length - to_2), strict=True):
-        span = _span(w, mark, span_length, slips_at_once, b_bar, is_P, is_N)
-        spans.append(span)
-        w = span.w_end
-        # A slip that did not end here goes on; but one by a limit that recedes, a rounding error made up.
-        slips_at_once = np.where(span.turns | (span.slope < 0.0), 0.0, span.side)
-    safe_rate = np.where(closing_rate > 0.0, closing_rate, 1.0)
-    pull = np.where(opens, np.clip(start.cos, -safe_rate, safe_rate) / safe_rate, -1.0)
-    return Cycle(limits, opens, theta_1, closing_rate, start, pull, (spans[0], spans[1], spans[2]))
-
-
-def _ends(
-    n0_bar: FloatArray,
-    b_bar: FloatArray,
-    limits: SlipLimits,
-    mark_N: _Mark,
-    opens: BoolArray,
-    closing_rate: FloatArray,
-) -> tuple[Direction, _Mark]:
-    """Start and last mark: (A3) and (A2) where the contact opens, twice theta_N where it does not."""
-    safe_b = np.where(opens, b_bar, 1.0)
-    cos_1, sin_1 = -n0_bar / safe_b, closing_rate / safe_b  # of theta_1
-    s, c = limits.sin_phi, limits.cos_phi
-    start = Direction(
-        np.where(opens, c * cos_1 - s * sin_1, limits.sin_N),
-        np.where(opens, s * cos_1 + c * sin_1, limits.cos_N),
-    )
-    end = Direction(
-        np.where(opens, c * cos_1 + s * sin_1, limits.sin_N),
-        np.where(opens, s * cos_1 - c * sin_1, limits.cos_N),
-    )
-    last = _Mark(
-        at=end,
-        lower=np.where(opens, end.sin, mark_N.lower),
-        upper=np.where(opens, end.sin, mark_N.upper),
-        slope=(
-            np.where(opens, closing_rate + end.cos, mark_N.slope[0]),
-            np.where(opens, closing_rate - end.cos, mark_N.slope[1]),
-        ),
-        curvature=(
-            np.where(opens, n0_bar + end.sin, mark_N.curvature[0]),
-            np.where(opens, n0_bar - end.sin, mark_N.curvature[1]),
-        ),
-    )
-    return start, last
-
-
-def _choose(is_P: BoolArray, P: _Mark, is_N: BoolArray, N: _Mark, last: _Mark) -> _Mark:
-    def pick(p: FloatArray, n: FloatArray, o: FloatArray) -> FloatArray:
-        return np.where(is_P, p, np.where(is_N, n, o))
-
-    return _Mark(
-        Direction(pick(P.at.sin, N.at.sin, last.at.sin), pick(P.at.cos, N.at.cos, last.at.cos)),
-        pick(P.lower, N.lower, last.lower),
-        pick(P.upper, N.upper, last.upper),
-        (pick(P.slope[0], N.slope[0], last.slope[0]), pick(P.slope[1], N.slope[1], last.slope[1])),
-        (
-            pick(P.curvature[0], N.curvature[0], last.curvature[0]),
-            pick(P.curvature[1], N.curvature[1], last.curvature[1]),
-        ),
-    )
-
-
-def _span(
-    w: FloatArray,
-    mark: _Mark,
-    length: FloatArray,
-    slips_at_once: FloatArray,
-    b_bar: FloatArray,
-    is_P: BoolArray,
-    is_N: BoolArray,
-) -> Span:
-    w_end = np.maximum(mark.lower, np.minimum(w, mark.upper))
-    side = np.sign(w_end - w)
-    positive = side >= 0.0
-    slope = np.where(positive, mark.slope[0], mark.slope[1])
-    curvature = np.where(positive, mark.curvature[0], mark.curvature[1])
-    slip = np.minimum(_slip_angle(np.abs(w_end - w), slope, curvature, b_bar), length)
-    slip = np.where((side != 0.0) & (slips_at_once == side), length, slip)
-    turns = (is_P & (side > 0.0)) | (is_N & (side < 0.0))
-    return Span(length, slip, side, w, w_end, mark.at, slope, curvature, turns)
-
-
-def _slip_angle(
-    change: FloatArray, slope: FloatArray, curvature: FloatArray, b_bar: FloatArray
-) -> FloatArray:
-    """Duration y of a slip that moves w by change: slope sin(y) + curvature (1 - cos(y)) = change.
-
-    This is (A8), (A11) to (A13) measured back from the end of the slip, in the form that keeps its
-    relative accuracy for the shortest slips and has no arccos of a number that may exceed 1.
+    Of a span: from the direction ``start`` to ``end`` it is ``length`` [rad]: stick, then slip; either may be
+    absent. The slip is ``slip`` [rad], from the direction ``begin`` on; ``sin``, ``versine`` and ``deficit``
+    are the three of `arc`. ``side`` is +1 for positive slip, -1 for negative, 0 for none; w goes from
+    ``w_start`` to ``w_end``, and side (slope sin(y) + curvature (1 - cos(y))) of it in the last y [rad].
     """
-    scale = 1.0 / np.maximum(1.0, b_bar)
-    change, slope, curvature = change * scale, slope * scale, curvature * scale
-    root = np.sqrt(np.maximum(slope * slope + change * (2.0 * curvature - change), 0.0))
-    return 2.0 * np.arctan2(change, np.maximum(slope + root, 0.0))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def take(self) -> cython.void:
+        """What is made of a span; called at the end of each."""
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def find(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.int:
+        """What a contact does; where it is SLIPPING, its cycle has been gone through."""
+        behaviour: cython.int = self.place(n0_bar, b_bar, phi)
+        if behaviour == SLIPPING:
+            self._pass()
+        return behaviour
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def place(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.int:
+        """What a contact does. An infinite n0_bar is as any very large one."""
+        if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
+            return UNKNOWN
+        # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
+        shrink: cython.double = SHRINK if b_bar > LARGEST else 1.0
+        self.n0 = min(max(n0_bar * shrink, -FARTHEST), FARTHEST)
+        self.b = b_bar * shrink
+        self._limits(phi)
+        if self.n0 <= -self.b or (self.b == 0.0 and self.n0 <= 0.0):
+            return OPEN
+        if self.n0 >= self.b and self.lower_P <= self.upper_N:
+            return STUCK
+        return SLIPPING
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def stuck_force(self) -> cython.double:
+        """Mean force of a contact that never slips: the admissible one nearest to zero."""
+        return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _limits(self, phi: cython.double) -> cython.void:
+        """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
+
+        theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
+        branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
+        (b = 1 at phi = 0 or pi) the limit is constant, and any angle serves.
+        """
+        b: cython.double = self.b
+        sin_half: cython.double = sin(0.5 * phi)
+        cos_half: cython.double = cos(0.5 * phi)
+        self.sin_phi = 2.0 * sin_half * cos_half
+        self.cos_phi = (cos_half - sin_half) * (cos_half + sin_half)
+        # 1 -+ b cos(phi), written so that nothing cancels near b = 1 with phi near 0 or pi
+        minus: cython.double = (1.0 - b) + 2.0 * b * sin_half * sin_half
+        plus: cython.double = (1.0 - b) + 2.0 * b * cos_half * cos_half
+        side: cython.double = b * self.sin_phi
+        self.ell_1, self.ell_2 = hypot(minus, side), hypot(plus, side)
+        self.sin_P, self.cos_P, self.sin_N, self.cos_N = 1.0, 0.0, -1.0, 0.0
+        if self.ell_1 > 0.0:
+            self.sin_P, self.cos_P = minus / self.ell_1, -side / self.ell_1
+        if self.ell_2 > 0.0:
+            self.sin_N, self.cos_N = -plus / self.ell_2, -side / self.ell_2
+        # the extremes of the limits, by ell - b without the cancellation at large b
+        twice: cython.double = 2.0 * b * self.cos_phi
+        self.lower_P = (1.0 - twice) / (self.ell_1 + b) - (self.n0 - b)
+        self.upper_N = (self.n0 - b) - (1.0 + twice) / (self.ell_2 + b)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _pass(self) -> cython.void:
+        """Through the spans, in the order in which theta_P and theta_N come while the contact is closed."""
+        self._start()
+        length: cython.double = 2.0 * self.theta_1
+        to_P: cython.double = angle_from(self.first_sin, self.first_cos, self.sin_P, self.cos_P)
+        to_N: cython.double = length
+        if self.opens:
+            to_N = angle_from(self.first_sin, self.first_cos, self.sin_N, self.cos_N)
+        else:  # always comes by theta_P, if only at the very end
+            to_P = min(to_P, length)
+        P_comes: cython.bint = to_P < length or not self.opens
+        N_comes: cython.bint = to_N < length
+        if P_comes and N_comes and to_P <= to_N:
+            self._until_P(to_P)
+            self._until_N(to_N - to_P)
+            length -= to_N
+        elif P_comes and N_comes:
+            self._until_N(to_N)
+            self._until_P(to_P - to_N)
+            length -= to_P
+        elif P_comes:
+            self._until_P(to_P)
+            length -= to_P
+        elif N_comes:
+            self._until_N(to_N)
+            length -= to_N
+        if self.opens:
+            self._until_open(length)
+        else:
+            self._until_N(length)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _start(self) -> cython.void:
+        """Where the cycle starts, (A3), and what follows a separation, (20) to (22)."""
+        self.span = 0
+        self.opens = self.n0 < self.b
+        self.goes_on, self.side = False, 0.0
+        if not self.opens:
+            self.theta_1, self.closing_rate, self.pull = PI, 0.0, -1.0
+            self.first_sin, self.first_cos, self.w_end = self.sin_N, self.cos_N, self.upper_N
+        else:
+            # b +- n0 are exact or nearly so where they are small: theta_1 is accurate at both ends
+            above: cython.double = sqrt(self.b + self.n0)
+            below: cython.double = sqrt(self.b - self.n0)
+            self.theta_1, self.closing_rate = 2.0 * atan2(above, below), above * below
+            cos_1: cython.double = -self.n0 / self.b
+            sin_1: cython.double = self.closing_rate / self.b
+            self.first_sin = self.cos_phi * cos_1 - self.sin_phi * sin_1
+            self.first_cos = self.sin_phi * cos_1 + self.cos_phi * sin_1
+            self.w_end = self.first_sin
+            self.goes_on = fabs(self.first_cos) >= self.closing_rate
+            if self.goes_on:
+                self.side = self.pull = 1.0 if self.first_cos >= 0.0 else -1.0
+            else:
+                self.pull = self.first_cos / self.closing_rate
+        self.end_sin, self.end_cos = self.first_sin, self.first_cos
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _until_P(self, length: cython.double) -> cython.void:
+        """Up to theta_P, where positive slip ends."""
+        self._until(self.lower_P, 2.0 * self.sin_P - self.lower_P, length)
+        self.end_sin, self.end_cos = self.sin_P, self.cos_P
+        if self.side > 0.0:
+            self._slip(0.0, self.ell_1, True)
+        elif self.side < 0.0:
+            self._slip(-2.0 * self.cos_P, self.ell_1 - 2.0 * self.sin_P, False)
+        self._end()
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _until_N(self, length: cython.double) -> cython.void:
+        """Up to theta_N, where negative slip ends."""
+        self._until(2.0 * self.sin_N - self.upper_N, self.upper_N, length)
+        self.end_sin, self.end_cos = self.sin_N, self.cos_N
+        if self.side < 0.0:
+            self._slip(0.0, self.ell_2, True)
+        elif self.side > 0.0:
+            self._slip(2.0 * self.cos_N, self.ell_2 + 2.0 * self.sin_N, False)
+        self._end()
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _until_open(self, length: cython.double) -> cython.void:
+        """Up to the separation, (A2), where both limits are sin(theta)."""
+        cos_1: cython.double = -self.n0 / self.b
+        sin_1: cython.double = self.closing_rate / self.b
+        sin_end: cython.double = self.cos_phi * cos_1 + self.sin_phi * sin_1
+        self._until(sin_end, sin_end, length)
+        self.end_sin, self.end_cos = sin_end, self.sin_phi * cos_1 - self.cos_phi * sin_1
+        if self.side != 0.0:
+            self._slip(
+                self.closing_rate + self.side * self.end_cos, self.n0 + self.side * self.end_sin, False
+            )
+        self._end()
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _until(self, lower: cython.double, upper: cython.double, length: cython.double) -> cython.void:
+        """The whole of a span in one clip: w between the limits as they are at its end."""
+        self.start_sin, self.start_cos, self.length = self.end_sin, self.end_cos, length
+        self.w_start = self.w_end
+        self.w_end = max(lower, min(self.w_start, upper))
+        before: cython.double = self.side
+        self.side = 0.0
+        if self.w_end > self.w_start:
+            self.side = 1.0
+        elif self.w_end < self.w_start:
+            self.side = -1.0
+        self.goes_on = self.goes_on and self.side == before
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _slip(self, slope: cython.double, curvature: cython.double, turns: cython.bint) -> cython.void:
+        """How long the slip of a span lasts: slope sin(y) + curvature (1 - cos(y)) = change of w.
+
+        This is (A8), (A11) to (A13) measured back from the end of the slip, in the form that keeps its
+        relative accuracy for the shortest slips and has no arccos of a number that may exceed 1.
+        """
+        self.slope, self.curvature, self.slip = slope, curvature, self.length
+        if not self.goes_on:
+            scale: cython.double = 1.0 / max(1.0, self.b)
+            change: cython.double = fabs(self.w_end - self.w_start) * scale
+            rise: cython.double = slope * scale
+            root: cython.double = sqrt(max(rise * rise + change * (2.0 * curvature * scale - change), 0.0))
+            self.slip = min(2.0 * atan2(change, max(rise + root, 0.0)), self.length)
+        # one that its own limit ends is over; one by a limit that recedes, a rounding error made up
+        self.goes_on = not turns and slope >= 0.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _end(self) -> cython.void:
+        """The end of a span."""
+        if self.side == 0.0:
+            self.goes_on = False
+            self.slip = self.sin = self.versine = self.deficit = 0.0
+            self.begin_sin, self.begin_cos = self.end_sin, self.end_cos
+        else:
+            self.sin, self.versine, self.deficit = arc(self.slip)
+            self.begin_sin = self.end_sin - self.end_sin * self.versine - self.end_cos * self.sin
+            self.begin_cos = self.end_cos - self.end_cos * self.versine + self.end_sin * self.sin
+        self.take()
+        self.span += 1

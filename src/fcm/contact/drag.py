@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.contact.cycle import OPEN, SLIPPING, Cycle, behaviour, cycle
-from fcm.contact.limits import FloatArray, SlipLimits, slip_limits
+from fcm.contact.limits import FloatArray
+from fcm.contact.record import Cycles, Record
+
+STUCK, SLIPPING = 0, 1  # as in `cycle`
 
 
 def drift_resistance(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> FloatArray:
@@ -22,22 +24,18 @@ def drift_resistance(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> 
     >>> drift_resistance(np.array([0.0, 0.5, 9.0]), np.zeros(3), np.zeros(3)).round(6).tolist()
     [0.0, 0.392699, 3.141593]
     """
-    limits = slip_limits(b_bar, phi)
-    code = behaviour(n0_bar, b_bar, limits)
-    total = np.where(code == OPEN, 0.0, (2.0 * np.pi) ** 2)
-    moving = np.flatnonzero(code == SLIPPING)
-    some = SlipLimits(*(x[moving] for x in limits))
-    total[moving] = _squares(cycle(n0_bar[moving], b_bar[moving], phi[moving], some))
+    cycles = Record().of(np.stack((n0_bar, b_bar, phi)))
+    total = np.where(cycles.behaviour == STUCK, (2.0 * np.pi) ** 2, 0.0)
+    total = np.where(cycles.behaviour == SLIPPING, _squares(cycles), total)
     resistance: FloatArray = total / (4.0 * np.pi)
     return resistance
 
 
-def _squares(path: Cycle) -> FloatArray:
+def _squares(cycles: Cycles) -> FloatArray:
     """Sum of the squared lengths of the stick regions of a cycle; one may extend over several spans."""
-    total, length = np.zeros_like(path.theta_1), np.zeros_like(path.theta_1)
-    for span in path.spans:
-        length = length + (span.length - span.slip)
-        ends = span.slip > 0.0
-        total += np.where(ends, length * length, 0.0)
-        length = np.where(ends, 0.0, length)
+    total, length = np.zeros_like(cycles.theta_1), np.zeros_like(cycles.theta_1)
+    for whole, slip in zip(cycles.spans.length, cycles.spans.slip, strict=True):
+        length = length + (whole - slip)
+        total += np.where(slip > 0.0, length * length, 0.0)
+        length = np.where(slip > 0.0, 0.0, length)
     return total + length * length

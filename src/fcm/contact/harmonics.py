@@ -10,9 +10,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.cycle import SLIPPING, Cycle, Direction, Span, behaviour, cycle
-from fcm.contact.limits import FloatArray, SlipLimits, slip_limits
+from fcm.contact.limits import FloatArray
 from fcm.contact.normal import contact_angle
+from fcm.contact.record import Cycles, Record, Spans
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -27,38 +27,35 @@ def friction_harmonics(
     [0.0, 0.106103]
     """
     k = np.asarray(orders, dtype=np.float64)[:, None]
-    F = np.zeros((k.size, n0_bar.size), dtype=np.complex128)
-    limits = slip_limits(b_bar, phi)
-    moving = np.flatnonzero(behaviour(n0_bar, b_bar, limits) == SLIPPING)
-    some = SlipLimits(*(x[moving] for x in limits))
-    path = cycle(n0_bar[moving], b_bar[moving], phi[moving], some)
-    total = sum(_slip(span, k) for span in path.spans) + _separation(path, k)
-    F[:, moving] = -total / (np.pi * k)
+    cycles = Record().of(np.stack((n0_bar, b_bar, phi)))
+    total = sum(_slip(Spans(*span), k) for span in np.stack(cycles.spans, axis=1))
+    F: ComplexArray = -(total + _separation(cycles, k)) / (np.pi * k)
     return F
 
 
 def normal_harmonics(n0_star: FloatArray, orders: npt.ArrayLike) -> ComplexArray:
     """Harmonics N_k [-] of max(n0_star + sin(theta), 0) for k > 1; (point,) gives (order, point)."""
     k = np.asarray(orders, dtype=np.float64)[:, None]
-    theta_1, _, _ = contact_angle(n0_star)
+    theta_1 = contact_angle(n0_star)
     rate = _of_cosine(0.5 * np.pi - theta_1, 0.5 * np.pi + theta_1, k)
     N: ComplexArray = rate * (np.abs(n0_star) < 1.0) / (np.pi * k)
     return N
 
 
-def _slip(span: Span, k: FloatArray) -> ComplexArray:
-    """Over a slip w' = side (slope cos(y) + curvature sin(y)), y before its end."""
+def _slip(span: Spans, k: FloatArray) -> ComplexArray:
+    """Over the slip of one span w' = side (slope cos(y) + curvature sin(y)), y before its end."""
     plus, minus = _exponential(k + 1.0, span.slip), _exponential(k - 1.0, span.slip)
     rate = 0.5 * span.slope * (plus + minus) - 0.5j * span.curvature * (plus - minus)
-    moved: ComplexArray = span.side * np.exp(-1j * k * _angle(span.end)) * rate
+    end = np.arctan2(span.end_sin, span.end_cos)
+    moved: ComplexArray = span.side * np.exp(-1j * k * end) * rate
     return moved
 
 
-def _separation(path: Cycle, k: FloatArray) -> ComplexArray:
+def _separation(cycles: Cycles, k: FloatArray) -> ComplexArray:
     """While the contact is open w = sin(theta)."""
-    closes = _angle(path.start) + 2.0 * np.pi
-    opens = closes - 2.0 * np.pi + 2.0 * path.theta_1
-    return np.where(path.opens, _of_cosine(opens, closes, k), 0.0)
+    closes = np.arctan2(cycles.first_sin, cycles.first_cos) + 2.0 * np.pi
+    opens = closes - 2.0 * np.pi + 2.0 * cycles.theta_1
+    return np.where(cycles.opens, _of_cosine(opens, closes, k), 0.0)
 
 
 def _of_cosine(start: FloatArray, end: FloatArray, k: FloatArray) -> ComplexArray:
@@ -73,7 +70,3 @@ def _exponential(order: FloatArray, end: FloatArray) -> ComplexArray:
     """Integral of exp(i order y) from 0 to end."""
     whole: ComplexArray = (np.exp(1j * order * end) - 1.0) / (1j * order)
     return whole
-
-
-def _angle(at: Direction) -> FloatArray:
-    return np.arctan2(at.sin, at.cos)

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.cycle import OPEN, SLIPPING, STUCK, Cycle, behaviour, cycle, stuck_force
-from fcm.contact.limits import BoolArray, FloatArray, slip_limits, within_range
-
-# A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
-INVISIBLE = 1e-15
+from fcm.contact.limits import FloatArray
+from fcm.contact.sequence import Sequence, word
 
 
 @dataclass(frozen=True)
@@ -103,84 +99,15 @@ def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:
         raise ValueError("n0_bar, b_bar and phi must be finite numbers")
     if b_bar < 0.0:
         raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
-    n0, b = within_range(np.array([n0_bar]), np.array([b_bar]))
-    ph = np.array([phi])
-    limits = slip_limits(b, ph)
-    code = behaviour(n0, b, limits)[0]
-    if code == OPEN:
-        return Loop(n0_bar, b_bar, phi, "S", np.empty(0), np.full(1, np.nan))
-    path = cycle(n0, b, ph, limits)
-    regions = [] if code == STUCK else _regions(path)
-    if all(state == "E" for state, _, _ in regions):
-        return Loop(n0_bar, b_bar, phi, "E", np.empty(0), -stuck_force(n0, b, limits))
-    sequence = "".join(state for state, _, _ in regions)
-    since = np.array([angle for _, angle, _ in regions])
+    first, regions = Sequence().loop(n0_bar, b_bar, phi)
+    letters, since, w = regions.T
+    sequence = "".join(word(int(letter)) for letter in letters)
+    if len(sequence) == 1:
+        return Loop(n0_bar, b_bar, phi, sequence, np.empty(0), w)
     since = np.clip(np.maximum.accumulate(since), 0.0, 2.0 * np.pi)
-    angles = np.mod(_first_angle(path) + since, 2.0 * np.pi)
+    angles = np.mod(first + since, 2.0 * np.pi)
     angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
-    return Loop(n0_bar, b_bar, phi, sequence, angles, np.array([w for _, _, w in regions]), since)
-
-
-class _Shown(NamedTuple):
-    """What a span adds to the sequence."""
-
-    stick: BoolArray  # True where a new stick region begins
-    side: FloatArray  # of the slip region that begins, 0 where none does
-    slip: FloatArray  # how long before the end of the span it begins [rad]
-
-
-def _regions(path: Cycle) -> list[tuple[str, float, float]]:
-    """(state, angle since the first begins, w while it sticks) in order, from a cycle of one contact."""
-    since = 2.0 * (np.pi - float(path.theta_1[0]))
-    regions = [("S", 0.0, np.nan)] if path.opens[0] else []
-    for span, shown in zip(path.spans, _shown(path), strict=True):
-        if shown.stick[0]:
-            regions.append(("E", since, float(span.w_start[0])))
-        since += float(span.length[0])
-        if shown.side[0]:
-            regions.append(("P" if shown.side[0] > 0.0 else "N", since - float(shown.slip[0]), np.nan))
-    return regions
-
-
-def _first_angle(path: Cycle) -> float:
-    """Where the first state begins: separation, or the stick after negative slip."""
-    first = path.spans[2].end if path.opens[0] else path.start
-    return float(np.arctan2(first.sin[0], first.cos[0]))
-
-
-def _shown(path: Cycle) -> list[_Shown]:
-    """The regions of each span that float64 can tell from none, and those without which the others cannot be.
-
-    Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
-    slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
-    """
-    regions = []
-    state = np.where(path.opens, 2.0, -1.0)  # +1 positive slip, -1 negative slip, 0 stick, 2 separation
-    last_slip = np.zeros(path.opens.shape)
-    for index, span in enumerate(path.spans):
-        side = _visible_side(path, index)
-        sticks = span.length - np.where(side != 0.0, span.slip, 0.0) > INVISIBLE
-        stick = (state != 0.0) & (sticks | ((side != 0.0) & (state == -side)))
-        state = np.where(stick, 0.0, state)
-        if index == 2:
-            side = np.where(path.opens & (state == 0.0) & (side == 0.0), -last_slip, side)
-        begins = np.where(state == side, 0.0, side)
-        state = np.where(side != 0.0, side, state)
-        last_slip = np.where(side != 0.0, side, last_slip)
-        regions.append(_Shown(stick, begins, np.where(span.side == side, span.slip, 0.0)))
-    return regions
-
-
-def _visible_side(path: Cycle, index: int) -> FloatArray:
-    """Side of the slip in a span, 0 where there is none to be seen."""
-    moves = [np.abs(span.w_end - span.w_start) > INVISIBLE for span in path.spans]
-    side = np.where(moves[index], path.spans[index].side, 0.0)
-    # where the contact never opens there are both slips, equally large, or none
-    both = moves[0] | moves[1]
-    return np.where(path.opens, side, np.where(both, (1.0, -1.0, 0.0)[index], 0.0))
-
-
-LETTERS = " EPNS"
+    return Loop(n0_bar, b_bar, phi, sequence, angles, w, since)
 
 
 def sequences(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -> npt.NDArray[np.str_]:
@@ -190,32 +117,7 @@ def sequences(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -
     ['E', 'EPEN', 'S']
     """
     broadcast = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (n0_bar, b_bar, phi)))
-    n0, b, ph = (np.ascontiguousarray(x).reshape(-1) for x in broadcast)
-    digits = np.zeros(n0.size, dtype=np.int64)  # the letters of a sequence as a number in base 5
-    known = np.flatnonzero(~np.isnan(n0) & np.isfinite(b) & np.isfinite(ph))
-    n0, b = within_range(n0[known], b[known])
-    ph = ph[known]
-    code = behaviour(n0, b, slip_limits(b, ph))
-    digits[known] = np.where(code == OPEN, LETTERS.index("S"), LETTERS.index("E"))
-    slips = code == SLIPPING
-    digits[known[slips]] = _digits(cycle(n0[slips], b[slips], ph[slips]))
-    values, which = np.unique(digits, return_inverse=True)
-    names = np.array([_word(int(value)) for value in values], dtype="<U6")
+    codes = Sequence().codes(np.stack([x.reshape(-1) for x in broadcast]))
+    values, which = np.unique(codes, return_inverse=True)
+    names = np.array([word(int(value)) for value in values], dtype="<U6")
     return names[which].reshape(broadcast[0].shape)
-
-
-def _digits(path: Cycle) -> npt.NDArray[np.int64]:
-    digits = np.where(path.opens, LETTERS.index("S"), 0)
-    for shown in _shown(path):
-        digits = np.where(shown.stick, digits * 5 + LETTERS.index("E"), digits)
-        letter = np.where(shown.side > 0.0, LETTERS.index("P"), LETTERS.index("N"))
-        digits = np.where(shown.side != 0.0, digits * 5 + letter, digits)
-    return digits
-
-
-def _word(digits: int) -> str:
-    word = ""
-    while digits:
-        digits, letter = divmod(digits, 5)
-        word = LETTERS[letter] + word
-    return word

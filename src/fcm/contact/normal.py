@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.contact.normal_load import normal_loads
 
 
 def normal_coefficients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -34,11 +35,8 @@ def normal_coefficients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]
     >>> N_b.round(6).tolist(), N_s.tolist()
     ([0.0, 0.31831, 3.0], [0.0, 0.5, 1.0])
     """
-    n0_star = np.asarray(n0_star, dtype=np.float64)
-    theta_1, sin_1, inside = contact_angle(n0_star)
-    N_s = (inside * sin_1 + theta_1) / np.pi
-    N_b = np.where(np.abs(n0_star) <= 1.0, (sin_1 + inside * theta_1) / np.pi, np.maximum(n0_star, 0.0))
-    return N_b[()], np.where(np.isnan(n0_star), np.nan, N_s)[()]
+    N_b, N_s, _, _ = _numbers(n0_star)
+    return N_b, N_s
 
 
 def normal_gradients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -47,12 +45,19 @@ def normal_gradients(n0_star: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     >>> normal_gradients(0.0)[0].item()
     0.5
     """
-    theta_1, sin_1, _ = contact_angle(np.asarray(n0_star, dtype=np.float64))
-    return theta_1 / np.pi, 2.0 * sin_1 / np.pi
+    _, _, dN_b, dN_s = _numbers(n0_star)
+    return dN_b, dN_s
 
 
-def contact_angle(n0_star: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """theta_1 of (30), its sine, and n0_star clipped to [-1, 1]; accurate at both ends."""
-    inside = np.clip(n0_star, -1.0, 1.0)
-    closed, open_ = np.sqrt(1.0 + inside), np.sqrt(1.0 - inside)
-    return 2.0 * np.arctan2(closed, open_), closed * open_, inside
+def _numbers(n0_star: npt.ArrayLike) -> FloatArray:
+    """Coefficients and derivatives, shape (4, ...)."""
+    at = np.asarray(n0_star, dtype=np.float64)
+    numbers = np.empty((4, at.size))
+    normal_loads(at.ravel(), numbers)
+    return numbers.reshape(4, *at.shape)
+
+
+def contact_angle(n0_star: FloatArray) -> FloatArray:
+    """theta_1 of (30), half the contact duration [rad]."""
+    theta_1: FloatArray = np.pi * normal_gradients(n0_star)[0]
+    return theta_1

@@ -23,7 +23,10 @@ def normal_load(n0_star: cython.double) -> tuple[cython.double, cython.double, c
     return N_b, (inside * sin_1 + theta_1) / PI, theta_1 / PI, 2.0 * sin_1 / PI
 
 
-def normal_loads(n0_star: cython.double[::1], N: cython.double[:, ::1]) -> None:
+def normal_loads(
+    n0_star: cython.const[cython.double][::1],  # type: ignore[valid-type]
+    N: cython.double[:, ::1],
+) -> None:
     """The four numbers of `normal_load` of many contacts: n0_star (point,), N (4, point)."""
     i: cython.Py_ssize_t
     with cython.nogil:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.contact.fourier import fourier_coefficients
-from fcm.contact.limits import BoolArray, FloatArray, slip_limits
+from fcm.contact.limits import BoolArray, FloatArray, slip_limit
 from fcm.contact.loop import sequences
 
 COEFFICIENTS = ("F_b", "F_s", "F_c")
@@ -75,9 +75,7 @@ def boundaries(b_bar: FloatArray, phi: float) -> dict[str, FloatArray]:
     >>> {name: n0.tolist() for name, n0 in boundaries(np.array([0.0, 0.5]), 0.0).items()}
     {'open': [-0.0, -0.5], 'separation': [0.0, 0.5], 'slip': [1.0, 1.0]}
     """
-    limits = slip_limits(b_bar, np.full_like(b_bar, phi))
-    width = 0.5 * (limits.ell_1_excess + limits.ell_2_excess)
-    return {"open": -b_bar, "separation": b_bar, "slip": b_bar + np.maximum(width, 0.0)}
+    return {"open": -b_bar, "separation": b_bar, "slip": slip_limit(b_bar, phi)}
 
 
 @dataclass(frozen=True)

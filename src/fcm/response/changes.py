@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.contact.cycle import OPEN, STUCK, behaviour, stuck_force
-from fcm.contact.limits import FloatArray, slip_limits, within_range
+from fcm.contact.fourier import fourier_coefficients
+from fcm.contact.limits import FloatArray, regime_boundaries
 from fcm.response.balance import Balance
 from fcm.response.branches import hang_together
 from fcm.response.law import UNKNOWNS, Law
@@ -90,11 +90,9 @@ def _along(segments: Segments, step: FloatArray, direction: FloatArray) -> Float
 
 def _regimes(law: Law, z: FloatArray) -> IntArray:
     """A number for each contact at each point, (point, contact): equal where the force is smooth between."""
-    n0_bar, b_bar, phi = law.arguments(z[:, :-1].reshape(z.shape[0], law.mu.shape[1], UNKNOWNS))
-    n0_bar, b_bar = within_range(n0_bar, b_bar)
-    limits = slip_limits(b_bar, phi)
-    code = behaviour(n0_bar, b_bar, limits)
-    separates = (n0_bar < b_bar) & (code != OPEN)
-    drawn = np.where(code == STUCK, np.sign(stuck_force(n0_bar, b_bar, limits)), 0.0)
-    regime: IntArray = (100 * code + 10 * separates + drawn).astype(np.intp)
+    contacts = law.arguments(z[:, :-1].reshape(z.shape[0], law.mu.shape[1], UNKNOWNS))
+    touches, stays_closed, sticks = (side >= 0.0 for side in regime_boundaries(*contacts))
+    stuck = stays_closed & sticks
+    drawn = np.where(stuck, np.sign(fourier_coefficients(*contacts)[0]), 0.0)
+    regime: IntArray = (100 * stuck + 20 * stays_closed + 10 * touches + drawn).astype(np.intp)
     return regime

@@ -13,7 +13,7 @@ import numpy as np
 
 from fcm.contact.fourier import fourier_gradients
 from fcm.contact.limits import FloatArray
-from fcm.contact.normal import contact_angle
+from fcm.contact.normal import normal_coefficients, normal_gradients
 from fcm.response.structure import IntArray
 
 UNKNOWNS, FORCES = 5, 6  # of one contact
@@ -92,11 +92,9 @@ class Law:
         open_or_closed = np.where(load > 0.0, 2.0, -2.0)  # beyond +-1 only the sign matters
         inside = np.abs(load) < variation
         n0_star = np.where(inside, load / np.where(inside, variation, 1.0), open_or_closed)
-        theta_1, sin_1, star = contact_angle(n0_star)
-        N_s = (star * sin_1 + theta_1) / np.pi
-        dN_s, dN_b = 2.0 * sin_1 / np.pi, theta_1 / np.pi
+        (N_b, N_s), (dN_b, dN_s) = normal_coefficients(n0_star), normal_gradients(n0_star)
         direction = v / np.maximum(b, SMALLEST)[..., None]
-        pulsating = variation * (sin_1 + star * theta_1) / np.pi - np.maximum(self.n_0, 0.0)
+        pulsating = variation * N_b - np.maximum(self.n_0, 0.0)
         # closed throughout, without the preload: it may be far larger than what is left
         closed = self.k_v * x[..., 4] + np.minimum(self.n_0, 0.0)
         steady = np.where(load > 0.0, closed, -np.maximum(self.n_0, 0.0))
@@ -104,11 +102,11 @@ class Law:
         force[..., 5] = np.where(inside, pulsating, steady)
         # v dN_s = direction dN_s (dv_mean - n0_star db)
         along = (self.k_v * dN_s)[..., None] * direction
-        tangent[..., 2:4, 2:4] = -(along * star[..., None])[..., None] * direction[..., None, :]
+        tangent[..., 2:4, 2:4] = -(along * n0_star[..., None])[..., None] * direction[..., None, :]
         tangent[..., 2, 2] += self.k_v * N_s
         tangent[..., 3, 3] += self.k_v * N_s
         tangent[..., 2:4, 4] = along
-        tangent[..., 5, 2:4] = (self.k_v * np.where(inside, sin_1 / np.pi, 0.0))[..., None] * direction
+        tangent[..., 5, 2:4] = (self.k_v * 0.5 * dN_s)[..., None] * direction
         tangent[..., 5, 4] = self.k_v * dN_b
 
     def _friction(self, x: FloatArray, force: FloatArray, tangent: FloatArray) -> None:

@@ -1,0 +1,5 @@
+from fcm.contact.cycle cimport Cycle
+from fcm.contact.law cimport Law
+
+cdef class Boundaries(Law):
+    cdef Cycle cycle

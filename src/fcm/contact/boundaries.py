@@ -1,0 +1,59 @@
+"""Kernel: the boundaries between the regimes of a contact, as signed functions with their derivatives.
+
+A contact is fully open where n0 + b < 0, opens and closes within the cycle where n0 - b < 0 < n0 + b, and of
+the rest slips where n0 - (ell_1 + ell_2) / 2 < 0, the slip limit (25), and sticks above. The functions are
+smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
+"""
+
+import cython
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.cycle import Cycle
+    from cython.cimports.fcm.contact.law import Law
+else:
+    from fcm.contact.cycle import Cycle
+    from fcm.contact.law import Law
+
+NAN = cython.declare(cython.double, float("nan"))
+UNKNOWN = cython.declare(cython.int, -1)  # as in `cycle`
+
+
+@cython.cclass
+class Boundaries(Law):
+    """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, laid out as coefficients and their gradients."""
+
+    def __init__(self) -> None:
+        self.cycle = Cycle()
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def evaluate(
+        self,
+        n0_bar: cython.double,
+        b_bar: cython.double,
+        phi: cython.double,
+        gradient: cython.bint,
+        out: cython.double[::1],
+        at: cython.Py_ssize_t,
+    ) -> cython.void:
+        """See `Law`."""
+        i: cython.Py_ssize_t
+        if self.cycle.place(n0_bar, b_bar, phi) == UNKNOWN:
+            for i in range(12 if gradient else 3):
+                out[at + i] = NAN
+            return
+        out[at] = self.cycle.n0 + self.cycle.b
+        out[at + 1] = self.cycle.n0 - self.cycle.b
+        out[at + 2] = 0.5 * (self.cycle.upper_N - self.cycle.lower_P)
+        if gradient:
+            for i in range(3):
+                out[at + 3 + 3 * i] = 1.0
+            out[at + 4], out[at + 5] = 1.0, 0.0
+            out[at + 7], out[at + 8] = -1.0, 0.0
+            # d ell / d(b, phi) by the directions theta_P and theta_N, which stay bounded
+            cos_phi: cython.double = self.cycle.cos_phi
+            sin_phi: cython.double = self.cycle.sin_phi
+            cosines: cython.double = self.cycle.cos_P + self.cycle.cos_N
+            out[at + 10] = 0.5 * (cos_phi * (self.cycle.sin_P + self.cycle.sin_N) + sin_phi * cosines)
+            out[at + 11] = 0.5 * (self.cycle.cos_P - self.cycle.cos_N)

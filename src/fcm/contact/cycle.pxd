@@ -1,0 +1,30 @@
+cdef class Cycle:
+    # the contact
+    cdef double n0, b, sin_phi, cos_phi
+    cdef double ell_1, ell_2, sin_P, cos_P, sin_N, cos_N, lower_P, upper_N
+    # its cycle
+    cdef bint opens
+    cdef double theta_1, closing_rate, first_sin, first_cos, pull
+    # the span that it is at
+    cdef int span
+    cdef double start_sin, start_cos, end_sin, end_cos, length
+    cdef double w_start, w_end, side, slope, curvature
+    cdef double slip, begin_sin, begin_cos, sin, versine, deficit
+    cdef bint goes_on
+
+    cdef int find(self, double n0_bar, double b_bar, double phi) noexcept nogil
+    cdef int place(self, double n0_bar, double b_bar, double phi) noexcept nogil
+    cdef void take(self) noexcept nogil
+    cdef double stuck_force(self) noexcept nogil
+    cdef void _limits(self, double phi) noexcept nogil
+    cdef void _pass(self) noexcept nogil
+    cdef void _start(self) noexcept nogil
+    cdef void _until_P(self, double length) noexcept nogil
+    cdef void _until_N(self, double length) noexcept nogil
+    cdef void _until_open(self, double length) noexcept nogil
+    cdef void _until(self, double lower, double upper, double length) noexcept nogil
+    cdef void _slip(self, double slope, double curvature, bint turns) noexcept nogil
+    cdef void _end(self) noexcept nogil
+
+cdef double beyond_sine(double y, double sine) noexcept nogil
+cdef (double, double, double) arc(double y) noexcept nogil

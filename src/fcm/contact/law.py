@@ -1,0 +1,66 @@
+"""Kernel: what gives the Fourier coefficients of the friction force of a contact, one at a time or many.
+
+The closed form is one such law, a table another. The numbers of a point lie one after the other: F_b, F_s,
+F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all.
+"""
+
+import cython
+import numpy as np
+
+
+@cython.cclass
+class Law:
+    """Base class; a subclass defines `evaluate`."""
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def evaluate(
+        self,
+        n0_bar: cython.double,
+        b_bar: cython.double,
+        phi: cython.double,
+        gradient: cython.bint,
+        out: cython.double[::1],
+        at: cython.Py_ssize_t,
+    ) -> cython.void:
+        """The numbers of one point to out[at:], the first three or with the gradient all twelve.
+
+        b_bar is not negative. Where an argument is NaN, or b_bar or phi infinite, they are NaN.
+        """
+
+    def many(self, n0_bar: object, b_bar: object, phi: object, gradient: cython.bint) -> np.ndarray:
+        """The numbers of many points, shape (3 or 12, ...); the arguments broadcast to the shape of the rest.
+
+        Raises ValueError if an element of b_bar is negative.
+        """
+        n0, b, ph = (np.asarray(x, dtype=np.float64) for x in (n0_bar, b_bar, phi))
+        if not n0.shape == b.shape == ph.shape:
+            n0, b, ph = np.broadcast_arrays(n0, b, ph)
+        shape = n0.shape
+        numbers: cython.Py_ssize_t = 12 if gradient else 3
+        out = np.empty((n0.size, numbers))
+        # ravel copies what is not contiguous
+        if self._fill(n0.ravel(), b.ravel(), ph.ravel(), gradient, out.reshape(-1), numbers):
+            raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
+        return out.T.reshape(numbers, *shape)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def _fill(
+        self,
+        n0_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        b_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        phi: cython.const[cython.double][::1],  # type: ignore[valid-type]
+        gradient: cython.bint,
+        out: cython.double[::1],
+        numbers: cython.Py_ssize_t,
+    ) -> cython.bint:
+        """Whether an element of b_bar is negative; if none is, all is done."""
+        i: cython.Py_ssize_t
+        with cython.nogil:
+            for i in range(b_bar.shape[0]):
+                if b_bar[i] < 0.0:
+                    return True
+                self.evaluate(n0_bar[i], b_bar[i], phi[i], gradient, out, i * numbers)
+        return False

@@ -1,0 +1,5 @@
+from fcm.contact.cycle cimport Cycle
+
+cdef class Record(Cycle):
+    cdef Py_ssize_t point
+    cdef double[:, :, ::1] spans

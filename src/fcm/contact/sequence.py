@@ -1,0 +1,130 @@
+"""Kernel: the sequence of the states of a contact, as a number and with the angles at which they begin."""
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import atan2, fabs
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.cycle import Cycle
+else:
+    from fcm.contact.cycle import Cycle
+
+PI = cython.declare(cython.double, 3.141592653589793)
+NAN = cython.declare(cython.double, float("nan"))
+# A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
+INVISIBLE = cython.declare(cython.double, 1e-15)
+STUCK = cython.declare(cython.int, 0)  # as in `cycle`
+SLIPPING = cython.declare(cython.int, 1)
+OPEN = cython.declare(cython.int, 2)
+
+# the letters of a sequence are digits of its number, in base 5; 0 is no sequence
+STICK = cython.declare(cython.int, 1)
+POSITIVE = cython.declare(cython.int, 2)
+NEGATIVE = cython.declare(cython.int, 3)
+SEPARATION = cython.declare(cython.int, 4)
+LETTERS = " EPNS"
+MOST = 7  # states of a cycle, and one more
+
+
+@cython.cclass
+class Sequence(Cycle):
+    """The regions of a cycle that float64 can tell from none, and those without which the others cannot be.
+
+    Between opposite slips there is always a stick, however short. A stick after a slip ends in the opposite
+    slip: the limit that pushed w is past its extreme, and w must leave it to be at the other one at the end.
+
+    ``regions`` has a row for each, ``count`` in all: its letter, its angle since the first begins, and w
+    while it sticks. ``state`` is +1 in positive slip, -1 in negative slip, 0 in stick, 2 in separation.
+    """
+
+    def __init__(self) -> None:
+        self.regions = np.empty((MOST, 3))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def of(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.longlong:
+        """The number of the sequence; 0 where an argument is no number."""
+        self.count, self.code = 0, 0
+        behaviour: cython.int = self.find(n0_bar, b_bar, phi)
+        if behaviour == STUCK:
+            self._region(STICK, 0.0, -self.stuck_force())
+        elif behaviour == OPEN:
+            self._region(SEPARATION, 0.0, NAN)
+        elif behaviour == SLIPPING and self.opens and self.state == 0.0 and self.last_slip != 0.0:
+            self._region(NEGATIVE if self.last_slip > 0.0 else POSITIVE, self.since, NAN)
+        return self.code
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def take(self) -> cython.void:
+        """Adds the regions of a span."""
+        if self.span == 0:
+            self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
+            self.state = 2.0 if self.opens else -1.0
+            if self.opens:
+                self._region(SEPARATION, 0.0, NAN)
+        side: cython.double = self._seen()
+        slip: cython.double = self.slip if side == self.side else 0.0
+        stick: cython.double = self.length - (self.slip if side != 0.0 else 0.0)
+        if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
+            self._region(STICK, self.since, self.w_start)
+            self.state = 0.0
+        self.since += self.length
+        if side != 0.0 and side != self.state:
+            self._region(POSITIVE if side > 0.0 else NEGATIVE, self.since - slip, NAN)
+        if side != 0.0:
+            self.state = self.last_slip = side
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _seen(self) -> cython.double:
+        """Side of the slip in a span, 0 where there is none to be seen."""
+        if self.opens:
+            return self.side if fabs(self.w_end - self.w_start) > INVISIBLE else 0.0
+        if self.lower_P - self.upper_N <= INVISIBLE:  # there are both slips, equally large, or none
+            return 0.0
+        return 1.0 if self.span == 0 else -1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _region(self, letter: cython.int, since: cython.double, w: cython.double) -> cython.void:
+        self.regions[self.count, 0], self.regions[self.count, 1], self.regions[self.count, 2] = (
+            letter,
+            since,
+            w,
+        )
+        self.count += 1
+        self.code = 5 * self.code + letter
+
+    def loop(
+        self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
+    ) -> tuple[float, np.ndarray]:
+        """Angle at which the first region begins [rad], and the regions (region, 3); arguments all finite."""
+        self.of(n0_bar, b_bar, phi)
+        at: cython.double = 0.0
+        if self.count > 1:
+            at = atan2(self.end_sin, self.end_cos) if self.opens else atan2(self.first_sin, self.first_cos)
+        return at, np.array(self.regions[: self.count])
+
+    def codes(self, points: cython.double[:, ::1]) -> np.ndarray:
+        """The numbers of the sequences of many contacts; rows (3, point) of n0_bar, b_bar, phi."""
+        i: cython.Py_ssize_t
+        found = np.empty(points.shape[1], dtype=np.int64)
+        out: cython.longlong[::1] = found
+        with cython.nogil:
+            for i in range(points.shape[1]):
+                out[i] = self.of(points[0, i], points[1, i], points[2, i])
+        return found
+
+
+def word(code: int) -> str:
+    """The letters of a number.
+
+    >>> word(183)
+    'EPEN'
+    """
+    return word(code // 5) + LETTERS[code % 5] if code else ""
