@@ -1,0 +1,1 @@
+"""Kernels: the forces of a contact over any periodic motion, exactly; from the motion's polynomials upwards."""

@@ -1,0 +1,235 @@
+"""Where a row of a contact's motion changes sign, none missed.
+
+Between two nodes a row is its cubic Hermite interpolant within bound * step**4 / 384, its slope that of the
+interpolant within bound * step**3 sqrt(3) / 216, with the bound of the fourth derivative. So the Bernstein
+coefficients of the interpolant prove that the row has no zero, or that it is monotone; where they do not,
+the interval is halved, until what could be hidden is no more than the rounding of the row itself.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LOAD, Motion
+else:
+    from fcm.contact.periodic.motion import EPSILON, LOAD, Motion
+
+VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
+SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
+DEEPEST = cython.declare(cython.int, 60)  # halvings; at half of them rounding has long been reached
+SHORTEST = cython.declare(cython.double, 1e-15)  # [rad]
+
+
+@cython.cclass
+class Crossings:
+    """Angles where rows of a motion change sign, in `angle` up to `count`, in the order of each search."""
+
+    def __init__(self, motion: Motion) -> None:
+        self.motion = motion
+        self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
+        self.angle = np.empty(self.capacity)
+        self.kind = np.empty(self.capacity, dtype=np.intc)
+        self.open = np.zeros(self.motion.nodes, dtype=np.intc)
+        self.stack = np.empty((DEEPEST + 2, 3))
+        self.count = 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def begin(self) -> cython.void:
+        """Forget the crossings of another motion."""
+        j: cython.int
+        self.count = 0
+        for j in range(self.motion.nodes):
+            self.open[j] = 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> cython.void:
+        """Append the crossings of a row, as kinds `rising` and `falling`; -1 leaves one kind out.
+
+        The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
+        """
+        j: cython.int
+        self.row, self.rising, self.falling = row, rising, falling
+        self.curvature = self.motion.bound(row if row == LOAD else row - 1, 2 if row == LOAD else 3)
+        self.fourth = self.motion.bound(row if row == LOAD else row - 1, 4 if row == LOAD else 5)
+        self.noise = self.rounding()
+        self.sign = 0
+        start: cython.int = self.definite_node()
+        for j in range(start, start + self.motion.nodes):
+            self.interval(j)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def rounding(self) -> cython.double:
+        """What the value of the row may err by, at an angle known to rounding."""
+        order: cython.int = 0 if self.row == LOAD else 1
+        row: cython.int = self.row - order
+        total: cython.double = 4.0 * (self.motion.bound(row, order) + self.motion.bound(row, order + 1))
+        return EPSILON * (total + 2.0 * fabs(self.motion.mean[self.row]))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def definite_node(self) -> cython.int:
+        """The last node at which the sign is certain, before the turn of nodes: -nodes to 0."""
+        j: cython.int
+        for j in range(self.motion.nodes):
+            if fabs(self.motion.at[self.row, self.motion.nodes - 1 - j]) > self.noise:
+                return -1 - j
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def interval(self, j: cython.int) -> cython.void:
+        """Walk from node j to the next, halving where nothing is proved."""
+        left: cython.int = j if j >= 0 else j + self.motion.nodes
+        right: cython.int = left + 1 if left + 1 < self.motion.nodes else 0
+        row: cython.int = self.row
+        if row != LOAD and self.open[left]:
+            self.sign = 0
+            return
+        begin: cython.double = self.motion.first + j * self.motion.step
+        g: cython.double = self.motion.at[row, left]
+        d: cython.double = self.motion.at[row + 1, left]
+        if self.sign == 0:
+            self.note(begin, g, d)
+        if row == LOAD and self.proved(self.motion.step, g, d, self.motion.at[row, right], self.motion.at[row + 1, right]):
+            self.open[left] = g < -self.noise and self.motion.at[row, right] < -self.noise
+        depth: cython.int = 0
+        self.stack[0, 0] = begin + self.motion.step
+        self.stack[0, 1] = self.motion.at[row, right]
+        self.stack[0, 2] = self.motion.at[row + 1, right]
+        while depth >= 0:
+            end: cython.double = self.stack[depth, 0]
+            length: cython.double = end - begin
+            if (
+                depth == DEEPEST
+                or length < SHORTEST
+                or self.proved(length, g, d, self.stack[depth, 1], self.stack[depth, 2])
+            ):
+                begin, g, d = end, self.stack[depth, 1], self.stack[depth, 2]
+                self.note(begin, g, d)
+                depth -= 1
+            else:
+                depth += 1
+                middle: cython.double = begin + 0.5 * length
+                value, slope = self.motion.evaluate(row, middle)
+                self.stack[depth, 0], self.stack[depth, 1], self.stack[depth, 2] = middle, value, slope
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def proved(
+        self,
+        length: cython.double,
+        g_0: cython.double,
+        d_0: cython.double,
+        g_1: cython.double,
+        d_1: cython.double,
+    ) -> cython.bint:
+        """Whether the row has no zero inside, or is monotone, or is nothing but rounding."""
+        error: cython.double = self.fourth * length * length * length
+        b_1: cython.double = g_0 + length * d_0 / 3.0
+        b_2: cython.double = g_1 - length * d_1 / 3.0
+        low: cython.double = min(g_0, b_1, b_2, g_1) - VALUE_ERROR * error * length
+        high: cython.double = max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length
+        if low > 0.0 or high < 0.0 or (low >= -self.noise and high <= self.noise):
+            return True
+        middle: cython.double = 3.0 * (b_2 - b_1) / length
+        error *= SLOPE_ERROR
+        return min(d_0, middle, d_1) > error or max(d_0, middle, d_1) < -error
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def note(self, theta: cython.double, value: cython.double, slope: cython.double) -> cython.void:
+        """The next point of the walk; if its sign is certain and another, there was a crossing."""
+        if fabs(value) <= self.noise:
+            return
+        sign: cython.int = 1 if value > 0.0 else -1
+        kind: cython.int = self.rising if sign > 0 else self.falling
+        if sign == -self.sign and kind >= 0 and self.count < self.capacity:
+            self.angle[self.count] = self.root(
+                self.row, 0.0, self.last, self.last_value, self.last_slope, theta, value, slope
+            )
+            self.kind[self.count] = kind
+            self.count += 1
+        self.sign, self.last, self.last_value, self.last_slope = sign, theta, value, slope
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def root(
+        self,
+        row: cython.int,
+        level: cython.double,
+        low: cython.double,
+        g_low: cython.double,
+        d_low: cython.double,
+        high: cython.double,
+        g_high: cython.double,
+        d_high: cython.double,
+    ) -> cython.double:
+        """Where a row takes a value, between angles where it is on different sides of it: Newton, bracketed.
+
+        Parameters
+        ----------
+        g_low, g_high
+            Row minus level at both ends; the second is not zero. Where the first is, the row turns in between.
+        """
+        up: cython.bint = g_high > 0.0
+        length: cython.double = high - low
+        x: cython.double = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
+        i: cython.int
+        for i in range(100):  # noqa: B007
+            value, slope = self.motion.evaluate(row, x)
+            value -= level
+            if value == 0.0:
+                return x
+            if (value > 0.0) == up:
+                high = x
+            else:
+                low = x
+            step: cython.double = -value / slope if (slope > 0.0) == up and slope != 0.0 else high - low
+            if not low < x + step < high:
+                step = 0.5 * (low + high) - x
+            elif self.curvature * step * step <= EPSILON * fabs(slope):
+                return x + step
+            x += step
+            if high - low <= EPSILON * fabs(x):
+                return x
+        return x
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _cubic(
+    g_0: cython.double, d_0: cython.double, g_1: cython.double, d_1: cython.double
+) -> cython.double:
+    """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
+    c_0: cython.double = g_0
+    c_1: cython.double = d_0
+    c_2: cython.double = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
+    c_3: cython.double = d_0 + d_1 - 2.0 * (g_1 - g_0)
+    if c_0 == 0.0:
+        c_0, c_1, c_2, c_3 = c_1, c_2, c_3, 0.0
+    if (c_0 > 0.0) == (g_1 > 0.0) or c_0 == 0.0:
+        return 0.5
+    t: cython.double = c_0 / (c_0 - g_1)
+    i: cython.int
+    for i in range(3):  # noqa: B007
+        value: cython.double = c_0 + t * (c_1 + t * (c_2 + t * c_3))
+        slope: cython.double = c_1 + t * (2.0 * c_2 + t * 3.0 * c_3)
+        if slope == 0.0 or not 0.0 < t - value / slope < 1.0:
+            return t
+        t -= value / slope
+    return t

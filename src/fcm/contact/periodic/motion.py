@@ -1,0 +1,233 @@
+"""A contact's periodic motion as trigonometric polynomials: its load, its two limits, and their slopes.
+
+Compiled where there is a C compiler. With forces instead of displacements, everything divided by the greatest
+amplitude, the limits between which the slider k_u w is held are
+
+    lower(theta) = k_u u - mu n,   upper(theta) = k_u u + mu n,   n = n_0 + k_v v where that is positive.
+
+The mean of u is left out: it matters only to a slider that never moves.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import cos, fabs, floor, hypot, isfinite, sin
+
+# Rows of coefficients and of samples. The row after one is its derivative.
+LOAD = cython.declare(cython.int, 0)
+LOWER = cython.declare(cython.int, 2)
+LOWER_RATE = cython.declare(cython.int, 3)
+UPPER = cython.declare(cython.int, 5)
+UPPER_RATE = cython.declare(cython.int, 6)
+ROWS = cython.declare(cython.int, 8)
+# Rows of coefficients only
+FORCE = cython.declare(cython.int, 8)  # k_u u
+REACH = cython.declare(cython.int, 9)  # mu n
+
+OPEN = cython.declare(cython.int, 0)
+CLOSED = cython.declare(cython.int, 1)
+MIXED = cython.declare(cython.int, 2)
+UNKNOWN = cython.declare(cython.int, 3)
+
+EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
+LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
+FAINT = cython.declare(cython.double, 1e-150)  # motion that is smaller than its mean by that counts as nothing
+# Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
+FIRST_NODE = cython.declare(cython.double, 0.1171)
+NODES_PER_HARMONIC = cython.declare(cython.int, 4)
+
+
+@cython.cclass
+class Motion:
+    """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes."""
+
+    def __init__(self, harmonics: list[int]) -> None:
+        numbers = np.array(harmonics, dtype=np.intc)
+        self.count = len(harmonics)
+        self.highest = max(harmonics, default=0)
+        self.number = numbers
+        self.order = numbers.astype(np.float64)
+        self.nodes = NODES_PER_HARMONIC * max(self.highest, 1) + 2
+        self.step = 2.0 * np.pi / self.nodes
+        self.first = FIRST_NODE * self.step
+        angle = np.outer(self.first + self.step * np.arange(self.nodes), np.arange(self.highest + 1))
+        self.node_cos = np.ascontiguousarray(np.cos(angle)[:, numbers])
+        self.node_sin = np.ascontiguousarray(np.sin(angle)[:, numbers])
+        self.re = np.zeros((10, max(self.count, 1)))
+        self.im = np.zeros((10, max(self.count, 1)))
+        self.mean = np.zeros(10)
+        self.at = np.zeros((8, self.nodes))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def load(
+        self,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+        mu: cython.double,
+        k_u: cython.double,
+        k_v: cython.double,
+        n_0: cython.double,
+    ) -> cython.int:
+        """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
+        k: cython.int
+        i: cython.Py_ssize_t = first + 2
+        motion: cython.double = 0.0
+        variation: cython.double = 0.0
+        for k in range(self.count):
+            motion = max(motion, fabs(x[i]), fabs(x[i + 1]))
+            variation = max(variation, fabs(x[i + 2]), fabs(x[i + 3]))
+            # max passes over what is not a number
+            if not isfinite(x[i] + x[i + 1] + x[i + 2] + x[i + 3]):
+                return UNKNOWN
+            i += 4
+        self.preload = n_0 + k_v * x[first + 1]
+        self.load_scale = max(k_v * variation, FAINT * fabs(self.preload), LEAST)
+        self.scale = max(k_u * motion, mu * self.load_scale, FAINT * k_u * fabs(x[first]), LEAST)
+        if not isfinite(self.scale + self.preload + x[first]):
+            return UNKNOWN
+        self.ratio = mu * (self.load_scale / self.scale)
+        self.fill(x, first + 2, k_u, k_v)
+        self.mean[LOAD] = self.preload / self.load_scale
+        self.mean[REACH] = self.ratio * self.mean[LOAD]
+        self.mean[LOWER] = -self.mean[REACH]
+        self.mean[UPPER] = self.mean[REACH]
+        return self.behaviour()
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def fill(
+        self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: cython.double, k_v: cython.double
+    ) -> cython.void:
+        """The coefficients of all rows."""
+        k: cython.int
+        i: cython.Py_ssize_t = first
+        order: cython.double
+        for k in range(self.count):
+            order = self.order[k]
+            self.re[FORCE, k] = k_u * x[i] / self.scale
+            self.im[FORCE, k] = k_u * x[i + 1] / self.scale
+            self.re[LOAD, k] = k_v * x[i + 2] / self.load_scale
+            self.im[LOAD, k] = k_v * x[i + 3] / self.load_scale
+            self.re[REACH, k] = self.ratio * self.re[LOAD, k]
+            self.im[REACH, k] = self.ratio * self.im[LOAD, k]
+            self.re[LOWER, k] = self.re[FORCE, k] - self.re[REACH, k]
+            self.im[LOWER, k] = self.im[FORCE, k] - self.im[REACH, k]
+            self.re[UPPER, k] = self.re[FORCE, k] + self.re[REACH, k]
+            self.im[UPPER, k] = self.im[FORCE, k] + self.im[REACH, k]
+            self.re[LOWER_RATE, k] = -order * self.im[LOWER, k]
+            self.im[LOWER_RATE, k] = order * self.re[LOWER, k]
+            self.re[UPPER_RATE, k] = -order * self.im[UPPER, k]
+            self.im[UPPER_RATE, k] = order * self.re[UPPER, k]
+            i += 4
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def behaviour(self) -> cython.int:
+        """What the mean load and the sum of the amplitudes of its variation say."""
+        k: cython.int
+        total: cython.double = 0.0
+        for k in range(self.count):
+            total += hypot(self.re[LOAD, k], self.im[LOAD, k])
+        if self.mean[LOAD] <= -total:
+            return OPEN
+        return CLOSED if self.mean[LOAD] >= total else MIXED
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def bound(self, row: cython.int, power: cython.int) -> cython.double:
+        """No value of the derivative of that order is greater: sum of order**power times the amplitude.
+
+        Of a limit it is that of the motion and the load, so that it also bounds their rounding.
+        """
+        k: cython.int
+        p: cython.int
+        total: cython.double = 0.0
+        amplitude: cython.double
+        for k in range(self.count):
+            if row == LOAD:
+                amplitude = fabs(self.re[LOAD, k]) + fabs(self.im[LOAD, k])
+            else:
+                amplitude = fabs(self.re[FORCE, k]) + fabs(self.im[FORCE, k])
+                amplitude += fabs(self.re[REACH, k]) + fabs(self.im[REACH, k])
+            for p in range(power):  # noqa: B007
+                amplitude *= self.order[k]
+            total += amplitude
+        return total
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def sample(self) -> cython.void:
+        """Load and limits with their derivatives at all nodes."""
+        j: cython.int
+        k: cython.int
+        c: cython.double
+        s: cython.double
+        order: cython.double
+        real: cython.double
+        imag: cython.double
+        for j in range(self.nodes):
+            u: cython.double = 0.0
+            u_1: cython.double = 0.0
+            u_2: cython.double = 0.0
+            y: cython.double = 0.0
+            y_1: cython.double = 0.0
+            y_2: cython.double = 0.0
+            for k in range(self.count):
+                order, c, s = self.order[k], self.node_cos[j, k], self.node_sin[j, k]
+                real = self.re[FORCE, k] * c - self.im[FORCE, k] * s
+                imag = self.re[FORCE, k] * s + self.im[FORCE, k] * c
+                u += real
+                u_1 -= order * imag
+                u_2 -= order * order * real
+                real = self.re[LOAD, k] * c - self.im[LOAD, k] * s
+                imag = self.re[LOAD, k] * s + self.im[LOAD, k] * c
+                y += real
+                y_1 -= order * imag
+                y_2 -= order * order * real
+            self.at[0, j] = self.mean[LOAD] + y
+            self.at[1, j] = y_1
+            y, y_1, y_2 = self.mean[REACH] + self.ratio * y, self.ratio * y_1, self.ratio * y_2
+            self.at[2, j] = u - y
+            self.at[3, j] = u_1 - y_1
+            self.at[4, j] = u_2 - y_2
+            self.at[5, j] = u + y
+            self.at[6, j] = u_1 + y_1
+            self.at[7, j] = u_2 + y_2
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def evaluate(self, row: cython.int, theta: cython.double) -> tuple[cython.double, cython.double]:
+        """Value and slope of a row at an angle."""
+        c_1: cython.double = cos(theta)
+        s_1: cython.double = sin(theta)
+        c: cython.double = c_1
+        s: cython.double = s_1
+        turned: cython.double
+        value: cython.double = self.mean[row]
+        slope: cython.double = 0.0
+        h: cython.int = 1
+        k: cython.int
+        for k in range(self.count):
+            while h < self.number[k]:
+                turned = c * c_1 - s * s_1
+                s = s * c_1 + c * s_1
+                c = turned
+                h += 1
+            value += self.re[row, k] * c - self.im[row, k] * s
+            slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
+        return value, slope
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def node_before(self, theta: cython.double) -> cython.int:
+        """Number of the last node at or before an angle; not reduced to one turn."""
+        return cython.cast(cython.int, floor((theta - self.first) / self.step))
