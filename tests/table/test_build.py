@@ -5,42 +5,31 @@ import pytest
 
 from fcm import fourier_coefficients
 from fcm.table import atlas, build_table, open_table, spline
+from fcm.table.cubic import Cubic
+from fcm.table.locate import locate
 from fcm.table.nodes import PRESETS, all_nodes
 from fcm.table.part import Part
 from fcm.table.vanishing import vanishing_variation
 
 
+def coordinates(n0, b, phi):
+    """u, x and z, each from 0 to 1."""
+    arrays = np.broadcast_arrays(n0, b, phi)
+    q = locate(np.stack([x.ravel() for x in arrays]), (2, 2, 2, 2)).q.reshape(3, *arrays[0].shape)
+    return np.where(q[0] > 1.0, q[0] - 4.0, q[0]), q[1], q[2]
+
+
 def test_coordinates_invert():
-    b = np.array([0.0, 1e-9, 0.3, 0.9999, 1.0, 1.0001, 7.0, 1e5, 1e7])
-    phi = np.linspace(0.0, np.pi, 7)
-    B, P = np.meshgrid(b, phi, indexing="ij")
-    phase = atlas.Phase.of(P)
-    assert np.allclose(atlas.phi_phase(atlas.z_phase(P)[0]), P, atol=1e-14)
-    assert np.allclose(atlas.b_variation(atlas.x_variation(B, phase)[0], P), B, rtol=1e-9, atol=1e-15)
-    delta = np.linspace(1e-9, np.pi, 50)[:, None]
-    assert np.allclose(atlas.delta_separation(atlas.u_separation(delta, b)[0], b), delta, rtol=1e-9)
-    t = np.linspace(1e-12, 1.0 - 1e-12, 50)
-    assert np.allclose(atlas.t_slip(atlas.u_slip(t)[0]), t, rtol=1e-12)
-
-
-def test_slopes_of_the_coordinates():
-    h = 1e-6
-    b, phi, delta = (
-        np.array([0.2, 0.97, 1.4, 30.0]),
-        np.array([0.3, 0.1, 2.9, 1.5]),
-        np.array([0.01, 0.4, 2.0, 3.0]),
-    )
-
-    def x(b, phi):
-        return atlas.x_variation(b, atlas.Phase.of(phi))
-
-    assert np.allclose((x(b + h, phi)[0] - x(b - h, phi)[0]) / (2 * h), x(b, phi)[1] / np.sqrt(b), rtol=1e-6)
-    assert np.allclose((x(b, phi + h)[0] - x(b, phi - h)[0]) / (2 * h), x(b, phi)[2], rtol=1e-6, atol=1e-9)
-    u = atlas.u_separation
-    assert np.allclose((u(delta + h, b)[0] - u(delta - h, b)[0]) / (2 * h), u(delta, b)[1], rtol=1e-6)
-    assert np.allclose(
-        (u(delta, b + h)[0] - u(delta, b - h)[0]) / (2 * h), u(delta, b)[2], rtol=1e-5, atol=1e-9
-    )
+    b = np.array([0.0, 1e-9, 0.3, 0.9999, 1.0, 1.0001, 7.0, 1e5, 1e7])[:, None, None]
+    phi = np.linspace(0.0, 3.14, 7)[:, None]
+    delta = np.linspace(1e-3, 3.14, 50)
+    u, x, z = coordinates(b * np.cos(delta), b, phi)
+    assert np.allclose(atlas.phi_phase(z), phi, atol=1e-14)
+    assert np.allclose(atlas.b_variation(x, np.broadcast_to(phi, x.shape)), b, rtol=1e-9, atol=1e-15)
+    assert np.allclose(atlas.delta_separation(u, b)[1:], delta, rtol=1e-9)
+    t, phi = np.linspace(1e-9, 1.0 - 1e-9, 50), np.array(0.4)
+    u, _, _ = coordinates(0.5 + t * atlas.geometry(np.array(0.5), phi).width, 0.5, phi)
+    assert np.allclose(atlas.t_slip(u), t, rtol=1e-6)
 
 
 def test_width_of_slip_keeps_its_relative_accuracy():
@@ -52,7 +41,7 @@ def test_width_of_slip_keeps_its_relative_accuracy():
                 mp.sqrt(1 - 2 * mpf(b) * mp.cos(mpf(phi)) + mpf(b) ** 2)
                 + mp.sqrt(1 + 2 * mpf(b) * mp.cos(mpf(phi)) + mpf(b) ** 2)
             ) / 2 - mpf(b)
-            found = atlas.geometry(np.array([b]), atlas.Phase.of(np.array([phi]))).width[0]
+            found = atlas.geometry(np.array([b]), np.array([phi])).width[0]
             assert found == pytest.approx(float(exact), rel=1e-12)
 
 
@@ -78,23 +67,21 @@ def test_spline_returns_its_nodes_and_reproduces_cubics():
     def function(i, j, k):
         return np.stack((i**3 - 2 * i * j * k, j**3 + k, k**3 * j - i**2))
 
-    coefficients = spline.stack(spline.interpolate(function(*axes), ends))
-    steps, neighbours = spline.strides((9, 10))
+    cubic = Cubic(spline.stack(spline.interpolate(function(*axes), ends)))
     q = np.random.default_rng(0).uniform(0, 1, (3, 700)) * np.array([[5.0], [6.0], [7.0]])
     q[:, :2] = [[0.0, 5.0], [0.0, 6.0], [0.0, 7.0]]
-    values = spline.evaluate(coefficients, q, steps, neighbours, 4)
+    values = cubic.many(q, True)
     i, j, k = q
     assert np.allclose(values[:, 0], function(i, j, k), atol=1e-9)
     assert np.allclose(values[0, 1:], (3 * i**2 - 2 * j * k, -2 * i * k, -2 * i * j), atol=1e-9)
-    assert np.array_equal(spline.evaluate(coefficients, q, steps, neighbours, 1), values[:, :1])
+    assert np.array_equal(cubic.many(q, False), values[:, :1])
 
 
 def test_flat_ends_have_no_slope():
     values = np.random.default_rng(0).normal(size=(3, 6, 6, 6))
     flat = (spline.FLAT, spline.FLAT)
-    coefficients = spline.stack(spline.interpolate(values, (flat, flat, flat)))
-    steps, neighbours = spline.strides((8, 8))
-    slopes = spline.evaluate(coefficients, np.array([[0.0, 5.0]] * 3), steps, neighbours, 4)[:, 1:]
+    cubic = Cubic(spline.stack(spline.interpolate(values, (flat, flat, flat))))
+    slopes = cubic.many(np.array([[0.0, 5.0]] * 3), True)[:, 1:]
     assert np.abs(slopes).max() < 1e-12
 
 

@@ -23,6 +23,7 @@ STUCK = cython.declare(cython.int, 0)
 SLIPPING = cython.declare(cython.int, 1)
 
 
+@cython.final
 @cython.cclass
 class Integrals(Cycle):
     """Twelve numbers of one contact; pi times the integrals while they are summed over the spans.
@@ -226,6 +227,7 @@ class Integrals(Cycle):
         self.c_phi += self.b * (c * c_c - s * s_c)
 
 
+@cython.final
 @cython.cclass
 class ClosedForm(Law):
     """The closed form as a law."""

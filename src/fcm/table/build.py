@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.contact import fourier_coefficients
 from fcm.table import arrays, atlas, store
-from fcm.table.atlas import FloatArray, Phase
+from fcm.table.atlas import FloatArray
 from fcm.table.locate import Resolution
 from fcm.table.lookup import Table
 from fcm.table.measure import POINTS, measure, sample
@@ -106,7 +106,7 @@ def _reduced_separation(nodes: Nodes, first: int) -> FloatArray:
 def _reduced_slip(nodes: Nodes) -> FloatArray:
     """G = (F - F_edge) / E."""
     F_b, F_s, F_c = fourier_coefficients(*nodes)
-    shape = atlas.geometry(nodes.b_bar, Phase.of(nodes.phi))
+    shape = atlas.geometry(nodes.b_bar, nodes.phi)
     edge = 0.5 * (shape.high - shape.low)
     G: FloatArray = np.stack((F_b - edge, F_s - 1.0, F_c)) / shape.width
     return G

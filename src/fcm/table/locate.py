@@ -1,155 +1,241 @@
-"""Where points lie on the atlas, and the chain rule from its coordinates back to (n0_bar, b_bar, phi)."""
+"""Kernel: where a point lies on the atlas, and the chain rule from there back to (n0_bar, b_bar, phi).
 
-from __future__ import annotations
+The coordinates are those of `atlas`, which has their inverses and says what they are for.
+"""
 
 from typing import NamedTuple
 
+import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import asin, atan, atan2, cbrt, fabs, fmod, hypot, sin, sqrt
+from cython.cimports.libc.math import cos as cosine
 
-from fcm.table import atlas
-from fcm.table.atlas import FloatArray, Geometry, Phase
+from fcm.table import constants
 
-BoolArray = npt.NDArray[np.bool_]
 Resolution = tuple[int, int, int, int]  # nodes along u in separation, u in slip, x, z
 NODES_BETWEEN = 3  # from the last node of separation to the first of slip in the stacked coefficients
 
+PI = cython.declare(cython.double, 3.141592653589793)
+FOLD_Z = cython.declare(cython.double, constants.FOLD_Z)
+FOLD_U = cython.declare(cython.double, constants.FOLD_U)
+CONE = cython.declare(cython.double, constants.CONE)
+TIP = cython.declare(cython.double, constants.TIP)
+LARGEST_B = cython.declare(cython.double, constants.LARGEST_B)
+HUGE_B = cython.declare(cython.double, constants.HUGE_B)
+SIN_FOLD_Z = cython.declare(cython.double, sin(constants.FOLD_Z))
+SIN_FOLD_U = cython.declare(cython.double, sin(constants.FOLD_U))
+NEAR = cython.declare(cython.double, 1e-14)  # u this close to an end is moved away: du/dn0 is infinite there
+TINY = cython.declare(cython.double, 1e-300)
 
-class Place(NamedTuple):
-    """F = base + scale G(q), with F_b (not F_s, F_c) to be multiplied by sign.
 
-    Derivatives by (n0_bar, b_bar, phi)[j]: ``sum_k chain[j, k] (G, dG/dq)[k] + base_slopes[j]``, the
-    last for F_b alone; both empty when they were not asked for.
+@cython.final
+@cython.cclass
+class Place:
+    """F = base + scale G(u, x, z) at a point, base = (mean, closed, 0), and F_b to be multiplied by sign.
+
+    u, x and z are in nodes of the table, u through separation, then slip. ``u_n``, ``u_b``, ``u_phi`` and so
+    on are derivatives by n0_bar, b_bar, phi; those of u, x and z times scale. ``mean`` is the mean force of a
+    contact that does not slip, or just does, and ``closed`` is 1 where it does not open.
     """
 
-    q: FloatArray  # (3, p), in nodes, axis 0 through separation, then slip
-    scale: FloatArray  # (p,)
-    base: FloatArray  # (3, p)
-    sign: FloatArray  # (p,)
-    chain: FloatArray  # (3, 4, p)
-    base_slopes: FloatArray  # (3, p)
+    def __init__(self, resolution: Resolution) -> None:
+        nodes_1, nodes_2, nodes_x, nodes_z = resolution
+        self.span_1, self.span_2 = nodes_1 - 1, nodes_2 - 1
+        self.span_x, self.span_z = nodes_x - 1, nodes_z - 1
+        self.first_slip = nodes_1 - 1 + NODES_BETWEEN
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def find(
+        self, n0: cython.double, b: cython.double, phi: cython.double, gradient: cython.bint
+    ) -> cython.void:
+        """The place of a point, all finite, b not negative; the chain rule with the gradient only."""
+        phi = fmod(phi, 2.0 * PI)
+        if phi < 0.0:
+            phi += 2.0 * PI
+        self.sign = 1.0
+        if phi >= PI:  # phi -> phi + pi changes the sign of F_b alone
+            phi, self.sign = phi - PI, -1.0
+        self.turn(phi)
+        self._phase(phi)
+        self._variation(b)
+        if n0 < b:
+            self._separation(n0, b, gradient)
+        else:
+            self.geometry(b)
+            self._slip(b, n0 - b, gradient)
+        if gradient:
+            self.x_b *= self.scale
+            self.x_phi *= self.scale
+            self.z_phi *= self.scale
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def turn(self, phi: cython.double) -> cython.void:
+        """Sines and cosines of the phase."""
+        self.sin_half, self.cos_half = sin(0.5 * phi), cosine(0.5 * phi)
+        self.sin_phi = 2.0 * self.sin_half * self.cos_half
+        self.cos_phi = (self.cos_half - self.sin_half) * (self.cos_half + self.sin_half)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def geometry(self, b_bar: cython.double) -> cython.void:
+        """ell_1, ell_2 of (A9), low = ell_1 - b, high = ell_2 - b, width of slip (ell_1 + ell_2) / 2 - b.
+
+        The width has full relative accuracy, however small it is.
+        """
+        b: cython.double = min(b_bar, HUGE_B)
+        gap: cython.double = b - 1.0
+        root: cython.double = 2.0 * sqrt(b)
+        self.ell_1, self.ell_2 = hypot(gap, root * self.sin_half), hypot(gap, root * self.cos_half)
+        sum_1: cython.double = self.ell_1 + b
+        sum_2: cython.double = self.ell_2 + b
+        self.low, self.high = (1.0 - 2.0 * b * self.cos_phi) / sum_1, (1.0 + 2.0 * b * self.cos_phi) / sum_2
+        # width (ell_1 + ell_2 + 2 b) = ell_1 ell_2 + 1 - b^2, for b > 1 as a quotient
+        total: cython.double = self.ell_1 * self.ell_2 + fabs(gap) * (b + 1.0)
+        if gap > 0.0:
+            side: cython.double = 2.0 * b * self.sin_phi
+            total = side * side / total
+        self.width = total / (sum_1 + sum_2)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _variation(self, b: cython.double) -> cython.void:
+        """x, 0 at b = 0 and the last node at infinity, and its slopes; that by b is infinite at b = 0."""
+        root: cython.double = sqrt(min(b, LARGEST_B))
+        s: cython.double = atan(root) * (4.0 / PI) - 1.0
+        cone: cython.double = CONE * (self.sin_phi * self.sin_phi + TIP)
+        inverse: cython.double = 1.0 / (s * s + cone)
+        other: cython.double = 1.0 / (1.0 + cone)
+        half: cython.double = 0.5 * cbrt(inverse / other)
+        self.x = (s * half + 0.5) * self.span_x
+        by_s: cython.double = half * (1.0 - s * s * inverse * (2.0 / 3.0)) * (2.0 / PI)
+        self.x_b = by_s / ((1.0 + root * root) * sqrt(max(b, NEAR))) * self.span_x
+        by_cone: cython.double = s * half * (other - inverse) * (2.0 * CONE / 3.0)
+        self.x_phi = by_cone * self.sin_phi * self.cos_phi * self.span_x
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _phase(self, phi: cython.double) -> cython.void:
+        """z and its slope, phi in [0, pi]."""
+        sine: cython.double = phi * (2.0 * SIN_FOLD_Z / PI) - SIN_FOLD_Z
+        self.z = (asin(sine) * (0.5 / FOLD_Z) + 0.5) * self.span_z
+        self.z_phi = SIN_FOLD_Z / (PI * FOLD_Z) / sqrt(1.0 - sine * sine) * self.span_z
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _separation(self, n0: cython.double, b: cython.double, gradient: cython.bint) -> cython.void:
+        """n0 < b: F = b / (1 + b) G, and 0 for n0 <= -b; u is 0 at n0 = b, the last node at n0 = -b."""
+        safe_b: cython.double = max(b, TINY)
+        bounded: cython.double = max(n0, -safe_b)
+        below: cython.double = max((safe_b - bounded) / safe_b, NEAR)  # 1 - n0 / b
+        above: cython.double = max((safe_b + bounded) / safe_b, NEAR)
+        root_below: cython.double = sqrt(below)
+        root_above: cython.double = sqrt(above)
+        delta: cython.double = 2.0 * atan2(root_below, root_above)
+        layer: cython.double = 1.0 / (1.0 + b)
+        near: cython.double = 1.0 / (delta + layer)
+        far: cython.double = 1.0 / (PI + layer)
+        ratio: cython.double = sqrt(near / far) * (SIN_FOLD_U / PI)
+        sine: cython.double = delta * ratio
+        inside: cython.double = 1.0 if n0 > -b else 0.0
+        self.u = asin(sine) / FOLD_U * self.span_1
+        self.scale = b * layer * inside
+        self.mean = self.closed = 0.0
+        if gradient:
+            slope: cython.double = self.span_1 / (FOLD_U * sqrt(1.0 - sine * sine))
+            by_delta: cython.double = slope * ratio * (1.0 - 0.5 * delta * near)
+            by_b: cython.double = slope * sine * 0.5 * (near - far) * layer * layer
+            # d delta / d n0 = -1 / (b sin(delta)), d delta / d b = cos(delta) / (b sin(delta))
+            self.u_n = -by_delta * layer * inside / (root_below * root_above)
+            self.u_b = self.scale * by_b - self.u_n * (0.5 * (above - below))
+            self.scale_b = layer * layer * inside
+            self.u_phi = self.scale_phi = self.mean_n = self.mean_b = self.mean_phi = 0.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _slip(self, b: cython.double, excess: cython.double, gradient: cython.bint) -> cython.void:
+        """n0 = b + excess: F = F_edge + width G below the slip limit, F_edge above; t = sin(pi u / 2)^2."""
+        share: cython.double = min(excess, self.width) / max(self.width, TINY)
+        t: cython.double = min(max(share, NEAR), 1.0 - NEAR)
+        root: cython.double = sqrt(t)
+        rest: cython.double = sqrt(1.0 - t)
+        slips: cython.bint = excess < self.width
+        self.u = atan2(root, rest) * (2.0 / PI) * self.span_2 + self.first_slip
+        self.scale = self.width if slips else 0.0
+        # the mean force that is nearest to zero; below the slip limit that at the limit, for both bounds
+        reach: cython.double = max(excess, self.width)
+        least: cython.double = self.high - reach
+        self.mean, self.closed = min(max(0.0, least), max(reach - self.low, least)), 1.0
+        if gradient:
+            self._slip_slopes(b, t, self.span_2 / (PI * root * rest) if slips else 0.0)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _slip_slopes(self, b: cython.double, t: cython.double, by_t: cython.double) -> cython.void:
+        """The chain rule in slip and stick; by_t is du/dt, 0 in stick."""
+        slips: cython.bint = by_t > 0.0
+        b = min(b, HUGE_B)
+        side: cython.double = b * self.sin_phi
+        ell_1_b: cython.double = (b - self.cos_phi) / max(self.ell_1, TINY)
+        ell_2_b: cython.double = (b + self.cos_phi) / max(self.ell_2, TINY)
+        ell_1_phi: cython.double = side / max(self.ell_1, TINY)
+        ell_2_phi: cython.double = -side / max(self.ell_2, TINY)
+        width_b: cython.double = 0.5 * (ell_1_b + ell_2_b) - 1.0
+        width_phi: cython.double = 0.5 * (ell_1_phi + ell_2_phi)
+        self.u_n = by_t
+        self.u_b = -(1.0 + t * width_b) * by_t
+        self.u_phi = -t * width_phi * by_t
+        self.scale_b = width_b if slips else 0.0
+        self.scale_phi = width_phi if slips else 0.0
+        # how much of the mean force's derivative is that of the lower bound, and of the upper
+        at_low: cython.double = 0.5 if slips else (1.0 if self.mean > 0.0 else 0.0)
+        at_high: cython.double = 0.5 if slips else (1.0 if self.mean < 0.0 else 0.0)
+        self.mean_n = at_high - at_low
+        self.mean_b = at_low * ell_2_b - at_high * ell_1_b
+        self.mean_phi = at_low * ell_2_phi - at_high * ell_1_phi
 
 
-# rows of what a chart says of its points
-U, SCALE, BASE, CLOSED, U_N0, U_B, U_PHI, SCALE_B, SCALE_PHI, BASE_N0, BASE_B, BASE_PHI = range(12)
+class Places(NamedTuple):
+    """Places of many points: F = base + scale G(q), F_b (not F_s, F_c) times sign."""
+
+    q: npt.NDArray[np.float64]  # (3, point), in nodes
+    scale: npt.NDArray[np.float64]  # (point,)
+    base: npt.NDArray[np.float64]  # (3, point)
+    sign: npt.NDArray[np.float64]  # (point,)
 
 
-def locate(
-    n0: FloatArray, b: FloatArray, phi: FloatArray, resolution: Resolution, derivatives: bool
-) -> Place:
-    """Places of points, shape (p,) each, all finite, b not negative."""
-    nodes_1, nodes_2, nodes_x, nodes_z = resolution
-    folded, sign = atlas.fold(phi)
-    phase = Phase.of(folded)
-    x, root_x_b, x_phi = atlas.x_variation(b, phase)
-    z, z_phi = atlas.z_phase(folded)
-    rows = _rows(n0, b, phase, (nodes_1 - 1, nodes_2 - 1), derivatives)
-    q = np.array((rows[U], x * (nodes_x - 1), z * (nodes_z - 1)))
-    base = np.zeros((3, n0.size))
-    base[0], base[1] = rows[BASE], rows[CLOSED]
-    scale = rows[SCALE]
-    if not derivatives:
-        return Place(q, scale, base, sign, np.empty(0), np.empty(0))
-    chain = np.zeros((3, 4, n0.size))
-    chain[1:, 0] = rows[SCALE_B : SCALE_PHI + 1]
-    chain[:, 1] = rows[U_N0 : U_PHI + 1]
-    scale_x = scale * (nodes_x - 1)
-    chain[1, 2] = scale_x * root_x_b / np.sqrt(np.maximum(b, atlas.NEAR))
-    chain[2, 2] = scale_x * x_phi
-    chain[2, 3] = scale * z_phi * (nodes_z - 1)
-    return Place(q, scale, base, sign, chain, rows[BASE_N0:])
+def locate(points: cython.double[:, ::1], resolution: Resolution) -> Places:
+    """Places of points, rows (3, point) of n0_bar, b_bar, phi, all finite, b not negative."""
+    i: cython.Py_ssize_t
+    count: cython.Py_ssize_t = points.shape[1]
+    rows = np.zeros((8, count))
+    out: cython.double[:, ::1] = rows
+    place: Place = Place(resolution)
+    for i in range(count):
+        place.find(points[0, i], points[1, i], points[2, i], False)
+        out[0, i], out[1, i], out[2, i] = place.u, place.x, place.z
+        out[3, i], out[4, i], out[5, i], out[7, i] = place.scale, place.mean, place.closed, place.sign
+    return Places(rows[:3], rows[3], rows[4:7], rows[7])
 
 
-def _rows(
-    n0: FloatArray, b: FloatArray, phase: Phase, spans: tuple[int, int], derivatives: bool
-) -> FloatArray:
-    """The table of U to BASE_PHI (or to CLOSED), shape (12 or 4, p)."""
-    opens = n0 < b
-    count = np.count_nonzero(opens)
-    if count == n0.size:
-        return _separation(n0, b, spans[0], derivatives)
-    if count == 0:
-        return _slip(n0 - b, atlas.geometry(b, phase), phase, spans, derivatives)
-    rows = np.empty((12 if derivatives else 4, n0.size))
-    chosen = np.flatnonzero(opens)
-    rows[:, chosen] = _separation(n0[chosen], b[chosen], spans[0], derivatives)
-    chosen = np.flatnonzero(~opens)
-    n0, b, phase = n0[chosen], b[chosen], phase.at(chosen)
-    rows[:, chosen] = _slip(n0 - b, atlas.geometry(b, phase), phase, spans, derivatives)
+def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndarray:
+    """low, high and width of `Place.geometry`, shape (3, point)."""
+    i: cython.Py_ssize_t
+    rows = np.empty((3, b_bar.shape[0]))
+    out: cython.double[:, ::1] = rows
+    place: Place = Place((2, 2, 2, 2))
+    for i in range(b_bar.shape[0]):
+        place.turn(phi[i])
+        place.geometry(b_bar[i])
+        out[0, i], out[1, i], out[2, i] = place.low, place.high, place.width
     return rows
-
-
-def _separation(n0: FloatArray, b: FloatArray, span: int, derivatives: bool) -> FloatArray:
-    """Rows of points with n0 < b: F = b / (1 + b) G, and 0 for n0 <= -b."""
-    safe_b = np.maximum(b, 1e-300)
-    bounded = np.maximum(n0, -safe_b)
-    below = np.maximum((safe_b - bounded) / safe_b, atlas.NEAR)  # 1 - n0 / b
-    above = np.maximum((safe_b + bounded) / safe_b, atlas.NEAR)
-    root_below, root_above = np.sqrt(below), np.sqrt(above)
-    u, u_delta, u_b = atlas.u_separation(2.0 * np.arctan2(root_below, root_above), b)
-    inside = (n0 > -b).astype(np.float64)
-    layer = 1.0 / (1.0 + b)
-    scale = b * layer * inside
-    zero = np.zeros_like(b)
-    if not derivatives:
-        return np.array((u * span, scale, zero, zero))
-    # d delta / d n0 = -1 / (b sin(delta)), d delta / d b = cos(delta) / (b sin(delta))
-    u_n0 = u_delta * layer * inside / (root_below * root_above) * -span
-    by_b = scale * u_b * span - u_n0 * (0.5 * (above - below))
-    return np.array(
-        (u * span, scale, zero, zero, u_n0, by_b, zero, layer * layer * inside, zero, zero, zero, zero)
-    )
-
-
-def _slip(
-    excess: FloatArray, shape: Geometry, phase: Phase, spans: tuple[int, int], derivatives: bool
-) -> FloatArray:
-    """Rows of points with n0 - b = excess >= 0: F = F_edge + E G below the slip limit, F_edge above."""
-    width = shape.width
-    inside = excess < width
-    t = np.minimum(
-        np.maximum(np.minimum(excess, width) / np.maximum(width, 1e-300), atlas.NEAR), 1.0 - atlas.NEAR
-    )
-    u, u_t = atlas.u_slip(t)
-    scale = width * inside
-    mean = _mean_force(excess, shape)
-    node = u * spans[1] + (spans[0] + NODES_BETWEEN)
-    one = np.ones_like(t)
-    if not derivatives:
-        return np.array((node, scale, mean, one))
-    ell_1_b, ell_2_b, ell_1_phi, ell_2_phi = shape.slopes(phase)
-    by_t = u_t * inside * spans[1]
-    width_b, width_phi = 0.5 * (ell_1_b + ell_2_b) - 1.0, 0.5 * (ell_1_phi + ell_2_phi)
-    at_low, at_high = _shares(inside, mean)
-    return np.array(
-        (
-            node,
-            scale,
-            mean,
-            one,
-            by_t,
-            -(1.0 + t * width_b) * by_t,
-            -t * width_phi * by_t,
-            width_b * inside,
-            width_phi * inside,
-            at_high - at_low,
-            at_low * ell_2_b - at_high * ell_1_b,
-            at_low * ell_2_phi - at_high * ell_1_phi,
-        )
-    )
-
-
-def _mean_force(excess: FloatArray, shape: Geometry) -> FloatArray:
-    """Mean force of a contact that does not slip, the admissible one nearest to zero.
-
-    Below the slip limit the one at the limit, where both bounds are F_edge.
-    """
-    reach = np.maximum(excess, shape.width)
-    low, high = shape.high - reach, reach - shape.low
-    return np.minimum(np.maximum(0.0, low), np.maximum(high, low))
-
-
-def _shares(inside: BoolArray, mean: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """How much of the mean force's derivative is that of the lower bound, and of the upper."""
-    half = 0.5 * inside
-    return np.where(inside, half, mean > 0.0), np.where(inside, half, mean < 0.0)

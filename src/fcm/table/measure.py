@@ -42,7 +42,7 @@ def sample(count: int, seed: int = SEED) -> tuple[FloatArray, FloatArray, FloatA
     phi = random.uniform(-np.pi, np.pi, count)
     near = random.integers(-1, 2, count) * np.pi + _small(count, -6, random)
     phi = np.where(random.random(count) < 0.25, near, phi)
-    width = atlas.geometry(b, atlas.Phase.of(atlas.fold(phi)[0])).width
+    width = atlas.geometry(b, phi).width
     inner = -b * np.cos(np.pi * random.random(count))
     slip = b + width * random.random(count)
     boundary = np.choose(random.integers(0, 3, count), (-b, b, b + width))
@@ -69,7 +69,7 @@ def _variation(count: int, random: np.random.Generator) -> FloatArray:
 
 def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArray[np.int64]:
     """Index into REGIMES."""
-    width = atlas.geometry(b_bar, atlas.Phase.of(atlas.fold(phi)[0])).width
+    width = atlas.geometry(b_bar, phi).width
     code = np.where(n0_bar < b_bar, 1, np.where(n0_bar - b_bar < width, 2, 3))
     return np.where(n0_bar <= -b_bar, 0, code)
 

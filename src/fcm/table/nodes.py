@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.table import atlas
-from fcm.table.atlas import FloatArray, Phase
+from fcm.table.atlas import FloatArray
 from fcm.table.locate import Resolution
 from fcm.table.part import Part
 
@@ -59,7 +59,7 @@ def slip_nodes(u: FloatArray, x: FloatArray, z: FloatArray, resolved: bool = Fal
         b = np.minimum(b, LARGEST_SLIP_B)
         away = np.where(b < 1.0 - 1e-10, 0.0, SMALLEST_PHI * b)
         phi = np.clip(phi, away, np.pi - away)
-    return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, Phase.of(phi)).width, b, phi)
+    return Nodes(b + atlas.t_slip(U) * atlas.geometry(b, phi).width, b, phi)
 
 
 def axes(part: Part) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from fcm.table import atlas
 from fcm.table.atlas import FloatArray
-from fcm.table.locate import NODES_BETWEEN, BoolArray, Place, Resolution, locate
+from fcm.table.locate import NODES_BETWEEN, Resolution, locate
+from fcm.table.tabulated import Frame
 
 MARGIN = 1  # nodes around those reached: a solver's path is another with another table
 GUARD = 6  # nodes at a cut side, beyond which the splines are those through all nodes, to 1e-7
@@ -58,39 +59,26 @@ class Part(NamedTuple):
         slips = random.random(count) * lengths.sum() >= lengths[0]
         u_1 = _uniform(random, count, self.separation, self.resolution[0])
         u_2 = _uniform(random, count, self.slip, self.resolution[1])
-        width = atlas.geometry(b, atlas.Phase.of(phi)).width
+        width = atlas.geometry(b, phi).width
         opened = b * np.cos(atlas.delta_separation(u_1, b))
         return np.where(slips, b + atlas.t_slip(u_2) * width, opened), b, phi
 
 
-class Frame:
-    """Where the nodes of a part are, of each chart along each axis (chart, 3), to place look-ups in it."""
-
-    def __init__(self, part: Part) -> None:
-        nu_1, nu_2, nx, nz = part.resolution
-        self.first_slip = nu_1 - 1 + NODES_BETWEEN
-        first, end = part.separation
-        slip_at = end - first - 1 + NODES_BETWEEN if end > first else 0  # in the stacked coefficients
-        ranges = [
-            [(nodes, count), (part.variation, nx), (part.phase, nz)]
-            for nodes, count in ((part.separation, nu_1), (part.slip, nu_2))
-        ]
-        limits = np.array([[_answered(*axis) for axis in chart] for chart in ranges], dtype=np.float64)
-        skipped = np.array([[nodes[0] for nodes, _ in chart] for chart in ranges])
-        self.all = np.array(((0, 0, 0), (self.first_slip, 0, 0)))
-        self.here = np.array(((0, 0, 0), (slip_at, 0, 0))) - skipped
-        self.low, self.high = limits[..., 0], limits[..., 1]
-
-    def within(self, place: Place) -> tuple[FloatArray, BoolArray]:
-        """Coordinates of places in the nodes of the part, and which places it does not answer for.
-
-        Where F needs no table, outside of both charts, any coordinates will do.
-        """
-        chart = (place.q[0] > self.first_slip - 1).astype(np.intp)
-        low, high, here = self.low[chart].T, self.high[chart].T, self.here[chart].T
-        q = place.q - self.all[chart].T
-        outside = ((q < low) | (q > high)).any(axis=0) & (place.scale != 0.0)
-        return np.maximum(np.minimum(q, high), low) + here, outside
+def frame(part: Part) -> Frame | None:
+    """Where the nodes of a part are, of each chart along each axis; None if it has them all."""
+    if part.whole:
+        return None
+    nu_1, nu_2, nx, nz = part.resolution
+    first, end = part.separation
+    slip_at = end - first - 1 + NODES_BETWEEN if end > first else 0  # in the stacked coefficients
+    ranges = [
+        [(nodes, count), (part.variation, nx), (part.phase, nz)]
+        for nodes, count in ((part.separation, nu_1), (part.slip, nu_2))
+    ]
+    answered = np.array([[_answered(*axis) for axis in chart] for chart in ranges], dtype=np.float64)
+    skipped = np.array([[nodes[0] for nodes, _ in chart] for chart in ranges])
+    here = np.array(((0.0, 0.0, 0.0), (slip_at, 0.0, 0.0))) - skipped
+    return Frame(answered[..., 0].copy(), answered[..., 1].copy(), here)
 
 
 def _answered(nodes: Range, count: int) -> tuple[int, int]:
@@ -125,7 +113,7 @@ class Reach:
         return fourier_gradients(*arrays)
 
     def _note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
-        place = locate(n0, b, phi, self.resolution, derivatives=False)
+        place = locate(np.stack((n0, b, phi)), self.resolution)
         self.looked_up += n0.size
         first_slip = self.resolution[0] - 1 + NODES_BETWEEN
         slips = place.q[0] > first_slip - 1

@@ -16,8 +16,9 @@ import numpy.typing as npt
 
 from fcm.contact import fourier_coefficients
 from fcm.table import spline
-from fcm.table.atlas import FloatArray, fold
+from fcm.table.atlas import FloatArray
 from fcm.table.build import charts
+from fcm.table.cubic import Cubic
 from fcm.table.locate import NODES_BETWEEN, Resolution, locate
 from fcm.table.lookup import Table
 from fcm.table.measure import sample
@@ -131,6 +132,12 @@ def _linear(axes: list[FloatArray], values: FloatArray) -> Callable[[FloatArray]
     return at
 
 
+def _fold(phi: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """phi modulo pi, and the sign that F_b takes with it."""
+    turns, folded = np.divmod(phi, np.pi)
+    return folded, 1.0 - 2.0 * np.mod(turns, 2.0)
+
+
 def _signed(F: FloatArray, sign: FloatArray) -> FloatArray:
     F[0] *= sign
     return F
@@ -140,7 +147,7 @@ def _box_linear(values: FloatArray) -> Coefficients:
     at = _linear(_box_axes(values.shape[1:]), values)
 
     def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
-        folded, sign = fold(phi)
+        folded, sign = _fold(phi)
         return _signed(at(np.array((n0, b, np.clip(folded, 0.0, np.pi)))), sign)
 
     return coefficients
@@ -148,14 +155,13 @@ def _box_linear(values: FloatArray) -> Coefficients:
 
 def _box_cubic(values: FloatArray) -> Coefficients:
     shape = values.shape[1:]
-    stacked = spline.stack(spline.interpolate(values, ((spline.FREE, spline.FREE),) * 3))
-    steps, neighbours = spline.strides((shape[1] + 2, shape[2] + 2))
+    cubic = Cubic(spline.stack(spline.interpolate(values, ((spline.FREE, spline.FREE),) * 3)))
     ends = [(axis[0], (axis.size - 1) / (axis[-1] - axis[0])) for axis in _box_axes(shape)]
 
     def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
-        folded, sign = fold(phi)
+        folded, sign = _fold(phi)
         q = np.array([(x - start) * per for x, (start, per) in zip((n0, b, folded), ends, strict=True)])
-        return _signed(spline.evaluate(stacked, np.maximum(q, 0.0), steps, neighbours, 1)[:, 0], sign)
+        return _signed(cubic.many(np.maximum(q, 0.0), False)[:, 0], sign)
 
     return coefficients
 
@@ -168,7 +174,7 @@ def _regimes_linear(resolution: Resolution, separation: FloatArray, slip: FloatA
     last = np.array(values.shape[1:])[:, None] - 1.0
 
     def coefficients(n0: FloatArray, b: FloatArray, phi: FloatArray) -> FloatArray:
-        place = locate(n0, b, phi, resolution, derivatives=False)
+        place = locate(np.stack((n0, b, phi)), resolution)
         G = at(np.clip(place.q, 0.0, last))
         return _signed(G * place.scale + place.base, place.sign)
 

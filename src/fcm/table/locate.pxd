@@ -1,0 +1,19 @@
+cdef class Place:
+    # of the table
+    cdef double span_1, span_2, span_x, span_z
+    cdef int first_slip
+    # of the point
+    cdef double sin_half, cos_half, sin_phi, cos_phi
+    cdef double ell_1, ell_2, low, high, width
+    cdef double sign, u, x, z, scale, mean, closed
+    # the chain rule
+    cdef double u_n, u_b, u_phi, x_b, x_phi, z_phi, scale_b, scale_phi, mean_n, mean_b, mean_phi
+
+    cdef void find(self, double n0, double b, double phi, bint gradient) noexcept nogil
+    cdef void turn(self, double phi) noexcept nogil
+    cdef void geometry(self, double b_bar) noexcept nogil
+    cdef void _variation(self, double b) noexcept nogil
+    cdef void _phase(self, double phi) noexcept nogil
+    cdef void _separation(self, double n0, double b, bint gradient) noexcept nogil
+    cdef void _slip(self, double b, double excess, bint gradient) noexcept nogil
+    cdef void _slip_slopes(self, double b, double t, double by_t) noexcept nogil

@@ -1,0 +1,16 @@
+from fcm.contact.closed_form cimport ClosedForm
+from fcm.contact.law cimport Law
+from fcm.table.cubic cimport Cubic
+from fcm.table.locate cimport Place
+
+cdef class Frame:
+    cdef const double[:, ::1] low, high, here
+    cdef bint within(self, Place place) noexcept nogil
+
+cdef class Tabulated(Law):
+    cdef Cubic cubic
+    cdef Place place
+    cdef Frame frame
+    cdef ClosedForm exact
+    cdef readonly long long outside
+    cdef void _chain(self, double[::1] out, Py_ssize_t at) noexcept nogil
