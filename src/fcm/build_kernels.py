@@ -3,6 +3,10 @@
 A kernel is Python that Cython's pure mode can also compile. Where it is compiled, Python imports the machine
 code, which then lies beside the source; where it could not be, the source itself: slower, and else the same.
 ``python src/fcm/build_kernels.py`` in the top folder, or ``make kernels``, compiles them in place.
+
+What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python and no lock,
+and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.cycle` and `closed_form`.
+There a float is a double; other types are named as Cython does. What is not declared is for Python to call.
 """
 
 from __future__ import annotations

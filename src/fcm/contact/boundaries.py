@@ -14,7 +14,6 @@ else:
     from fcm.contact.cycle import Cycle
     from fcm.contact.law import Law
 
-NAN = cython.declare(cython.double, float("nan"))
 UNKNOWN = cython.declare(cython.int, -1)  # as in `cycle`
 
 
@@ -25,23 +24,19 @@ class Boundaries(Law):
     def __init__(self) -> None:
         self.cycle = Cycle()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def evaluate(
         self,
-        n0_bar: cython.double,
-        b_bar: cython.double,
-        phi: cython.double,
-        gradient: cython.bint,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
         out: cython.double[::1],
         at: cython.Py_ssize_t,
-    ) -> cython.void:
+    ) -> None:
         """See `Law`."""
         i: cython.Py_ssize_t
         if self.cycle.place(n0_bar, b_bar, phi) == UNKNOWN:
-            for i in range(12 if gradient else 3):
-                out[at + i] = NAN
+            self.unknown(gradient, out, at)
             return
         out[at] = self.cycle.n0 + self.cycle.b
         out[at + 1] = self.cycle.n0 - self.cycle.b
@@ -52,8 +47,8 @@ class Boundaries(Law):
             out[at + 4], out[at + 5] = 1.0, 0.0
             out[at + 7], out[at + 8] = -1.0, 0.0
             # d ell / d(b, phi) by the directions theta_P and theta_N, which stay bounded
-            cos_phi: cython.double = self.cycle.cos_phi
-            sin_phi: cython.double = self.cycle.sin_phi
-            cosines: cython.double = self.cycle.cos_P + self.cycle.cos_N
+            cos_phi: float = self.cycle.cos_phi
+            sin_phi: float = self.cycle.sin_phi
+            cosines: float = self.cycle.cos_P + self.cycle.cos_N
             out[at + 10] = 0.5 * (cos_phi * (self.cycle.sin_P + self.cycle.sin_N) + sin_phi * cosines)
             out[at + 11] = 0.5 * (self.cycle.cos_P - self.cycle.cos_N)

@@ -7,6 +7,7 @@ cdef class Integrals(Cycle):
     cdef double b_n, b_b, b_phi, s_n, s_b, s_phi, c_n, c_b, c_phi
     cdef double kept_n, kept_b, kept_phi, force, span_b, span_s, span_c
     cdef int sum(self, double n0_bar, double b_bar, double phi, bint gradient) noexcept nogil
+    cdef void take(self) noexcept nogil
     cdef void _divide(self) noexcept nogil
     cdef void _stuck(self) noexcept nogil
     cdef double _load(self, double sin_theta, double cos_theta) noexcept nogil
@@ -18,3 +19,6 @@ cdef class Integrals(Cycle):
 
 cdef class ClosedForm(Law):
     cdef Integrals integrals
+    cdef void evaluate(
+        self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
+    ) noexcept nogil

@@ -16,7 +16,6 @@ else:
     from fcm.contact.law import Law
 
 PI = cython.declare(cython.double, 3.141592653589793)
-NAN = cython.declare(cython.double, float("nan"))
 LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
 UNKNOWN = cython.declare(cython.int, -1)  # as in `cycle`
 STUCK = cython.declare(cython.int, 0)
@@ -34,12 +33,7 @@ class Integrals(Cycle):
     the load is not small, and faster.
     """
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def sum(
-        self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double, gradient: cython.bint
-    ) -> cython.int:
+    def sum(self, n0_bar: float, b_bar: float, phi: float, gradient: bool) -> cython.int:
         """All of one contact; says what it does."""
         self.gradient = gradient
         self.F_b = self.F_s = self.F_c = 0.0
@@ -52,13 +46,10 @@ class Integrals(Cycle):
             self._stuck()
         return behaviour
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _divide(self) -> cython.void:
+    def _divide(self) -> None:
         """From integrals over the cycle to coefficients; u is still to be integrated, the spans had w."""
         if not self.light and self.opens:
-            sines: cython.double = self.first_sin * self.first_cos - self.end_sin * self.end_cos
+            sines: float = self.first_sin * self.first_cos - self.end_sin * self.end_cos
             self.F_b += self.first_cos - self.end_cos
             self.F_s += self.theta_1 + 0.5 * sines
             self.F_c += 0.5 * (self.end_sin - self.first_sin) * (self.end_sin + self.first_sin)
@@ -71,10 +62,7 @@ class Integrals(Cycle):
         self.s_n, self.s_b, self.s_phi = self.s_n / PI, self.s_b / PI, self.s_phi / PI
         self.c_n, self.c_b, self.c_phi = self.c_n / PI, self.c_b / PI, self.c_phi / PI
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _stuck(self) -> cython.void:
+    def _stuck(self) -> None:
         """F_b = clip(0, ell_2 - n0, n0 - ell_1), with ell from (A9)."""
         self.F_b, self.F_s = self.stuck_force(), 1.0
         # (b +- cos(phi)) / ell by the directions theta_P and theta_N, which stay bounded
@@ -87,10 +75,7 @@ class Integrals(Cycle):
             self.b_b = self.cos_phi * self.sin_P + self.sin_phi * self.cos_P
             self.b_phi = self.cos_P
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def take(self) -> cython.void:
+    def take(self) -> None:
         """Adds the integrals over a span."""
         if self.span == 0:
             self.light = max(abs(self.n0), self.b) < LIGHT
@@ -112,58 +97,44 @@ class Integrals(Cycle):
         else:
             self.force = self.end_sin - self.w_end
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _load(self, sin_theta: cython.double, cos_theta: cython.double) -> cython.double:
+    def _load(self, sin_theta: float, cos_theta: float) -> cython.double:
         """The normal load n at an angle."""
         return self.n0 + self.b * (sin_theta * self.cos_phi + cos_theta * self.sin_phi)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _keep(self, pull: cython.double, sin_theta: cython.double, cos_theta: cython.double) -> cython.void:
+    def _keep(self, pull: float, sin_theta: float, cos_theta: float) -> None:
         """What a stick keeps of a slip, or a closing, that ended at an angle: dw/dx = -pull dn/dx."""
         self.kept_n = -pull
         self.kept_b = -pull * (sin_theta * self.cos_phi + cos_theta * self.sin_phi)
         self.kept_phi = -pull * self.b * (cos_theta * self.cos_phi - sin_theta * self.sin_phi)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _motion(self) -> cython.void:
+    def _motion(self) -> None:
         """Less the integrals of w, w sin(theta), w cos(theta): w at rest, and w_end with what it lacks."""
-        stick_sin: cython.double = self.start_cos - self.begin_cos
-        stick_cos: cython.double = self.begin_sin - self.start_sin
+        stick_sin: float = self.start_cos - self.begin_cos
+        stick_cos: float = self.begin_sin - self.start_sin
         self.span_b = -(self.w_start * (self.length - self.slip) + self.w_end * self.slip)
         self.span_s = -(self.w_start * stick_sin + self.w_end * (self.begin_cos - self.end_cos))
         self.span_c = -(self.w_start * stick_cos + self.w_end * (self.end_sin - self.begin_sin))
         if self.side != 0.0:
-            half_cube: cython.double = 0.5 * self.sin * self.versine
-            rise: cython.double = self.side * self.slope
-            bend: cython.double = self.side * self.curvature
-            g_cos: cython.double = bend * (0.5 * self.deficit - half_cube) - 0.5 * rise * self.sin * self.sin
-            g_sin: cython.double = -0.5 * bend * self.versine * self.versine - rise * (
-                0.5 * self.deficit + half_cube
-            )
+            half_cube: float = 0.5 * self.sin * self.versine
+            rise: float = self.side * self.slope
+            bend: float = self.side * self.curvature
+            g_cos: float = bend * (0.5 * self.deficit - half_cube) - 0.5 * rise * self.sin * self.sin
+            g_sin: float = -0.5 * bend * self.versine * self.versine - rise * (0.5 * self.deficit + half_cube)
             self.span_b += bend * self.deficit + rise * self.versine
             self.span_s -= self.end_sin * g_cos - self.end_cos * g_sin
             self.span_c -= self.end_cos * g_cos + self.end_sin * g_sin
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _stick_force(self) -> cython.void:
+    def _stick_force(self) -> None:
         """The integrals of the force in a stick: y after the start, force + cos(start) sin(y) - ... of it."""
-        length: cython.double = self.length - self.slip
+        length: float = self.length - self.slip
         sine, versine, deficit = arc(length)
-        start_sin: cython.double = self.start_sin
-        start_cos: cython.double = self.start_cos
-        half_cube: cython.double = 0.5 * sine * versine
-        g_cos: cython.double = (
+        start_sin: float = self.start_sin
+        start_cos: float = self.start_cos
+        half_cube: float = 0.5 * sine * versine
+        g_cos: float = (
             self.force * sine + start_cos * 0.5 * sine * sine - start_sin * (half_cube - 0.5 * deficit)
         )
-        g_sin: cython.double = (
+        g_sin: float = (
             self.force * versine
             + start_cos * (half_cube + 0.5 * deficit)
             - start_sin * 0.5 * versine * versine
@@ -172,14 +143,11 @@ class Integrals(Cycle):
         self.span_s = start_sin * g_cos + start_cos * g_sin
         self.span_c = start_cos * g_cos - start_sin * g_sin
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _stick_gradient(self) -> cython.void:
+    def _stick_gradient(self) -> None:
         """The integrals of df/dx = -dw/dx in a stick."""
-        length: cython.double = self.length - self.slip
-        sines: cython.double = self.start_cos - self.begin_cos
-        cosines: cython.double = self.begin_sin - self.start_sin
+        length: float = self.length - self.slip
+        sines: float = self.start_cos - self.begin_cos
+        cosines: float = self.begin_sin - self.start_sin
         self.b_n -= length * self.kept_n
         self.b_b -= length * self.kept_b
         self.b_phi -= length * self.kept_phi
@@ -190,28 +158,25 @@ class Integrals(Cycle):
         self.c_b -= cosines * self.kept_b
         self.c_phi -= cosines * self.kept_phi
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _slipped(self) -> cython.void:
+    def _slipped(self) -> None:
         """The integrals of +-n and of +-dn/dx, with dn/dx = 1, sin(theta + phi), b cos(theta + phi)."""
-        sin: cython.double = self.end_sin
-        cos: cython.double = self.end_cos
-        s: cython.double = self.side * self.sin_phi
-        c: cython.double = self.side * self.cos_phi
-        sin_2: cython.double = 0.5 * (self.deficit + self.sin * self.versine)  # of sin(y)^2
-        sin_cos: cython.double = 0.5 * self.sin * self.sin
-        one_s: cython.double = sin * self.sin - cos * self.versine  # of 1 times sin(theta)
-        one_c: cython.double = sin * self.versine + cos * self.sin
-        s_s: cython.double = sin * sin * (self.slip - sin_2) + cos * cos * sin_2 - 2.0 * sin * cos * sin_cos
-        c_c: cython.double = self.slip - s_s
-        s_c: cython.double = sin * cos * (self.slip - 2.0 * sin_2) + (sin - cos) * (sin + cos) * sin_cos
-        b_n: cython.double = self.side * self.slip
-        s_n: cython.double = self.side * one_s
-        c_n: cython.double = self.side * one_c
-        b_b: cython.double = c * one_s + s * one_c
-        s_b: cython.double = c * s_s + s * s_c
-        c_b: cython.double = c * s_c + s * c_c
+        sin: float = self.end_sin
+        cos: float = self.end_cos
+        s: float = self.side * self.sin_phi
+        c: float = self.side * self.cos_phi
+        sin_2: float = 0.5 * (self.deficit + self.sin * self.versine)  # of sin(y)^2
+        sin_cos: float = 0.5 * self.sin * self.sin
+        one_s: float = sin * self.sin - cos * self.versine  # of 1 times sin(theta)
+        one_c: float = sin * self.versine + cos * self.sin
+        s_s: float = sin * sin * (self.slip - sin_2) + cos * cos * sin_2 - 2.0 * sin * cos * sin_cos
+        c_c: float = self.slip - s_s
+        s_c: float = sin * cos * (self.slip - 2.0 * sin_2) + (sin - cos) * (sin + cos) * sin_cos
+        b_n: float = self.side * self.slip
+        s_n: float = self.side * one_s
+        c_n: float = self.side * one_c
+        b_b: float = c * one_s + s * one_c
+        s_b: float = c * s_s + s * s_c
+        c_b: float = c * s_c + s * c_c
         if self.light:
             self.span_b += self.n0 * b_n + self.b * b_b
             self.span_s += self.n0 * s_n + self.b * s_b
@@ -235,23 +200,18 @@ class ClosedForm(Law):
     def __init__(self) -> None:
         self.integrals = Integrals()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def evaluate(
         self,
-        n0_bar: cython.double,
-        b_bar: cython.double,
-        phi: cython.double,
-        gradient: cython.bint,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
         out: cython.double[::1],
         at: cython.Py_ssize_t,
-    ) -> cython.void:
+    ) -> None:
         """See `Law`."""
-        i: cython.Py_ssize_t
         if self.integrals.sum(n0_bar, b_bar, phi, gradient) == UNKNOWN:
-            for i in range(12 if gradient else 3):
-                out[at + i] = NAN
+            self.unknown(gradient, out, at)
             return
         out[at], out[at + 1], out[at + 2] = self.integrals.F_b, self.integrals.F_s, self.integrals.F_c
         if gradient:

@@ -26,5 +26,6 @@ cdef class Cycle:
     cdef void _slip(self, double slope, double curvature, bint turns) noexcept nogil
     cdef void _end(self) noexcept nogil
 
+cdef double angle_from(double sin_0, double cos_0, double sin_1, double cos_1) noexcept nogil
 cdef double beyond_sine(double y, double sine) noexcept nogil
 cdef (double, double, double) arc(double y) noexcept nogil

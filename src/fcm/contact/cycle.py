@@ -28,35 +28,24 @@ SLIPPING = cython.declare(cython.int, 1)
 OPEN = cython.declare(cython.int, 2)  # below n0 = -b
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def arc(y: cython.double) -> tuple[cython.double, cython.double, cython.double]:
+def arc(y: float) -> tuple[float, float, float]:
     """sin(y), 1 - cos(y) and y - sin(y), each to full relative accuracy."""
-    sin_half: cython.double = sin(0.5 * y)
-    sine: cython.double = 2.0 * sin_half * cos(0.5 * y)
+    sin_half: float = sin(0.5 * y)
+    sine: float = 2.0 * sin_half * cos(0.5 * y)
     return sine, 2.0 * sin_half * sin_half, beyond_sine(y, sine)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def beyond_sine(y: cython.double, sine: cython.double) -> cython.double:
+def beyond_sine(y: float, sine: float) -> float:
     """y - sin(y), to full relative accuracy."""
-    square: cython.double = y * y
+    square: float = y * y
     if y < 0.02:
         return y * square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0))
     return y - sine
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def angle_from(
-    sin_0: cython.double, cos_0: cython.double, sin_1: cython.double, cos_1: cython.double
-) -> cython.double:
+def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
     """Angle from direction 0 forward to direction 1, in [0, 2 pi) [rad]."""
-    turn: cython.double = atan2(sin_1 * cos_0 - cos_1 * sin_0, cos_1 * cos_0 + sin_1 * sin_0)
+    turn: float = atan2(sin_1 * cos_0 - cos_1 * sin_0, cos_1 * cos_0 + sin_1 * sin_0)
     return turn + 2.0 * PI if turn < 0.0 else turn
 
 
@@ -75,31 +64,22 @@ class Cycle:
     ``w_start`` to ``w_end``, and side (slope sin(y) + curvature (1 - cos(y))) of it in the last y [rad].
     """
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def take(self) -> cython.void:
+    def take(self) -> None:
         """What is made of a span; called at the end of each."""
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def find(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.int:
+    def find(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
         """What a contact does; where it is SLIPPING, its cycle has been gone through."""
         behaviour: cython.int = self.place(n0_bar, b_bar, phi)
         if behaviour == SLIPPING:
             self._pass()
         return behaviour
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def place(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.int:
+    def place(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
         """What a contact does. An infinite n0_bar is as any very large one."""
         if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
             return UNKNOWN
         # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
-        shrink: cython.double = SHRINK if b_bar > LARGEST else 1.0
+        shrink: float = SHRINK if b_bar > LARGEST else 1.0
         self.n0 = min(max(n0_bar * shrink, -FARTHEST), FARTHEST)
         self.b = b_bar * shrink
         self._limits(phi)
@@ -109,32 +89,26 @@ class Cycle:
             return STUCK
         return SLIPPING
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def stuck_force(self) -> cython.double:
         """Mean force of a contact that never slips: the admissible one nearest to zero."""
         return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _limits(self, phi: cython.double) -> cython.void:
+    def _limits(self, phi: float) -> None:
         """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
 
         theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
         branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
         (b = 1 at phi = 0 or pi) the limit is constant, and any angle serves.
         """
-        b: cython.double = self.b
-        sin_half: cython.double = sin(0.5 * phi)
-        cos_half: cython.double = cos(0.5 * phi)
+        b: float = self.b
+        sin_half: float = sin(0.5 * phi)
+        cos_half: float = cos(0.5 * phi)
         self.sin_phi = 2.0 * sin_half * cos_half
         self.cos_phi = (cos_half - sin_half) * (cos_half + sin_half)
         # 1 -+ b cos(phi), written so that nothing cancels near b = 1 with phi near 0 or pi
-        minus: cython.double = (1.0 - b) + 2.0 * b * sin_half * sin_half
-        plus: cython.double = (1.0 - b) + 2.0 * b * cos_half * cos_half
-        side: cython.double = b * self.sin_phi
+        minus: float = (1.0 - b) + 2.0 * b * sin_half * sin_half
+        plus: float = (1.0 - b) + 2.0 * b * cos_half * cos_half
+        side: float = b * self.sin_phi
         self.ell_1, self.ell_2 = hypot(minus, side), hypot(plus, side)
         self.sin_P, self.cos_P, self.sin_N, self.cos_N = 1.0, 0.0, -1.0, 0.0
         if self.ell_1 > 0.0:
@@ -142,19 +116,16 @@ class Cycle:
         if self.ell_2 > 0.0:
             self.sin_N, self.cos_N = -plus / self.ell_2, -side / self.ell_2
         # the extremes of the limits, by ell - b without the cancellation at large b
-        twice: cython.double = 2.0 * b * self.cos_phi
+        twice: float = 2.0 * b * self.cos_phi
         self.lower_P = (1.0 - twice) / (self.ell_1 + b) - (self.n0 - b)
         self.upper_N = (self.n0 - b) - (1.0 + twice) / (self.ell_2 + b)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _pass(self) -> cython.void:
+    def _pass(self) -> None:
         """Through the spans, in the order in which theta_P and theta_N come while the contact is closed."""
         self._start()
-        length: cython.double = 2.0 * self.theta_1
-        to_P: cython.double = angle_from(self.first_sin, self.first_cos, self.sin_P, self.cos_P)
-        to_N: cython.double = length
+        length: float = 2.0 * self.theta_1
+        to_P: float = angle_from(self.first_sin, self.first_cos, self.sin_P, self.cos_P)
+        to_N: float = length
         if self.opens:
             to_N = angle_from(self.first_sin, self.first_cos, self.sin_N, self.cos_N)
         else:  # always comes by theta_P, if only at the very end
@@ -180,10 +151,7 @@ class Cycle:
         else:
             self._until_N(length)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _start(self) -> cython.void:
+    def _start(self) -> None:
         """Where the cycle starts, (A3), and what follows a separation, (20) to (22)."""
         self.span = 0
         self.opens = self.n0 < self.b
@@ -193,11 +161,11 @@ class Cycle:
             self.first_sin, self.first_cos, self.w_end = self.sin_N, self.cos_N, self.upper_N
         else:
             # b +- n0 are exact or nearly so where they are small: theta_1 is accurate at both ends
-            above: cython.double = sqrt(self.b + self.n0)
-            below: cython.double = sqrt(self.b - self.n0)
+            above: float = sqrt(self.b + self.n0)
+            below: float = sqrt(self.b - self.n0)
             self.theta_1, self.closing_rate = 2.0 * atan2(above, below), above * below
-            cos_1: cython.double = -self.n0 / self.b
-            sin_1: cython.double = self.closing_rate / self.b
+            cos_1: float = -self.n0 / self.b
+            sin_1: float = self.closing_rate / self.b
             self.first_sin = self.cos_phi * cos_1 - self.sin_phi * sin_1
             self.first_cos = self.sin_phi * cos_1 + self.cos_phi * sin_1
             self.w_end = self.first_sin
@@ -208,10 +176,7 @@ class Cycle:
                 self.pull = self.first_cos / self.closing_rate
         self.end_sin, self.end_cos = self.first_sin, self.first_cos
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _until_P(self, length: cython.double) -> cython.void:
+    def _until_P(self, length: float) -> None:
         """Up to theta_P, where positive slip ends."""
         self._until(self.lower_P, 2.0 * self.sin_P - self.lower_P, length)
         self.end_sin, self.end_cos = self.sin_P, self.cos_P
@@ -221,10 +186,7 @@ class Cycle:
             self._slip(-2.0 * self.cos_P, self.ell_1 - 2.0 * self.sin_P, False)
         self._end()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _until_N(self, length: cython.double) -> cython.void:
+    def _until_N(self, length: float) -> None:
         """Up to theta_N, where negative slip ends."""
         self._until(2.0 * self.sin_N - self.upper_N, self.upper_N, length)
         self.end_sin, self.end_cos = self.sin_N, self.cos_N
@@ -234,14 +196,11 @@ class Cycle:
             self._slip(2.0 * self.cos_N, self.ell_2 + 2.0 * self.sin_N, False)
         self._end()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _until_open(self, length: cython.double) -> cython.void:
+    def _until_open(self, length: float) -> None:
         """Up to the separation, (A2), where both limits are sin(theta)."""
-        cos_1: cython.double = -self.n0 / self.b
-        sin_1: cython.double = self.closing_rate / self.b
-        sin_end: cython.double = self.cos_phi * cos_1 + self.sin_phi * sin_1
+        cos_1: float = -self.n0 / self.b
+        sin_1: float = self.closing_rate / self.b
+        sin_end: float = self.cos_phi * cos_1 + self.sin_phi * sin_1
         self._until(sin_end, sin_end, length)
         self.end_sin, self.end_cos = sin_end, self.sin_phi * cos_1 - self.cos_phi * sin_1
         if self.side != 0.0:
@@ -250,15 +209,12 @@ class Cycle:
             )
         self._end()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _until(self, lower: cython.double, upper: cython.double, length: cython.double) -> cython.void:
+    def _until(self, lower: float, upper: float, length: float) -> None:
         """The whole of a span in one clip: w between the limits as they are at its end."""
         self.start_sin, self.start_cos, self.length = self.end_sin, self.end_cos, length
         self.w_start = self.w_end
         self.w_end = max(lower, min(self.w_start, upper))
-        before: cython.double = self.side
+        before: float = self.side
         self.side = 0.0
         if self.w_end > self.w_start:
             self.side = 1.0
@@ -266,10 +222,7 @@ class Cycle:
             self.side = -1.0
         self.goes_on = self.goes_on and self.side == before
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _slip(self, slope: cython.double, curvature: cython.double, turns: cython.bint) -> cython.void:
+    def _slip(self, slope: float, curvature: float, turns: bool) -> None:
         """How long the slip of a span lasts: slope sin(y) + curvature (1 - cos(y)) = change of w.
 
         This is (A8), (A11) to (A13) measured back from the end of the slip, in the form that keeps its
@@ -277,18 +230,15 @@ class Cycle:
         """
         self.slope, self.curvature, self.slip = slope, curvature, self.length
         if not self.goes_on:
-            scale: cython.double = 1.0 / max(1.0, self.b)
-            change: cython.double = fabs(self.w_end - self.w_start) * scale
-            rise: cython.double = slope * scale
-            root: cython.double = sqrt(max(rise * rise + change * (2.0 * curvature * scale - change), 0.0))
+            scale: float = 1.0 / max(1.0, self.b)
+            change: float = fabs(self.w_end - self.w_start) * scale
+            rise: float = slope * scale
+            root: float = sqrt(max(rise * rise + change * (2.0 * curvature * scale - change), 0.0))
             self.slip = min(2.0 * atan2(change, max(rise + root, 0.0)), self.length)
         # one that its own limit ends is over; one by a limit that recedes, a rounding error made up
         self.goes_on = not turns and slope >= 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _end(self) -> cython.void:
+    def _end(self) -> None:
         """The end of a span."""
         if self.side == 0.0:
             self.goes_on = False

@@ -7,27 +7,32 @@ F_c, then the derivatives of each by n0_bar, b_bar and phi, twelve in all.
 import cython
 import numpy as np
 
+NAN = cython.declare(cython.double, float("nan"))
+
 
 @cython.cclass
 class Law:
     """Base class; a subclass defines `evaluate`."""
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def evaluate(
         self,
-        n0_bar: cython.double,
-        b_bar: cython.double,
-        phi: cython.double,
-        gradient: cython.bint,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
         out: cython.double[::1],
         at: cython.Py_ssize_t,
-    ) -> cython.void:
+    ) -> None:
         """The numbers of one point to out[at:], the first three or with the gradient all twelve.
 
         b_bar is not negative. Where an argument is NaN, or b_bar or phi infinite, they are NaN.
         """
+
+    def unknown(self, gradient: bool, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
+        """NaN for each of the numbers."""
+        i: cython.Py_ssize_t
+        for i in range(12 if gradient else 3):
+            out[at + i] = NAN
 
     def many(self, n0_bar: object, b_bar: object, phi: object, gradient: cython.bint) -> np.ndarray:
         """The numbers of many points, shape (3 or 12, ...); the arguments broadcast to the shape of the rest.
@@ -45,17 +50,15 @@ class Law:
             raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
         return out.T.reshape(numbers, *shape)
 
-    @cython.cfunc
-    @cython.exceptval(check=False)
     def _fill(
         self,
         n0_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
         b_bar: cython.const[cython.double][::1],  # type: ignore[valid-type]
         phi: cython.const[cython.double][::1],  # type: ignore[valid-type]
-        gradient: cython.bint,
+        gradient: bool,
         out: cython.double[::1],
         numbers: cython.Py_ssize_t,
-    ) -> cython.bint:
+    ) -> bool:
         """Whether an element of b_bar is negative; if none is, all is done."""
         i: cython.Py_ssize_t
         with cython.nogil:

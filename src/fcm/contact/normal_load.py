@@ -6,18 +6,15 @@ from cython.cimports.libc.math import atan2, fabs, sqrt
 PI = cython.declare(cython.double, 3.141592653589793)
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def normal_load(n0_star: cython.double) -> tuple[cython.double, cython.double, cython.double, cython.double]:
+def normal_load(n0_star: float) -> tuple[float, float, float, float]:
     """N_b, N_s and their derivatives by n0_star: theta_1 / pi and 2 sin(theta_1) / pi."""
-    inside: cython.double = min(max(n0_star, -1.0), 1.0)
+    inside: float = min(max(n0_star, -1.0), 1.0)
     # 1 +- n0_star are exact where they are small, and carry theta_1 to full accuracy at both ends
-    closed: cython.double = sqrt(1.0 + inside)
-    open_: cython.double = sqrt(1.0 - inside)
-    theta_1: cython.double = 2.0 * atan2(closed, open_)
-    sin_1: cython.double = closed * open_
-    N_b: cython.double = (sin_1 + inside * theta_1) / PI
+    closed: float = sqrt(1.0 + inside)
+    open_: float = sqrt(1.0 - inside)
+    theta_1: float = 2.0 * atan2(closed, open_)
+    sin_1: float = closed * open_
+    N_b: float = (sin_1 + inside * theta_1) / PI
     if fabs(n0_star) > 1.0:
         N_b = max(n0_star, 0.0)
     return N_b, (inside * sin_1 + theta_1) / PI, theta_1 / PI, 2.0 * sin_1 / PI

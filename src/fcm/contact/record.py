@@ -41,10 +41,7 @@ class Cycles(NamedTuple):
 class Record(Cycle):
     """Writes each span down."""
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def take(self) -> cython.void:
+    def take(self) -> None:
         """One row of numbers for each of the fields of `Spans`."""
         self.spans[0, self.span, self.point] = self.length
         self.spans[1, self.span, self.point] = self.slip

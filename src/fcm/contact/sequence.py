@@ -40,10 +40,7 @@ class Sequence(Cycle):
     def __init__(self) -> None:
         self.regions = np.empty((MOST, 3))
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def of(self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double) -> cython.longlong:
+    def of(self, n0_bar: float, b_bar: float, phi: float) -> cython.longlong:
         """The number of the sequence; 0 where an argument is no number."""
         self.count, self.code = 0, 0
         behaviour: cython.int = self.find(n0_bar, b_bar, phi)
@@ -55,19 +52,16 @@ class Sequence(Cycle):
             self._region(NEGATIVE if self.last_slip > 0.0 else POSITIVE, self.since, NAN)
         return self.code
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def take(self) -> cython.void:
+    def take(self) -> None:
         """Adds the regions of a span."""
         if self.span == 0:
             self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
             self.state = 2.0 if self.opens else -1.0
             if self.opens:
                 self._region(SEPARATION, 0.0, NAN)
-        side: cython.double = self._seen()
-        slip: cython.double = self.slip if side == self.side else 0.0
-        stick: cython.double = self.length - (self.slip if side != 0.0 else 0.0)
+        side: float = self._seen()
+        slip: float = self.slip if side == self.side else 0.0
+        stick: float = self.length - (self.slip if side != 0.0 else 0.0)
         if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
             self._region(STICK, self.since, self.w_start)
             self.state = 0.0
@@ -77,10 +71,7 @@ class Sequence(Cycle):
         if side != 0.0:
             self.state = self.last_slip = side
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _seen(self) -> cython.double:
+    def _seen(self) -> float:
         """Side of the slip in a span, 0 where there is none to be seen."""
         if self.opens:
             return self.side if fabs(self.w_end - self.w_start) > INVISIBLE else 0.0
@@ -88,10 +79,7 @@ class Sequence(Cycle):
             return 0.0
         return 1.0 if self.span == 0 else -1.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _region(self, letter: cython.int, since: cython.double, w: cython.double) -> cython.void:
+    def _region(self, letter: cython.int, since: float, w: float) -> None:
         self.regions[self.count, 0], self.regions[self.count, 1], self.regions[self.count, 2] = (
             letter,
             since,
@@ -105,7 +93,7 @@ class Sequence(Cycle):
     ) -> tuple[float, np.ndarray]:
         """Angle at which the first region begins [rad], and the regions (region, 3); arguments all finite."""
         self.of(n0_bar, b_bar, phi)
-        at: cython.double = 0.0
+        at: float = 0.0
         if self.count > 1:
             at = atan2(self.end_sin, self.end_cos) if self.opens else atan2(self.first_sin, self.first_cos)
         return at, np.array(self.regions[: self.count])

@@ -4,3 +4,6 @@ cdef class Cubic:
     cdef void evaluate(
         self, double u, double x, double z, bint gradient, double[::1] out, Py_ssize_t at
     ) noexcept nogil
+
+cdef (double, double, double, double) weights(double f) noexcept nogil
+cdef (double, double, double, double) slopes(double f) noexcept nogil

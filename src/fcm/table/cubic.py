@@ -9,26 +9,20 @@ import cython
 import numpy as np
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def weights(
-    f: cython.double,
-) -> tuple[cython.double, cython.double, cython.double, cython.double]:
+    f: float,
+) -> tuple[float, float, float, float]:
     """Those of the four coefficients."""
-    g: cython.double = 1.0 - f
-    third: cython.double = (1.0 + 3.0 * f * (1.0 + f * (1.0 - f))) / 6.0
+    g: float = 1.0 - f
+    third: float = (1.0 + 3.0 * f * (1.0 + f * (1.0 - f))) / 6.0
     return g * g * g / 6.0, (4.0 + 3.0 * f * f * (f - 2.0)) / 6.0, third, f * f * f / 6.0
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
 def slopes(
-    f: cython.double,
-) -> tuple[cython.double, cython.double, cython.double, cython.double]:
+    f: float,
+) -> tuple[float, float, float, float]:
     """Their derivatives by f."""
-    g: cython.double = 1.0 - f
+    g: float = 1.0 - f
     return -0.5 * g * g, f * (1.5 * f - 2.0), 0.5 + f * (1.0 - 1.5 * f), 0.5 * f * f
 
 
@@ -44,18 +38,15 @@ class Cubic:
         self.last = planes * self.step_u - (3 * self.step_u + 3 * self.step_x + 4)
         self.coefficients = coefficients.reshape(-1)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def evaluate(
         self,
-        u: cython.double,
-        x: cython.double,
-        z: cython.double,
-        gradient: cython.bint,
+        u: float,
+        x: float,
+        z: float,
+        gradient: bool,
         out: cython.double[::1],
         at: cython.Py_ssize_t,
-    ) -> cython.void:
+    ) -> None:
         """Values of the three at (u, x, z), in nodes, to out[at:], then their derivatives by u, x and z."""
         w_u = cython.declare(cython.double[4])
         w_x = cython.declare(cython.double[4])
@@ -76,24 +67,24 @@ class Cubic:
         corner: cython.Py_ssize_t = min(i * self.step_u + j * self.step_x + k, self.last)
         m: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        c_0: cython.double
-        c_1: cython.double
-        c_2: cython.double
-        c_3: cython.double
+        c_0: float
+        c_1: float
+        c_2: float
+        c_3: float
         for m in range(3):
-            value: cython.double = 0.0
-            by_u: cython.double = 0.0
-            by_x: cython.double = 0.0
-            by_z: cython.double = 0.0
+            value: float = 0.0
+            by_u: float = 0.0
+            by_x: float = 0.0
+            by_z: float = 0.0
             for i in range(4):
-                plane: cython.double = 0.0
-                plane_x: cython.double = 0.0
-                plane_z: cython.double = 0.0
+                plane: float = 0.0
+                plane_x: float = 0.0
+                plane_z: float = 0.0
                 for j in range(4):
                     p = 3 * (corner + i * self.step_u + j * self.step_x) + m
                     c_0, c_1 = self.coefficients[p], self.coefficients[p + 3]
                     c_2, c_3 = self.coefficients[p + 6], self.coefficients[p + 9]
-                    row: cython.double = w_z[0] * c_0 + w_z[1] * c_1 + w_z[2] * c_2 + w_z[3] * c_3
+                    row: float = w_z[0] * c_0 + w_z[1] * c_1 + w_z[2] * c_2 + w_z[3] * c_3
                     plane += w_x[j] * row
                     if gradient:
                         plane_x += d_x[j] * row

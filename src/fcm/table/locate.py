@@ -45,12 +45,7 @@ class Place:
         self.span_x, self.span_z = nodes_x - 1, nodes_z - 1
         self.first_slip = nodes_1 - 1 + NODES_BETWEEN
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def find(
-        self, n0: cython.double, b: cython.double, phi: cython.double, gradient: cython.bint
-    ) -> cython.void:
+    def find(self, n0: float, b: float, phi: float, gradient: bool) -> None:
         """The place of a point, all finite, b not negative; the chain rule with the gradient only."""
         phi = fmod(phi, 2.0 * PI)
         if phi < 0.0:
@@ -71,135 +66,114 @@ class Place:
             self.x_phi *= self.scale
             self.z_phi *= self.scale
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def turn(self, phi: cython.double) -> cython.void:
+    def turn(self, phi: float) -> None:
         """Sines and cosines of the phase."""
         self.sin_half, self.cos_half = sin(0.5 * phi), cosine(0.5 * phi)
         self.sin_phi = 2.0 * self.sin_half * self.cos_half
         self.cos_phi = (self.cos_half - self.sin_half) * (self.cos_half + self.sin_half)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def geometry(self, b_bar: cython.double) -> cython.void:
+    def geometry(self, b_bar: float) -> None:
         """ell_1, ell_2 of (A9), low = ell_1 - b, high = ell_2 - b, width of slip (ell_1 + ell_2) / 2 - b.
 
         The width has full relative accuracy, however small it is.
         """
-        b: cython.double = min(b_bar, HUGE_B)
-        gap: cython.double = b - 1.0
-        root: cython.double = 2.0 * sqrt(b)
+        b: float = min(b_bar, HUGE_B)
+        gap: float = b - 1.0
+        root: float = 2.0 * sqrt(b)
         self.ell_1, self.ell_2 = hypot(gap, root * self.sin_half), hypot(gap, root * self.cos_half)
-        sum_1: cython.double = self.ell_1 + b
-        sum_2: cython.double = self.ell_2 + b
+        sum_1: float = self.ell_1 + b
+        sum_2: float = self.ell_2 + b
         self.low, self.high = (1.0 - 2.0 * b * self.cos_phi) / sum_1, (1.0 + 2.0 * b * self.cos_phi) / sum_2
         # width (ell_1 + ell_2 + 2 b) = ell_1 ell_2 + 1 - b^2, for b > 1 as a quotient
-        total: cython.double = self.ell_1 * self.ell_2 + fabs(gap) * (b + 1.0)
+        total: float = self.ell_1 * self.ell_2 + fabs(gap) * (b + 1.0)
         if gap > 0.0:
-            side: cython.double = 2.0 * b * self.sin_phi
+            side: float = 2.0 * b * self.sin_phi
             total = side * side / total
         self.width = total / (sum_1 + sum_2)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _variation(self, b: cython.double) -> cython.void:
+    def _variation(self, b: float) -> None:
         """x, 0 at b = 0 and the last node at infinity, and its slopes; that by b is infinite at b = 0."""
-        root: cython.double = sqrt(min(b, LARGEST_B))
-        s: cython.double = atan(root) * (4.0 / PI) - 1.0
-        cone: cython.double = CONE * (self.sin_phi * self.sin_phi + TIP)
-        inverse: cython.double = 1.0 / (s * s + cone)
-        other: cython.double = 1.0 / (1.0 + cone)
-        half: cython.double = 0.5 * cbrt(inverse / other)
+        root: float = sqrt(min(b, LARGEST_B))
+        s: float = atan(root) * (4.0 / PI) - 1.0
+        cone: float = CONE * (self.sin_phi * self.sin_phi + TIP)
+        inverse: float = 1.0 / (s * s + cone)
+        other: float = 1.0 / (1.0 + cone)
+        half: float = 0.5 * cbrt(inverse / other)
         self.x = (s * half + 0.5) * self.span_x
-        by_s: cython.double = half * (1.0 - s * s * inverse * (2.0 / 3.0)) * (2.0 / PI)
+        by_s: float = half * (1.0 - s * s * inverse * (2.0 / 3.0)) * (2.0 / PI)
         self.x_b = by_s / ((1.0 + root * root) * sqrt(max(b, NEAR))) * self.span_x
-        by_cone: cython.double = s * half * (other - inverse) * (2.0 * CONE / 3.0)
+        by_cone: float = s * half * (other - inverse) * (2.0 * CONE / 3.0)
         self.x_phi = by_cone * self.sin_phi * self.cos_phi * self.span_x
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _phase(self, phi: cython.double) -> cython.void:
+    def _phase(self, phi: float) -> None:
         """z and its slope, phi in [0, pi]."""
-        sine: cython.double = phi * (2.0 * SIN_FOLD_Z / PI) - SIN_FOLD_Z
+        sine: float = phi * (2.0 * SIN_FOLD_Z / PI) - SIN_FOLD_Z
         self.z = (asin(sine) * (0.5 / FOLD_Z) + 0.5) * self.span_z
         self.z_phi = SIN_FOLD_Z / (PI * FOLD_Z) / sqrt(1.0 - sine * sine) * self.span_z
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _separation(self, n0: cython.double, b: cython.double, gradient: cython.bint) -> cython.void:
+    def _separation(self, n0: float, b: float, gradient: bool) -> None:
         """n0 < b: F = b / (1 + b) G, and 0 for n0 <= -b; u is 0 at n0 = b, the last node at n0 = -b."""
-        safe_b: cython.double = max(b, TINY)
-        bounded: cython.double = max(n0, -safe_b)
-        below: cython.double = max((safe_b - bounded) / safe_b, NEAR)  # 1 - n0 / b
-        above: cython.double = max((safe_b + bounded) / safe_b, NEAR)
-        root_below: cython.double = sqrt(below)
-        root_above: cython.double = sqrt(above)
-        delta: cython.double = 2.0 * atan2(root_below, root_above)
-        layer: cython.double = 1.0 / (1.0 + b)
-        near: cython.double = 1.0 / (delta + layer)
-        far: cython.double = 1.0 / (PI + layer)
-        ratio: cython.double = sqrt(near / far) * (SIN_FOLD_U / PI)
-        sine: cython.double = delta * ratio
-        inside: cython.double = 1.0 if n0 > -b else 0.0
+        safe_b: float = max(b, TINY)
+        bounded: float = max(n0, -safe_b)
+        below: float = max((safe_b - bounded) / safe_b, NEAR)  # 1 - n0 / b
+        above: float = max((safe_b + bounded) / safe_b, NEAR)
+        root_below: float = sqrt(below)
+        root_above: float = sqrt(above)
+        delta: float = 2.0 * atan2(root_below, root_above)
+        layer: float = 1.0 / (1.0 + b)
+        near: float = 1.0 / (delta + layer)
+        far: float = 1.0 / (PI + layer)
+        ratio: float = sqrt(near / far) * (SIN_FOLD_U / PI)
+        sine: float = delta * ratio
+        inside: float = 1.0 if n0 > -b else 0.0
         self.u = asin(sine) / FOLD_U * self.span_1
         self.scale = b * layer * inside
         self.mean = self.closed = 0.0
         if gradient:
-            slope: cython.double = self.span_1 / (FOLD_U * sqrt(1.0 - sine * sine))
-            by_delta: cython.double = slope * ratio * (1.0 - 0.5 * delta * near)
-            by_b: cython.double = slope * sine * 0.5 * (near - far) * layer * layer
+            slope: float = self.span_1 / (FOLD_U * sqrt(1.0 - sine * sine))
+            by_delta: float = slope * ratio * (1.0 - 0.5 * delta * near)
+            by_b: float = slope * sine * 0.5 * (near - far) * layer * layer
             # d delta / d n0 = -1 / (b sin(delta)), d delta / d b = cos(delta) / (b sin(delta))
             self.u_n = -by_delta * layer * inside / (root_below * root_above)
             self.u_b = self.scale * by_b - self.u_n * (0.5 * (above - below))
             self.scale_b = layer * layer * inside
             self.u_phi = self.scale_phi = self.mean_n = self.mean_b = self.mean_phi = 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _slip(self, b: cython.double, excess: cython.double, gradient: cython.bint) -> cython.void:
+    def _slip(self, b: float, excess: float, gradient: bool) -> None:
         """n0 = b + excess: F = F_edge + width G below the slip limit, F_edge above; t = sin(pi u / 2)^2."""
-        share: cython.double = min(excess, self.width) / max(self.width, TINY)
-        t: cython.double = min(max(share, NEAR), 1.0 - NEAR)
-        root: cython.double = sqrt(t)
-        rest: cython.double = sqrt(1.0 - t)
+        share: float = min(excess, self.width) / max(self.width, TINY)
+        t: float = min(max(share, NEAR), 1.0 - NEAR)
+        root: float = sqrt(t)
+        rest: float = sqrt(1.0 - t)
         slips: cython.bint = excess < self.width
         self.u = atan2(root, rest) * (2.0 / PI) * self.span_2 + self.first_slip
         self.scale = self.width if slips else 0.0
         # the mean force that is nearest to zero; below the slip limit that at the limit, for both bounds
-        reach: cython.double = max(excess, self.width)
-        least: cython.double = self.high - reach
+        reach: float = max(excess, self.width)
+        least: float = self.high - reach
         self.mean, self.closed = min(max(0.0, least), max(reach - self.low, least)), 1.0
         if gradient:
             self._slip_slopes(b, t, self.span_2 / (PI * root * rest) if slips else 0.0)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _slip_slopes(self, b: cython.double, t: cython.double, by_t: cython.double) -> cython.void:
+    def _slip_slopes(self, b: float, t: float, by_t: float) -> None:
         """The chain rule in slip and stick; by_t is du/dt, 0 in stick."""
         slips: cython.bint = by_t > 0.0
         b = min(b, HUGE_B)
-        side: cython.double = b * self.sin_phi
-        ell_1_b: cython.double = (b - self.cos_phi) / max(self.ell_1, TINY)
-        ell_2_b: cython.double = (b + self.cos_phi) / max(self.ell_2, TINY)
-        ell_1_phi: cython.double = side / max(self.ell_1, TINY)
-        ell_2_phi: cython.double = -side / max(self.ell_2, TINY)
-        width_b: cython.double = 0.5 * (ell_1_b + ell_2_b) - 1.0
-        width_phi: cython.double = 0.5 * (ell_1_phi + ell_2_phi)
+        side: float = b * self.sin_phi
+        ell_1_b: float = (b - self.cos_phi) / max(self.ell_1, TINY)
+        ell_2_b: float = (b + self.cos_phi) / max(self.ell_2, TINY)
+        ell_1_phi: float = side / max(self.ell_1, TINY)
+        ell_2_phi: float = -side / max(self.ell_2, TINY)
+        width_b: float = 0.5 * (ell_1_b + ell_2_b) - 1.0
+        width_phi: float = 0.5 * (ell_1_phi + ell_2_phi)
         self.u_n = by_t
         self.u_b = -(1.0 + t * width_b) * by_t
         self.u_phi = -t * width_phi * by_t
         self.scale_b = width_b if slips else 0.0
         self.scale_phi = width_phi if slips else 0.0
         # how much of the mean force's derivative is that of the lower bound, and of the upper
-        at_low: cython.double = 0.5 if slips else (1.0 if self.mean > 0.0 else 0.0)
-        at_high: cython.double = 0.5 if slips else (1.0 if self.mean < 0.0 else 0.0)
+        at_low: float = 0.5 if slips else (1.0 if self.mean > 0.0 else 0.0)
+        at_high: float = 0.5 if slips else (1.0 if self.mean < 0.0 else 0.0)
         self.mean_n = at_high - at_low
         self.mean_b = at_low * ell_2_b - at_high * ell_1_b
         self.mean_phi = at_low * ell_2_phi - at_high * ell_1_phi

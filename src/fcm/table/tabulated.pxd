@@ -13,4 +13,7 @@ cdef class Tabulated(Law):
     cdef Frame frame
     cdef ClosedForm exact
     cdef readonly long long outside
+    cdef void evaluate(
+        self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
+    ) noexcept nogil
     cdef void _chain(self, double[::1] out, Py_ssize_t at) noexcept nogil

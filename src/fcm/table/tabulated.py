@@ -15,7 +15,6 @@ else:
     from fcm.table.cubic import Cubic
     from fcm.table.locate import Place
 
-NAN = cython.declare(cython.double, float("nan"))
 LARGEST = cython.declare(cython.double, 1e300)  # of b_bar
 FARTHEST = cython.declare(cython.double, 2e300)  # of n0_bar: an infinite preload or gap is as this one
 
@@ -32,16 +31,13 @@ class Frame:
     def __init__(self, low: np.ndarray, high: np.ndarray, here: np.ndarray) -> None:
         self.low, self.high, self.here = low, high, here
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def within(self, place: Place) -> cython.bint:
         """Turns a place into one in the nodes of the part; whether it answers for it.
 
         Where F needs no table, outside of both charts, any coordinates will do.
         """
         chart: cython.Py_ssize_t = 1 if place.u > place.first_slip - 1 else 0
-        u: cython.double = place.u - chart * place.first_slip
+        u: float = place.u - chart * place.first_slip
         inside: cython.bint = (
             self.low[chart, 0] <= u <= self.high[chart, 0]
             and self.low[chart, 1] <= place.x <= self.high[chart, 1]
@@ -66,24 +62,19 @@ class Tabulated(Law):
         self.cubic, self.place, self.frame, self.outside = cubic, Place(resolution), frame, 0
         self.exact = ClosedForm()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def evaluate(
         self,
-        n0_bar: cython.double,
-        b_bar: cython.double,
-        phi: cython.double,
-        gradient: cython.bint,
+        n0_bar: float,
+        b_bar: float,
+        phi: float,
+        gradient: bool,
         out: cython.double[::1],
         at: cython.Py_ssize_t,
-    ) -> cython.void:
+    ) -> None:
         """See `Law`."""
-        i: cython.Py_ssize_t
-        n0: cython.double = min(max(n0_bar, -FARTHEST), FARTHEST)
+        n0: float = min(max(n0_bar, -FARTHEST), FARTHEST)
         if not (n0_bar == n0_bar and isfinite(b_bar) and isfinite(phi)):
-            for i in range(12 if gradient else 3):
-                out[at + i] = NAN
+            self.unknown(gradient, out, at)
             return
         self.place.find(n0, min(b_bar, LARGEST), phi, gradient)
         if self.frame is not None and not self.frame.within(self.place):
@@ -97,10 +88,7 @@ class Tabulated(Law):
         out[at + 1] = self.place.scale * out[at + 1] + self.place.closed
         out[at + 2] = self.place.scale * out[at + 2]
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _chain(self, out: cython.double[::1], at: cython.Py_ssize_t) -> cython.void:
+    def _chain(self, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
         """From derivatives of G by the coordinates to derivatives of F by n0_bar, b_bar and phi."""
         by_u = cython.declare(cython.double[3])
         by_x = cython.declare(cython.double[3])
