@@ -86,7 +86,7 @@ def _refusal(partial: Path) -> int | None:
         size = partial.stat().st_size
         partial.unlink()
     try:
-        with partial.open("wb", buffering=0) as file:
+        with partial.open("wb") as file:
             for _ in range(size // PROBE + 1):
                 file.write(bytes(PROBE))
     except OSError as error:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import click
 
 import fcm
@@ -9,6 +11,7 @@ from fcm.cli.lazy import LazyGroup
 from fcm.threads import one_by_default
 
 one_by_default()
+os.environ["MPLBACKEND"] = "agg"  # pictures are files, whatever shows those of other programs
 
 COMMANDS = {
     "tabulate": ("fcm.cli.tabulate:tabulate", "Build a table of the Fourier coefficients of friction."),

@@ -20,6 +20,7 @@ from fcm.cli.messages import Messages
 DEFECT = 1  # of fcm
 WRONG_INPUT = 2
 NOT_COMPLETED = signals.NOT_COMPLETED
+LEAST_MEMORY = 240_000_000  # bytes of addresses (`ulimit -v`) that numpy, scipy and HDF5 take
 
 _EXIT_CODES = (
     ("fcm.scene", "SceneError", WRONG_INPUT),
@@ -50,6 +51,7 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
     messages = ctx.ensure_object(Messages)
     signals.works()
     try:
+        _check_memory()
         with warnings.catch_warnings():
             warnings.showwarning = _shown_by(messages)
             result = run(ctx)
@@ -74,6 +76,17 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
             traceback.print_exception(error)
         signals.ends(code)
         ctx.exit(code)
+
+
+def _check_memory() -> None:
+    """Raise MemoryError where the libraries would end the program in the middle of being loaded."""
+    try:
+        import resource
+    except ImportError:  # a system without limits
+        return
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
+        raise MemoryError
 
 
 def _verdict(error: BaseException) -> tuple[int, str]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fcm.plot.errors import PlotError
+from fcm.plot.read import opened
 from fcm.plot.style import house_style, new_figure
 
 if TYPE_CHECKING:
@@ -65,15 +66,8 @@ class Accuracy:
 
 def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
     """Read what ``fcm respond --compare -o`` has written; PlotError if the file is something else."""
-    from netCDF4 import Dataset
-
-    try:
-        if not path.is_file():
-            raise OSError
-        with Dataset(str(path)) as file:
-            layout, text = getattr(file, "layout", ""), getattr(file, "summary", "{}")
-    except (OSError, ValueError) as error:
-        raise PlotError(f"{path}: not a netCDF file that can be read") from error
+    with opened(path, "a comparison", ()) as file:
+        layout, text = getattr(file, "layout", ""), getattr(file, "summary", "{}")
     if not str(layout).startswith("fcm comparison"):
         raise PlotError(f"{path}: not a comparison; `fcm respond SCENE --compare -o FILE.nc` writes one")
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -72,6 +73,8 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
             raise OSError
         dataset = Dataset(str(path))
     except (OSError, ValueError) as error:
+        if getattr(error, "errno", 0) == errno.ENOMEM:
+            raise MemoryError(str(error)) from error
         raise PlotError(f"{path}: not a netCDF file that can be read") from error
     with dataset:
         missing = [name for name in needed if name not in dataset.variables]
@@ -96,6 +99,8 @@ def _hint(dataset: Any) -> str:
 def _response(dataset: Any) -> DrawnResponse:
     variables = dataset.variables
     dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
+    if not dofs:
+        raise ValueError("it has no degree of freedom")
     frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
     if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
         raise ValueError(f"frequency has shape {frequency.shape}, amplitude {amplitude.shape}")

@@ -76,6 +76,7 @@ class Checkpoint:
                 )
             self._sign()
         except OSError as error:
+            self.close()
             raise OSError(error.errno, error.strerror, str(path)) from None
 
     def results(self, mark: bytes, kinds: tuple[type, ...], fits: Fits) -> Results:

@@ -126,13 +126,16 @@ def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[s
     try:
         content = seal.check(name)
         attributes, arrays = _read(name, content)
-    except TableError:
+    except (TableError, MemoryError, ImportError):
         raise
     except FileNotFoundError:
         raise TableError(f"{name}: no such file") from None
     except seal.BrokenSealError as reason:
         raise TableError(f"{name}: damaged, {reason}; {REMEDY}") from None
-    except Exception as reason:  # whatever the library makes of bytes that are not netCDF, or were once
+    except Exception as reason:
+        if getattr(reason, "errno", 0) == errno.ENOMEM:
+            raise MemoryError(str(reason)) from reason
+        # else whatever the library makes of bytes that are not netCDF, or were once
         raise TableError(f"{name}: {_what_instead(name)} ({reason})") from None
     if damage := _damage(attributes, arrays, content is not None):
         raise TableError(f"{name}: damaged, {damage}; {REMEDY}")
