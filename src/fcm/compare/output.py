@@ -13,7 +13,7 @@ from fcm.compare.comparison import Comparison, contributions
 from fcm.compare.errors import MARGIN, MEANINGS, MEASURES, Shown
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
 from fcm.files import replacing
-from fcm.response.result import UNIT
+from fcm.units import UNIT
 
 LAYOUT = "fcm comparison 1"  # changes when a reader of older files would misread
 Json = dict[str, Any]

@@ -16,10 +16,11 @@ from fcm.response.law import UNKNOWNS
 from fcm.response.path import REASONS, STALLED
 from fcm.response.points import NEARLY_HIGHEST, Points
 from fcm.response.regimes import regimes
-from fcm.response.result import UNIT, Curve
+from fcm.response.result import Curve
 from fcm.response.structure import AnyArray, BoolArray, IntArray, unknown_contacts
 from fcm.response.truncation import truncation_error
 from fcm.scene.model import Scene
+from fcm.units import in_unit
 
 
 class Assembly:
@@ -34,6 +35,8 @@ class Assembly:
         self.loop, self.regime = at_points.law.loops(x), regimes(at_points.law, x)
         self.truncation_error = truncation_error(at_points, z)
         self.undetermined = drift.undetermined(at_points, z)
+        for without_rest in self.undetermined.values():
+            self.stable = self.stable & ~without_rest
         self.same = hang_together(points.branch)
 
     def curves(self, scenes: tuple[Scene, ...], dofs: tuple[str, ...]) -> list[Curve]:
@@ -79,13 +82,14 @@ class Assembly:
         if branch.size == 0:
             return f"no solution was found at either end of the range; try another range{why}"
         last = self.branches.trace.z[self.branches.trace.curve == branch[0], -1][-1]
-        return f"stopped at {_in_unit(last, scene):.8g} {scene.frequency_unit}: {REASONS[status]}{why}"
+        unit = scene.frequency_unit
+        return f"stopped at {in_unit(last, unit):.8g} {unit}: {REASONS[status]}{why}"
 
     def _undetermined(self, part: IntArray, scene: Scene) -> str:
         """Where and why a curve's points are no steady states; empty if they are."""
         for why, which in self.undetermined.items():
             if which[part].any():
-                frequency = _in_unit(self.z[part[which[part]], -1], scene)
+                frequency = in_unit(self.z[part[which[part]], -1], scene.frequency_unit)
                 unit = scene.frequency_unit
                 return f"from {frequency.min():.5g} to {frequency.max():.5g} {unit} {drift.REASONS[why]}"
         return ""
@@ -120,11 +124,6 @@ class Assembly:
         near = np.maximum(size[:-1], size[1:]) > NEARLY_HIGHEST * highest[curve[:-1]]
         at, dof = np.nonzero(rises & near)
         return at, dof, growth[at, dof], growth[at + 1, dof]
-
-
-def _in_unit(omega: FloatArray, scene: Scene) -> FloatArray:
-    """Frequencies [rad/s] in the scene's unit."""
-    return omega / UNIT[scene.frequency_unit]
 
 
 def _pick(values: AnyArray, part: IntArray) -> AnyArray:

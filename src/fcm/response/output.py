@@ -15,7 +15,8 @@ import numpy.typing as npt
 import fcm
 from fcm.contact.limits import FloatArray
 from fcm.files import replacing
-from fcm.response.result import UNIT, Curve, Response
+from fcm.response.result import Curve, Response
+from fcm.units import in_unit
 
 if TYPE_CHECKING:
     import xarray
@@ -104,14 +105,14 @@ def fields_of(response: Response) -> dict[str, Field]:
 def _point_fields(response: Response) -> dict[str, Field]:
     """Every variable of the curves."""
     curves, unit = response.curves, response.frequency_unit
-    scale = UNIT[unit]
     cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
     out: dict[str, Field] = {}
 
     def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
         out[name] = Field(("curve", "point", *dims), _padded([pick(c) for c in curves]), attrs)
 
-    points("frequency", lambda c: c.frequency / scale, (), long_name="excitation frequency", units=cf_unit)
+    excitation = "excitation frequency"
+    points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=cf_unit)
     points("amplitude", lambda c: c.amplitude, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as amplitude * sin(omega t + phase)"
     points("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
@@ -135,7 +136,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
             out[name].attrs["long_name"] = meaning
         for name, (dims, attrs) in ORBITS.items():
             points(name, partial(_of_orbits, name=name), dims, **attrs)
-    out |= _curve_fields(response, scale, cf_unit)
+    out |= _curve_fields(response, cf_unit)
     return out
 
 
@@ -150,18 +151,18 @@ def _of_loop(curve: Curve, column: int) -> FloatArray:
     return curve.loop[..., column]
 
 
-def _curve_fields(response: Response, scale: float, cf_unit: str) -> dict[str, Field]:
+def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
-    curves = response.curves
+    curves, unit = response.curves, response.frequency_unit
     peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 2)
-    folds = _padded([np.array(c.folds) / scale for c in curves])
+    folds = _padded([in_unit(c.folds, unit) for c in curves])
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof, by_fold = ("curve", "dof"), ("curve", "fold")
     return {
         "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
         "peak_frequency": Field(
             by_dof,
-            peaks[..., 1] / scale,
+            in_unit(peaks[..., 1], unit),
             {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
         ),
         "fold_frequency": Field(
@@ -258,7 +259,6 @@ def write_netcdf(response: Response, path: str | Path) -> None:
 
 def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
-    scale = UNIT[response.frequency_unit]
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
     kinds = ("amplitude", "phase", "mean", "fundamental")[: 4 if exact else 3]
@@ -281,10 +281,11 @@ def write_csv(response: Response, path: str | Path) -> None:
         for number, c in enumerate(response.curves):
             orbits = c.orbits
             parts = (c.amplitude, c.phase, c.mean, *(() if orbits is None else (orbits.fundamental,)))
+            frequency = in_unit(c.frequency, response.frequency_unit)
             values = np.stack(parts, axis=2).reshape(c.frequency.size, len(columns))
             for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
-                    [number, c.branch[k], *c.parameters.values(), repr(float(c.frequency[k] / scale))]
+                    [number, c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), int(c.stable[k])]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.response.jumps import Jump, jumps
 from fcm.scene.model import Scene
+from fcm.units import in_unit
 
 if TYPE_CHECKING:
     from fcm.simulate.histories import Histories
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
-UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 
 
 @dataclass
@@ -79,25 +79,26 @@ class Curve:
             return self.orbits.jumps
         return jumps(self.frequency, self.amplitude, self.stable)
 
-    def _jump(self, jump: Jump, scale: float) -> dict[str, Any]:
+    def _jump(self, jump: Jump, unit: str) -> dict[str, Any]:
         return {
             "sweep": jump.sweep,
-            "frequency": jump.frequency / scale,
+            "frequency": float(in_unit(jump.frequency, unit)),
             "before": dict(zip(self.peaks, jump.before.tolist(), strict=True)),
             "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
         }
 
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
-        scale = UNIT[unit]
         return {
             "parameters": self.parameters,
             "points": self.points,
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
-            "peak": {d: {"amplitude": a, "frequency": w / scale} for d, (a, w) in self.peaks.items()},
-            "folds": [w / scale for w in self.folds],
-            "jumps": [self._jump(jump, scale) for jump in self.jumps()],
+            "peak": {
+                d: {"amplitude": a, "frequency": float(in_unit(w, unit))} for d, (a, w) in self.peaks.items()
+            },
+            "folds": in_unit(self.folds, unit).tolist(),
+            "jumps": [self._jump(jump, unit) for jump in self.jumps()],
             "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),

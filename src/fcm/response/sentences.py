@@ -9,8 +9,9 @@ import numpy as np
 
 from fcm.response.foreseen import OPEN, STUCK
 from fcm.response.newton import CLOSE
-from fcm.response.result import UNIT, Response
+from fcm.response.result import Response
 from fcm.scene.model import Contact
+from fcm.units import UNIT
 
 if TYPE_CHECKING:
     from fcm.response.leave_out import Lighter

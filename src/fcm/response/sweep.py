@@ -124,7 +124,8 @@ class _Sweep:
     def __init__(self, scene: Scene, method: str, table: Coefficients | None, curves: CurveSweep) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
         self.table_idle = method == "table" and table is None  # until it is opened
-        self.mark = fingerprint(method, table)  # before it is used, for it counts its look-ups
+        # of the table before it is used, for it counts its look-ups
+        self.mark = b"" if curves.checkpoint is None else fingerprint(method, table)
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""

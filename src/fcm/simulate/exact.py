@@ -13,7 +13,7 @@ import numpy as np
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group
 from fcm.response.path import Progress
-from fcm.response.result import INTERRUPTED, UNIT, Curve, Response
+from fcm.response.result import INTERRUPTED, Curve, Response
 from fcm.response.trace import ResponseError
 from fcm.run import Checkpoint, Interrupted, fingerprint
 from fcm.scene.model import Scene
@@ -22,6 +22,7 @@ from fcm.simulate.errors import SimulationError
 from fcm.simulate.explore import Explorer
 from fcm.simulate.orbit_curve import traced_curve, visited_curve
 from fcm.simulate.visit import Visitor
+from fcm.units import UNIT
 
 METHOD = "exact"
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off

@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.files import replacing
-from fcm.scene.modal import UNITS
 from fcm.simulate.energy import Energy
 from fcm.simulate.histories import Histories
 from fcm.simulate.record import LETTERS, NOT_REACHED, PhaseResult, Record
 from fcm.simulate.state import State
+from fcm.units import in_unit
 
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]  # dimensions, values, attributes
 MEANINGS = "not_reached separation stick positive_slip negative_slip"  # of -1 and the indices of LETTERS
@@ -29,9 +29,9 @@ def variables(found: Histories) -> dict[str, Variable]:
 
 def _common(found: Histories) -> dict[str, Variable]:
     """What is the same for every curve: the instants, the cycles, the phases."""
-    plan, phases, scale = found.plan, found.scene.schedule, UNITS[found.scene.frequency_unit]
+    plan, phases = found.plan, found.scene.schedule
     units = {"rad/s": "rad s-1", "Hz": "Hz"}[found.scene.frequency_unit]
-    frequency = np.array([phase.frequency for phase in phases]) / scale
+    frequency = in_unit([phase.frequency for phase in phases], found.scene.frequency_unit)
     begins, ends = "time at which the cycle begins", "length of the cycle, 1 unless it ends a phase early"
     return {
         "time": _variable("instant", plan.time, "time from the start of the schedule", units="s"),
@@ -138,7 +138,7 @@ def _of_phase(found: Histories, phase: PhaseResult) -> dict[str, Any]:
     scene = found.scene
     dofs, names = scene.modal.dofs, [contact.name for contact in scene.contacts]
     return {
-        "frequency": phase.frequency / UNITS[scene.frequency_unit],
+        "frequency": float(in_unit(phase.frequency, scene.frequency_unit)),
         "cycles": phase.cycles,
         "amplitude": dict(zip(dofs, phase.amplitude.tolist(), strict=True)),
         "mean": dict(zip(dofs, phase.mean.tolist(), strict=True)),

@@ -1,0 +1,33 @@
+"""Frequencies in the unit of a scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
+DIGITS = 15  # that every number of so many has again after it was a binary one
+
+
+def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
+    """Frequencies [rad/s] in a unit.
+
+    Two roundings may change the last bit of a frequency that was given in Hz; so where a number of 15 digits
+    is this frequency in rad/s, it is that number.
+
+    >>> float(in_unit(2.0 * np.pi * 52.0, "Hz")), float(np.float64(2.0 * np.pi * 52.0) / (2.0 * np.pi))
+    (52.0, 52.00000000000001)
+    """
+    exact = np.asarray(omega, dtype=np.float64)
+    scale = UNIT[unit]
+    if scale == 1.0:
+        return exact
+    value: FloatArray = exact / scale
+    size = np.abs(np.where(np.isfinite(value) & (value != 0.0), value, 1.0))
+    power = 10.0 ** np.clip(DIGITS - 1 - np.floor(np.log10(size)), -300, 300)
+    with np.errstate(all="ignore"):  # where it is too large to be rounded it stays as it is
+        rounded = np.round(value * power) / power
+        same = rounded * scale == exact
+    return np.where(same, rounded, value)

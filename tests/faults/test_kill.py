@@ -1,0 +1,78 @@
+"""Sweeps killed at random instants: nothing is lost, nothing left, and the end the same to the last bit.
+
+Ten of them by default; FCM_KILLS=50, or `make kills`, for more.
+"""
+
+import os
+import random
+import signal
+import time
+
+import pytest
+
+from .conftest import FEW, SIGNALS, session, variables
+
+KILLS = int(os.environ.get("FCM_KILLS", "10"))
+FORMER = b"the result of an earlier run, which nothing but a whole one may replace"
+# which groups are taken from what is kept, and which are computed
+NOTED = (
+    FEW
+    + """
+import fcm.response.curve_sweep as module
+real = module.sweep
+def sweep(compute, batches, at, kept, progress):
+    taken = set(kept.finished)
+    outcome = real(compute, batches, at, kept, progress)
+    for name, numbers in (("taken", taken), ("computed", set(outcome.results) - taken)):
+        with open(name, "w") as file:
+            file.write(" ".join(map(str, numbers)))
+    return outcome
+module.sweep = sweep
+"""
+)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """An uninterrupted run on one core: its variables, and how long one on two cores takes."""
+    from .conftest import SWEEP, Program
+
+    program = Program(tmp_path_factory.mktemp("whole"))
+    program.write("sweep.toml", SWEEP)
+    assert program("respond", "sweep.toml", "-o", "a.nc", "--jobs", "1", before=FEW).returncode == 0
+    begin = time.monotonic()
+    assert program("respond", "sweep.toml", "-o", "b.nc", "--jobs", "2", before=FEW).returncode == 0
+    first, second = (variables(program.folder / name) for name in ("a.nc", "b.nc"))
+    assert first == second
+    return first, time.monotonic() - begin
+
+
+@pytest.mark.parametrize("number", range(KILLS))
+def test_a_killed_sweep_loses_nothing(program, whole, number):
+    reference, seconds = whole
+    kind = SIGNALS[number % len(SIGNALS)]
+    after = random.Random(number).uniform(0.05, 1.05 * seconds)
+    former = program.folder / "a.nc"
+    former.write_bytes(FORMER)
+    args = ("respond", "sweep.toml", "-o", "a.nc", "--jobs")
+    run = program.start(*args, 2, before=FEW)
+    time.sleep(after)
+    os.kill(run.pid, kind)
+    killed = time.monotonic()
+    _, said = run.communicate(timeout=60)
+    program.until(lambda: not session(run.pid), max(2.0 - (time.monotonic() - killed), 0.0))
+    assert "Traceback" not in said and run.returncode in (0, 3, -signal.SIGKILL)
+    if run.returncode == 0:
+        assert variables(former) == reference
+    else:
+        assert former.read_bytes() == FORMER
+    resumed = program(*args, 1, "--resume", before=NOTED)
+    assert resumed.returncode == 0, resumed.err
+    assert variables(former) == reference
+    taken, again = (
+        {*map(int, (program.folder / name).read_text().split())} for name in ("taken", "computed")
+    )
+    assert not taken & again and taken | again == set(range(10))
+    assert program.files == ["a.nc", "computed", "one.toml", "sweep.toml", "taken"]
+    if "continue with --resume" in said:
+        assert taken
