@@ -1,4 +1,4 @@
-"""Around the calculation: asked for the impossible, streams closed, disks full, names that command terminals."""
+"""Around the calculation: the impossible asked for, streams closed, disks full, names that command."""
 
 import json
 import os
@@ -27,7 +27,6 @@ from .conftest import HEAD, ONE
         ("frequency = [1.2, 1.200000000000002]", "response.frequency: is too narrow"),
         ("frequency = [1.2, 1.2000000000000002]", "response.frequency: is too narrow"),
         ("frequency = [0.8, 1.6]\nmax_step = 1e-9", "response.max_step: must be at least 1e-05"),
-        ("frequency = [0.8, 1.6]\nmax_step = 1e-300", "response.max_step: must be at least 1e-05"),
     ],
 )
 def test_a_run_without_end_is_refused(program, line, said):
@@ -42,7 +41,7 @@ def test_a_step_without_end_is_refused_on_the_command_line(program):
 
 
 def test_a_narrow_range_that_can_be_followed_is_not(program):
-    program.write("scene.toml", f"{HEAD}[response]\nfrequency = [1.2, 1.2000000001]\nmax_step = 0.5\n")
+    program.write("scene.toml", f"{HEAD}[response]\nfrequency = [1.2, 1.2000000013]\nmax_step = 0.5\n")
     assert program("respond", "scene.toml").returncode == 0
 
 
@@ -108,7 +107,7 @@ def test_what_creeps_away_is_not_stable(program):
 @pytest.mark.parametrize("at", ["52", "0.1", "33.3", "7e-3"])
 def test_a_frequency_in_hertz_is_the_one_that_was_given(program, at):
     scene = HEAD.replace("[modal]", 'frequency_unit = "Hz"\n[modal]', 1).replace("n_0 = 5.0", "n_0 = 1e9")
-    program.write("scene.toml", scene)
+    program.write("scene.toml", scene + "[response]\nfrequency = [1, 2]\n")
     args = ("respond", "scene.toml", "--method", "exact", "--at", at, "-o", "a.nc", "--csv", "a.csv")
     done = program(*args)
     assert done.returncode == 0, done.err
@@ -188,14 +187,13 @@ cat > fill.py <<END
 import fcm.response.output as output
 real = output.write_netcdf
 def full(*args):
-    with open("fill", "wb") as file:
+    with open("fill", "wb", buffering=0) as file:
         try:
             while True:
                 file.write(bytes(512))
-                file.flush()
         except OSError:
             pass
-        real(*args)
+    real(*args)
 output.write_netcdf = full
 from fcm.cli.__main__ import run
 run()
@@ -277,10 +275,11 @@ NAUGHTY = "\x1b]0;owned\x07\x1b[31m\u202e"
 
 
 def test_names_do_not_command_the_terminal(program):
-    scene = ONE.replace('"u"', json.dumps(NAUGHTY + "u")).replace('"shroud"', json.dumps("a\x9b5mb"))
-    program.write("scene.toml", scene.replace("\x9b", "\\u009b"))
+    program.write("scene.toml", ONE.replace('"a sweep"', json.dumps(NAUGHTY + "title")))
+    program.write("names.toml", ONE.replace('"u"', json.dumps(NAUGHTY + "u")))
     runs = [
         program("respond", "scene.toml", "-o", "a.nc", "-v"),
+        program("respond", "names.toml"),
         program("respond", f"{NAUGHTY}.toml"),
         program("respond", "one.toml", f"--{NAUGHTY}"),
         program("respond", "one.toml", "-o", f"{NAUGHTY}.nc"),
@@ -289,12 +288,12 @@ def test_names_do_not_command_the_terminal(program):
         program("tabulate", "--verify", f"{NAUGHTY}.nc"),
         program(NAUGHTY),
     ]
-    assert [run.returncode for run in runs] == [0, 2, 2, 0, 0, 2, 2, 2]
+    assert [run.returncode for run in runs] == [0, 2, 2, 2, 0, 0, 2, 2, 2]
     for run in runs:
         said = run.out + run.err
         assert said and not any(c in said for c in "\x1b\x07\x9b\u202e") and "Traceback" not in said
         assert "\nfcm: error: forged" not in said
-    assert r"\x1b]0;owned\x07" in runs[0].out
+    assert r"\x1b]0;owned\x07" in runs[0].err
 
 
 def test_what_is_escaped_and_what_is_not():

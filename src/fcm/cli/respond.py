@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.scene.model import Scene
 
-MANY_POINTS = 100_000  # some minutes, and files of 100 MB
+MANY_POINTS = 30_000  # some seconds, and files of 10 MB and more
 
 
 def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
@@ -137,7 +137,7 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
     count = len(scene.each_curve())
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     if at is None and scene.has_range and (points := least_points(scene)) > MANY_POINTS:
-        messages.info(f"at least {points} points: {count} curves in steps of {scene.max_step:g} at most")
+        messages.info(f"at least {points} points: {count} curve{'s' * (count > 1)} in steps of {scene.max_step:g} at most")
 
 
 def _loaded(scene: str, max_step: float | None, history_csv: Path | None, largest_file: float) -> Scene:

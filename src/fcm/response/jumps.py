@@ -29,7 +29,7 @@ def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> li
     [('up', 3.0, [5.0]), ('down', 2.0, [2.0])]
     """
     known = np.flatnonzero(np.isfinite(frequency))
-    if known.size == 0:
+    if not stable[known].any():  # no motion that could be lost
         return []
     first, last = known[frequency[known].argmin()], known[frequency[known].argmax()]
     return _sweep(frequency, amplitude, stable, int(first), "up") + _sweep(
