@@ -30,7 +30,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kernels extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
+.PHONY: help kills kernels extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -122,6 +122,9 @@ bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions besi
 bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
 	cd $(OTHERS) && bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
 		status=$$?; cat table.txt; exit $$status
+
+kills: $(VENV)/installed-dev  ## sweeps killed at fifty random instants: nothing lost, nothing left behind
+	FCM_KILLS=50 $(BIN)/python -m pytest tests/faults/test_kill.py
 
 extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if one that passed does not
 	@mkdir -p build
