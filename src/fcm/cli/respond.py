@@ -103,9 +103,8 @@ def respond(
         from fcm.cli.compare import refuse_other_options, write_comparison
 
         refuse_other_options()
-        write_comparison(
-            messages, _loaded(scene, max_step, None, largest_file), table, tolerance, output, to_json
-        )
+        compared = _loaded(messages, scene, max_step, None, largest_file)
+        write_comparison(messages, compared, table, tolerance, output, to_json)
         return
     exact.check_options(method, at)
     if table is not None and method != "table":
@@ -113,7 +112,7 @@ def respond(
     if resume and output is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
-    loaded = _loaded(scene, max_step, history_csv, largest_file)
+    loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
     options = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
     outputs = Outputs(messages, output, csv, history_csv)
@@ -126,6 +125,7 @@ def respond(
             response = _without_curves(loaded)
         if loaded.schedule:
             response.histories = schedule.simulated(messages, loaded, response)
+        response.notes = list(loaded.notes)
         result = outputs.write(response, to_json)
     _close(messages, result, response.defects)
 
@@ -140,10 +140,14 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
         messages.info(f"at least {points} points: {count} curve{'s' * (count > 1)} in steps of {scene.max_step:g} at most")
 
 
-def _loaded(scene: str, max_step: float | None, history_csv: Path | None, largest_file: float) -> Scene:
+def _loaded(
+    messages: Messages, scene: str, max_step: float | None, history_csv: Path | None, largest_file: float
+) -> Scene:
     from fcm.scene import load_scene
 
-    loaded = load_scene(scene, largest_file=round(largest_file * 1e6))
+    loaded = load_scene(scene, largest_file=round(largest_file * 1e6)).in_use()
+    for note in loaded.notes:
+        messages.info(note)
     schedule.check_options(loaded, history_csv)
     return loaded if max_step is None else _with_step(loaded, max_step)
 

@@ -50,7 +50,9 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     """
     from fcm.response.output import to_dataset
 
+    scene = scene.in_use()
     response = _curves(scene, method, at)
+    response.notes = list(scene.notes)
     if scene.schedule:
         from fcm.simulate import histories
 

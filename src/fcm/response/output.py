@@ -66,6 +66,7 @@ def summary(response: Response) -> dict[str, Any]:
         "method": response.method,
         "frequency_unit": response.frequency_unit,
         "left_out": response.left_out,
+        "notes": response.notes,
         "seconds": response.seconds,
     }
     if response.histories is not None:

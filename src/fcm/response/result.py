@@ -119,6 +119,7 @@ class Response:
     frequency_unit: str
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)  # of the scene: what was taken for what
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 

@@ -11,15 +11,34 @@ from typing import Any
 from fcm.scene.address import replaced
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.files import LARGEST, Files
-from fcm.scene.modal import UNITS, modal_of, read_modal
+from fcm.scene.linear import (
+    Parts,
+    read_linear,
+    read_output,
+    reported_of,
+    with_modes,
+    without_others,
+    without_rounding,
+)
+from fcm.scene.modal import UNITS, modal_of
 from fcm.scene.model import FloatArray, Scene
-from fcm.scene.parts import contact_of, force_of, read_contacts, read_forces, read_response
+from fcm.scene.parts import (
+    contact_of,
+    force_of,
+    read_contacts,
+    read_forces,
+    read_response,
+    response_table,
+)
 from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
 from fcm.scene.sweep import Swept, combinations, read_sweep
 from fcm.scene.toml import read_toml
 
-KEYS = ("title", "frequency_unit", "modal", "contact", "force", "response", "sweep", "schedule", "start")
+KEYS = (
+    "title", "frequency_unit", "modal", "structure", "contact", "force", "response", "sweep", "schedule",
+    "start",
+)  # fmt: skip
 
 MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
 
@@ -80,10 +99,9 @@ def scene_from_dict(
         mistakes.raise_if_any()
     top.only(*KEYS)
     unit = _unit(top)
-    parts: dict[str, Any] = {"modal": read_modal(top, Files(Path(folder), largest_file), unit)}
-    parts["contact"] = read_contacts(top, parts["modal"]["dofs"])
-    parts["force"] = read_forces(top, parts["modal"]["dofs"])
-    ends, step = read_response(top, unit)
+    response = response_table(top)
+    ends, step = read_response(top, response, unit)
+    parts, reported, notes = _parts(top, Files(Path(folder), largest_file), unit, response, ends)
     schedule, start = read_schedule(top, unit), read_start(top, parts)
     swept = read_sweep(top, parts)
     title = top.text("title", "")
@@ -99,10 +117,34 @@ def scene_from_dict(
         schedule=schedule,
         start=start,
         name=name,
+        reported=reported,
+        notes=tuple(notes),
     )
     scene = replace(scene, curves=_curves(scene, parts, swept))
     _check_curves(scene, mistakes)
     return scene
+
+
+def _parts(
+    top: Section, files: Files, unit: str, response: Section | None, ends: tuple[float, float]
+) -> tuple[Parts, tuple[str, ...], list[str]]:
+    """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
+    modal, matrices = read_linear(top, files, unit)
+    parts: Parts = {"modal": modal}
+    parts["contact"] = read_contacts(top, modal["dofs"])
+    parts["force"] = read_forces(top, modal["dofs"])
+    output = read_output(response, modal["dofs"]) if response is not None else []
+    if top.mistakes.count:
+        return parts, (), []
+    if matrices is not None:
+        parts, notes = with_modes(top, parts, matrices, output, ends, unit)
+    else:
+        parts, notes = without_rounding(parts, ends, unit)
+    if top.mistakes.count:
+        return parts, (), []
+    asked = response is not None and "output" in response.data
+    reported = reported_of(parts, output, asked)
+    return parts if matrices is None else without_others(top, parts, reported), reported, notes
 
 
 def _curves(scene: Scene, parts: dict[str, Any], swept: list[Swept]) -> tuple[Scene, ...]:

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.modal_file import read_modal_file
 from fcm.scene.model import FloatArray, Modal
+from fcm.scene.names import Names, checked_names
 from fcm.scene.rules import RULES, as_float
-from fcm.scene.section import Section, otherwise_written, same_names, unfit_name
+from fcm.scene.section import Section
 
 KEYS = ("dofs", "mass", "frequency", "damping", "shapes")
 UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
@@ -45,7 +46,7 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     arrays["frequency"] = draft["frequency"] * UNITS[unit]
     for array in arrays.values():
         array.flags.writeable = False
-    return Modal(dofs=draft["dofs"], **arrays)
+    return Modal(dofs=tuple(draft["dofs"]), added=draft.get("added", 0), **arrays)
 
 
 def _with_file(section: Section, files: Files, unit: str) -> Section | None:
@@ -67,24 +68,12 @@ def _with_file(section: Section, files: Files, unit: str) -> Section | None:
     return Section({**found, **section.data}, section.path, section.mistakes)
 
 
-def _dofs(section: Section) -> tuple[str, ...] | None:
-    """The names of the degrees of freedom: strings, printable, each once."""
+def _dofs(section: Section) -> Names | None:
+    """The names of the degrees of freedom."""
     if section.missing("dofs", "a list of the names of the degrees of freedom"):
         return None
-    names = section.data["dofs"]
-    if not isinstance(names, list | tuple) or not names:
-        section.wrong("dofs", f"must be a list of at least one name, is {kind(names)}")
-        return None
-    for index, name in enumerate(names):
-        if not isinstance(name, str):
-            section.wrong(f"dofs[{index}]", f"must be a string, is {kind(name)}")
-        elif fault := unfit_name(name):
-            section.wrong(f"dofs[{index}]", fault)
-    words = [name for name in names if isinstance(name, str)]
-    for name, group in same_names(words):
-        what = f"{quoted(name)} is there {len(group)} times{otherwise_written(group)}"
-        section.wrong("dofs", f"{what}; each must be there once")
-    return tuple(words) if len(words) == len(names) else None
+    names = checked_names(section, section.data["dofs"])
+    return None if names is None else Names(names)
 
 
 def _per_mode(

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from fcm.scene.apart import read_apart
 from fcm.scene.archive import read_npz
 from fcm.scene.errors import kind, quoted
 from fcm.scene.files import DataFileError, Files
-from fcm.scene.matlab import read_mat
 from fcm.scene.uff import read_uff
 
 ARRAYS = ("mass", "frequency", "damping", "shapes")
@@ -28,7 +28,7 @@ def read_modal_file(name: str, files: Files) -> dict[str, Any]:
         if ending == ".npz":
             found: dict[str, Any] = read_npz(path, KEYS, files)
         elif ending == ".mat":
-            found = {key: _without_matrix(key, value) for key, value in read_mat(path, KEYS, files).items()}
+            found = {key: _without_matrix(key, value) for key, value in read_apart(path, KEYS, files).items()}
         else:
             found = read_uff(path)
         return {key: _plain(key, value) for key, value in found.items()}

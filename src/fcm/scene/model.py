@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,12 @@ class Modal:
     frequency: FloatArray  # (mode,) undamped, angular [rad/s]
     damping: FloatArray  # (mode,) ratio [-]
     shapes: FloatArray  # (mode, dof)
+    added: int = 0  # the last so many are no modes of the structure, but the flexibility of the others
+
+    def at(self, used: npt.NDArray[np.bool_]) -> Modal:
+        """The same modes at some of the degrees of freedom."""
+        dofs = tuple(name for name, one in zip(self.dofs, used, strict=True) if one)
+        return replace(self, dofs=dofs, shapes=self.shapes[:, used])
 
 
 @dataclass(frozen=True)
@@ -78,11 +84,37 @@ class Scene:
     parameters: dict[str, float] = field(default_factory=dict)  # the swept values of this curve
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
+    reported: tuple[str, ...] = ()  # of modal.dofs, those in results; the others carry loads and contacts
+    notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
 
     @property
     def has_range(self) -> bool:
         """Whether there is a range of frequencies to trace."""
         return not np.isnan(self.frequency_range[0])
+
+    def in_use(self) -> Scene:
+        """The scene at those degrees of freedom only that are reported, or that something is attached to."""
+        used = np.isin(self.modal.dofs, self.reported)
+        different = {id(one): one for curve in self.each_curve() for one in curve.directions()}
+        for direction in different.values():
+            used |= direction != 0.0
+        if used.all():
+            return self
+        modals = {id(curve.modal): curve.modal.at(used) for curve in (self, *self.curves)}
+        curves = tuple(curve._at(used, modals) for curve in self.curves)
+        return replace(self._at(used, modals), curves=curves)
+
+    def directions(self) -> list[FloatArray]:
+        """The directions of all contacts and forces, each (dof,)."""
+        of_contacts = [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
+        return [*of_contacts, *(force.direction for force in self.forces)]
+
+    def _at(self, used: npt.NDArray[np.bool_], modals: dict[int, Modal]) -> Scene:
+        contacts = tuple(
+            replace(one, tangential=one.tangential[used], normal=one.normal[used]) for one in self.contacts
+        )
+        forces = tuple(replace(one, direction=one.direction[used]) for one in self.forces)
+        return replace(self, modal=modals[id(self.modal)], contacts=contacts, forces=forces)
 
     def each_curve(self) -> tuple[Scene, ...]:
         """The scenes to trace: those of the sweep, or this one alone."""

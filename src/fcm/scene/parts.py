@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import nan
 from typing import Any
 
 from fcm.scene.errors import quoted
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
+from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, SHORTEST_STEP, step_fault
-from fcm.scene.section import Section, same_names, unfit_name
+from fcm.scene.section import Section
 
-Dofs = Sequence[str] | None
+Dofs = Names | None
 NARROWEST = 1e-10  # relative width of a range: its points are still some 1e5 roundings apart
 MAX_STEP = 0.05  # longest step along a curve when the scene names none
 
@@ -89,14 +89,20 @@ def force_of(draft: dict[str, Any]) -> Force:
     return Force(direction=draft["dof"], amplitude=draft["amplitude"], phase=draft["phase"])
 
 
-def read_response(top: Section, unit: str) -> tuple[tuple[float, float], float]:
-    """The range of frequencies [rad/s], nan if there is none but a schedule, and the longest step."""
+def response_table(top: Section) -> Section | None:
+    """The [response] table; None where there is none, which only a scene with a schedule may do without."""
     if "response" not in top.data and top.data.get("schedule"):
-        return NO_RANGE, MAX_STEP
+        return None
     section = top.table("response", "a [response] table with frequency = [from, to]")
+    if section is not None:
+        section.only("frequency", "max_step", "output")
+    return section
+
+
+def read_response(top: Section, section: Section | None, unit: str) -> tuple[tuple[float, float], float]:
+    """The range of frequencies [rad/s], nan if there is none but a schedule, and the longest step."""
     if section is None:
         return NO_RANGE, MAX_STEP
-    section.only("frequency", "max_step")
     step = section.number("max_step", FRACTION, default=MAX_STEP)
     if step < SHORTEST_STEP:  # and not nan, which is a mistake already
         section.wrong("max_step", step_fault(step))

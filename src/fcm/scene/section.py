@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import nan
-from typing import Any
-from unicodedata import normalize
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import ANY, Rule, as_float
+
+if TYPE_CHECKING:
+    from fcm.scene.names import Names
 
 LONGEST_NAME = (
     100  # bytes of a name: "contact.NAME.tangential.NAME" names a variable of a file, of 256 at most
@@ -125,7 +127,7 @@ class Section:
                 self.mistakes.add(path, f"must be a table, is {_described(item)}; write [[{key}]]")
         return sections
 
-    def weights(self, key: str, dofs: Sequence[str] | None) -> FloatArray | None:
+    def weights(self, key: str, dofs: Names | None) -> FloatArray | None:
         """A degree of freedom, or a table of weights, as an array over the dofs; None after a mistake."""
         if self.missing(key, "a degree of freedom, or a combination such as { tip = 1.0, neighbour = -1.0 }"):
             return None
@@ -136,7 +138,10 @@ class Section:
         terms = {value: 1.0} if isinstance(value, str) else self._terms(key, value)
         if terms is None or dofs is None or not self._known(key, terms, dofs):
             return None
-        return np.array([terms.get(dof, 0.0) for dof in dofs])
+        found = np.zeros(len(dofs))
+        for dof, weight in terms.items():
+            found[dofs.place[dofs.find(dof)]] += weight
+        return found
 
     def _terms(self, key: str, value: Mapping[str, Any]) -> dict[str, float] | None:
         before = self.mistakes.count
@@ -154,41 +159,12 @@ class Section:
             return nan
         return self.checked(item, path, ANY)
 
-    def _known(self, key: str, terms: Iterable[str], dofs: Sequence[str]) -> bool:
-        unknown = [dof for dof in terms if dof not in dofs]
+    def _known(self, key: str, terms: Iterable[str], dofs: Names) -> bool:
+        unknown = [dof for dof in terms if not dofs.find(dof)]
         for dof in unknown:
-            what = f"unknown degree of freedom {quoted(dof)}; modal.dofs are {choices(dofs)}"
+            what = f"unknown degree of freedom {quoted(dof)}; {dofs.key} are {choices(dofs)}"
             self.wrong(key, what, dof, dofs)
         return not unknown
-
-
-def unfit_name(name: str) -> str:
-    """What is wrong with a name of a contact or a degree of freedom; empty when nothing is.
-
-    >>> unfit_name(""), unfit_name("tip"), unfit_name("x" * 101)
-    ('"" is not a name that can be printed', '', 'is too long for a name: 101 bytes, of 100 at most')
-    """
-    if not name.strip() or not name.isprintable():
-        return f"{quoted(name)} is not a name that can be printed"
-    size = len(name.encode())
-    return f"is too long for a name: {size} bytes, of {LONGEST_NAME} at most" if size > LONGEST_NAME else ""
-
-
-def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
-    """Names that are equal once their characters are composed: in a file they would be one.
-
-    >>> same_names(["u", "v", "u"])
-    [('u', ['u', 'u'])]
-    """
-    groups: dict[str, list[str]] = {}
-    for name in names:
-        groups.setdefault(name if name.isascii() else normalize("NFC", name), []).append(name)
-    return [(name, group) for name, group in groups.items() if len(group) > 1]
-
-
-def otherwise_written(group: list[str]) -> str:
-    """A remark for names that look the same and are not, since their characters are composed otherwise."""
-    return "" if len(set(group)) == 1 else " (in other Unicode characters)"
 
 
 def _floats(values: Sequence[object]) -> list[float]:

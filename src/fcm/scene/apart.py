@@ -1,0 +1,153 @@
+"""Files that the readers of other packages read (.mat, .mtx, .op4), by a process of its own.
+
+Those readers can crash the interpreter on a damaged file, and take the memory that a file says it needs. So
+they run in a child with a limit on its memory: whatever becomes of it, here there are arrays or an error.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+import warnings
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import fcm
+from fcm.scene.archive import Arrays
+from fcm.scene.errors import quoted
+from fcm.scene.files import DataFileError, Files, megabytes
+from fcm.scene.mat_tags import check_tags
+
+SPARE = 500_000_000  # bytes of memory for a reader itself
+COPIES = 3  # of the arrays, while they are read, converted and written
+REFUSED = 3  # exit code of the child when it says why
+SHORTEST_ENTRY = 2  # bytes of a number in a MatrixMarket file, with the space behind it
+
+_CODE = "import sys; from fcm.scene.apart import child; child(sys.argv[1:])"
+
+
+def read_apart(path: Path, wanted: Collection[str], files: Files) -> Arrays:
+    """The arrays of those names that a file has, all its arrays of numbers when none is named.
+
+    Names in cells or rows of characters become strings; a sparse matrix K becomes the arrays K.row, K.col,
+    K.data and K.shape.
+    """
+    places = [str(Path(fcm.__file__).parents[1]), *filter(None, sys.path)]
+    found = subprocess.run(
+        [sys.executable, "-P", "-c", _CODE, str(path.resolve()), str(files.largest), *wanted],
+        capture_output=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(places), "OPENBLAS_NUM_THREADS": "1"},
+        check=False,
+    )
+    if found.returncode == REFUSED:
+        raise ValueError(found.stderr.decode("utf-8", "replace").strip() or "it is damaged")
+    if found.returncode:
+        raise ValueError("it is damaged: what it says of itself does not fit together")
+    with np.load(io.BytesIO(found.stdout), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def child(arguments: list[str]) -> None:
+    """Read a file and write its arrays to standard output, in a process that may die of it."""
+    path, largest, *wanted = arguments
+    try:
+        _limit_memory(COPIES * int(largest) + SPARE)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found = _READERS[Path(path).suffix.lower()](Path(path), wanted, int(largest))
+        arrays = {f"{name}{part}": array for name, one in found.items() for part, array in _parts(one)}
+        if sum(array.nbytes for array in arrays.values()) > int(largest):
+            raise MemoryError
+        packed = io.BytesIO()
+        np.savez(packed, **arrays)
+        sys.stdout.buffer.write(packed.getbuffer())
+    except MemoryError:
+        _refuse(f"it holds more than {megabytes(int(largest))}: raise the limit by --largest-file")
+    except Exception as error:
+        _refuse(str(error).partition("\n")[0] or type(error).__name__)
+
+
+def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
+    """Variables of a MATLAB file."""
+    from scipy.io import loadmat, whosmat
+
+    content = path.read_bytes()
+    check_tags(content, wanted, largest)
+    try:
+        if not wanted:
+            numbers = ("double", "single", "sparse", "logical")
+            wanted = [name for name, _, kind in whosmat(path) if kind in numbers or "int" in kind]
+            check_tags(content, wanted, largest)
+        found = loadmat(path, variable_names=list(wanted))
+    except NotImplementedError:
+        raise DataFileError(f"{quoted(path.name)} is of MATLAB's version 7.3; save it with -v7") from None
+    return {name: found[name] for name in wanted if name in found}
+
+
+def _mtx(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
+    """The matrix of a MatrixMarket file."""
+    from scipy.io import mminfo, mmread
+
+    rows, columns, entries, form, kind, _ = mminfo(path)
+    dense = form == "array"
+    if not dense and kind != "pattern" and entries * SHORTEST_ENTRY > path.stat().st_size:
+        raise ValueError(f"it says that it has {entries} entries, and is too short for them")
+    if 8 * (rows * columns if dense else rows) > largest:
+        raise MemoryError
+    return {"matrix": mmread(path)}
+
+
+def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
+    """Matrices of a Nastran output4 file."""
+    try:
+        from pyyeti.nastran import op4
+    except ImportError:
+        raise DataFileError(
+            f"{quoted(path.name)} needs the package pyyeti: pip install 'fcm[op4]', or write it as .mtx"
+        ) from None
+    found: dict[str, Any] = op4.load(str(path), into="dct", justmatrix=True, sparse=None)
+    return found
+
+
+_READERS = {".mat": _mat, ".mtx": _mtx, ".op4": _op4}
+
+
+def _parts(value: Any) -> list[tuple[str, Any]]:
+    """A variable as plain arrays: a sparse matrix as the parts of one by coordinates."""
+    if hasattr(value, "tocoo"):
+        if hasattr(value, "check_format"):
+            value.check_format(full_check=True)
+        coo = value.tocoo()
+        shape = np.array(coo.shape)
+        return [(".row", coo.row), (".col", coo.col), (".data", coo.data), (".shape", shape)]
+    array = np.asarray(value)
+    if array.dtype.kind in "OU":
+        names = [str(np.asarray(name).ravel()[0]).rstrip() if np.size(name) else "" for name in array.ravel()]
+        array = np.array(names, dtype=str)
+    return [("", array)]
+
+
+def _refuse(why: str) -> None:
+    sys.stderr.write(why)
+    sys.stderr.flush()
+    os._exit(REFUSED)
+
+
+def _limit_memory(more: int) -> None:
+    """Let this process take so many bytes more than it has; where the system has no such limit, any."""
+    try:
+        import resource
+    except ImportError:
+        return
+    pages = Path("/proc/self/statm")
+    present = int(pages.read_text().split()[0]) * resource.getpagesize() if pages.exists() else 0
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    limit = present + more
+    if hard != resource.RLIM_INFINITY:
+        limit = min(limit, hard)
+    resource.setrlimit(resource.RLIMIT_AS, (limit, hard))

@@ -1,0 +1,125 @@
+"""The linear structure of a scene: modes as given, or those of matrices, at the degrees of freedom in use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fcm.scene.errors import quoted
+from fcm.scene.files import Files
+from fcm.scene.modal import KEYS, UNITS, read_modal
+from fcm.scene.model import FloatArray
+from fcm.scene.names import Names, RowNames
+from fcm.scene.section import Section
+from fcm.structure.rigid_body import rigid_by_gap
+
+if TYPE_CHECKING:
+    from fcm.scene.structure_table import Matrices
+
+ALL_REPORTED = 50  # degrees of freedom of which all are in the results, where no others are asked for
+OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everything that is traced
+DIRECTIONS = {"contact": ("tangential", "normal"), "force": ("dof",)}  # keys that are arrays over the dofs
+Parts = dict[str, Any]  # drafts of modal, contact, force, ...
+
+
+def read_linear(top: Section, files: Files, unit: str) -> tuple[Parts, Matrices | None]:
+    """The draft of the modal table, and the matrices that it is still to be made of."""
+    if "structure" not in top.data:
+        return read_modal(top, files, unit), None
+    if "modal" in top.data:
+        top.wrong("", "has both [modal] and [structure]; give one of them")
+    from fcm.scene.structure_table import read_structure  # scipy, which other scenes do without
+
+    dofs, matrices = read_structure(top, files)
+    return dict.fromkeys(KEYS) | {"dofs": dofs}, matrices
+
+
+def with_modes(
+    top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
+) -> tuple[Parts, list[str]]:
+    """The parts with the modes of matrices at all rows, and what is to be said of them."""
+    from fcm.scene.reduction import modal_of_matrices
+
+    dofs = parts["modal"]["dofs"]
+    swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
+    only = [dofs.place[name] for name in output]
+    loads = np.concatenate((_columns(_directions(parts), len(dofs)), np.eye(len(dofs))[:, swept]), axis=1)
+    draft, shapes, notes = modal_of_matrices(top, matrices, loads, np.eye(len(dofs))[:, only], ends)
+    if draft is None:
+        return parts, notes
+    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
+    return parts | {"modal": draft}, notes
+
+
+def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
+    """The parts with frequencies that are the rounding of rigid-body modes set to 0."""
+    frequency = parts["modal"]["frequency"]
+    count = rigid_by_gap(frequency)
+    if not count or np.isnan(ends[0]):
+        return parts, []
+    lowest = np.sort(frequency[frequency > 0.0])[:count]
+    if lowest[-1] * UNITS[unit] > OF_NO_INTEREST * ends[0]:
+        return parts, []
+    modes = "1 mode" if count == 1 else f"{count} modes"
+    note = f"modal: {modes} of {lowest[0]:.3g} to {lowest[-1]:.3g} {unit} are rigid-body modes: taken as 0"
+    zeroed = np.where(frequency <= lowest[-1], 0.0, frequency)
+    return parts | {"modal": parts["modal"] | {"frequency": zeroed}}, [note]
+
+
+def read_output(section: Section, dofs: Names | None) -> list[str]:
+    """Degrees of freedom that are asked for, by names or patterns such as "40*", in the order of the dofs."""
+    if "output" not in section.data or dofs is None:
+        return []
+    value = section.data["output"]
+    patterns = [value] if isinstance(value, str) else value
+    if not isinstance(patterns, list | tuple) or not all(isinstance(one, str) for one in patterns):
+        section.wrong("output", 'must be a list of degrees of freedom, or of patterns such as "40*"')
+        return []
+    found: set[str] = set()
+    for index, pattern in enumerate(patterns):
+        matching = {name for name in dofs if fnmatchcase(name, pattern)} | ({dofs.find(pattern)} - {""})
+        if not matching:
+            what = f"no degree of freedom matches {quoted(pattern)}"
+            section.wrong(f"output[{index}]", what, pattern, dofs)
+        found |= matching
+    return [name for name in dofs if name in found]
+
+
+def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]:
+    """The degrees of freedom in results: those of contacts and forces and those asked for, or all of few."""
+    dofs: Names = parts["modal"]["dofs"]
+    if not asked and len(dofs) <= ALL_REPORTED:
+        return tuple(dofs)
+    used = _columns(_directions(parts), len(dofs)).any(axis=1)
+    wanted = {*output, *(dofs[i] for i in np.flatnonzero(used))}
+    return tuple(name for name in dofs if name in wanted)
+
+
+def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Parts:
+    """The parts without the rows of matrices that nothing is attached to and that are not reported."""
+    dofs: Names = parts["modal"]["dofs"]
+    needed = {*reported, *_swept(top, dofs)}
+    kept = [i for i, name in enumerate(dofs) if name in needed]
+    modal = parts["modal"] | {"dofs": RowNames(dofs[i] for i in kept)}
+    parts = parts | {"modal": modal | {"shapes": parts["modal"]["shapes"][:, kept]}}
+    for kind, keys in DIRECTIONS.items():
+        parts[kind] = [draft | {key: draft[key][kept] for key in keys} for draft in parts[kind]]
+    return parts
+
+
+def _directions(parts: Mapping[str, Any]) -> list[FloatArray]:
+    return [draft[key] for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys]
+
+
+def _columns(directions: list[FloatArray], rows: int) -> FloatArray:
+    return np.array(directions).reshape(len(directions), rows).T
+
+
+def _swept(top: Section, dofs: Names) -> set[str]:
+    """Degrees of freedom that a swept key names, as in "contact.shroud.normal.40x"."""
+    sweep = top.data.get("sweep")
+    keys = list(sweep) if isinstance(sweep, Mapping) else []
+    return {name for name in dofs if any(str(key).endswith(f".{name}") for key in keys)}

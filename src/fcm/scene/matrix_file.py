@@ -1,0 +1,108 @@
+"""A matrix from a file: .npz (of scipy or numpy), .mat, .mtx (MatrixMarket), .op4 (Nastran, by pyyeti)."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+
+from fcm.scene.apart import read_apart
+from fcm.scene.archive import Arrays, read_npz
+from fcm.scene.errors import choices, quoted
+from fcm.scene.files import DataFileError, Files
+
+ENDINGS = (".npz", ".mat", ".mtx", ".op4")
+
+
+def read_matrix(name: str, files: Files) -> Any:
+    """The matrix of a file as a scipy sparse array; "model.mat:K" is the one of that name in the file."""
+    path, chosen = split_name(name)
+    ending = Path(path).suffix.lower()
+    if ending not in ENDINGS:
+        raise DataFileError(f"{quoted(path)} cannot be read: a file of a matrix is {', '.join(ENDINGS)}")
+    with files.opened(path) as where:
+        found = _READERS[ending](where, chosen, files)
+        return _matrix(_chosen(found, chosen, path), path, files)
+
+
+def is_matrix_file(name: str) -> bool:
+    """Whether a string names a file of a matrix, by its ending.
+
+    >>> is_matrix_file("C.mtx"), is_matrix_file("model.mat:C"), is_matrix_file("high")
+    (True, True, False)
+    """
+    return Path(split_name(name)[0]).suffix.lower() in ENDINGS
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """The file and the name of the matrix in it, empty if it is not named.
+
+    >>> split_name("model.mat:K"), split_name("K.mtx")
+    (('model.mat', 'K'), ('K.mtx', ''))
+    """
+    match = re.fullmatch(r"(.*\.\w+):(\w+)", name)
+    return (match[1], match[2]) if match else (name, "")
+
+
+def _from_npz(path: Path, chosen: str, files: Files) -> dict[str, Any]:
+    """All arrays; or the one sparse matrix that `scipy.sparse.save_npz` has written."""
+    arrays = read_npz(path, None, files)
+    return {"": _from_parts(arrays)} if "format" in arrays and "shape" in arrays else dict(arrays)
+
+
+def _from_parts(arrays: Arrays) -> Any:
+    """A sparse matrix of the arrays that it is made of."""
+    shape = tuple(int(size) for size in arrays["shape"].ravel())
+    form = arrays["format"].item()
+    form = form.decode() if isinstance(form, bytes) else str(form)
+    if form == "coo":
+        return scipy.sparse.coo_array((arrays["data"], (arrays["row"], arrays["col"])), shape=shape)
+    if form == "dia":
+        return scipy.sparse.dia_array((arrays["data"], arrays["offsets"]), shape=shape)
+    if form not in ("csr", "csc", "bsr"):
+        raise ValueError(f"it holds a sparse matrix of the format {quoted(form)}")
+    of_format = getattr(scipy.sparse, f"{form}_array")
+    matrix = of_format((arrays["data"], arrays["indices"], arrays["indptr"]), shape=shape)
+    matrix.check_format(full_check=True)
+    return matrix
+
+
+def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
+    arrays = read_apart(path, [chosen] if chosen else [], files)
+    sparse = [name.removesuffix(".row") for name in arrays if name.endswith(".row")]
+    found: dict[str, Any] = {name: array for name, array in arrays.items() if "." not in name}
+    for name in sparse:
+        row, col, data, shape = (arrays[f"{name}.{part}"] for part in ("row", "col", "data", "shape"))
+        found[name] = scipy.sparse.coo_array((data, (row, col)), shape=tuple(int(size) for size in shape))
+    return found
+
+
+def _chosen(found: dict[str, Any], chosen: str, path: str) -> Any:
+    """The matrix of a name; without one, the only matrix that there is."""
+    matrices = {name: one for name, one in found.items() if np.ndim(one) == 2 or scipy.sparse.issparse(one)}
+    if chosen in matrices:
+        return matrices[chosen]
+    if not matrices:
+        raise DataFileError(
+            f"{quoted(path)} holds no matrix; it holds {choices(found) if found else 'nothing'}"
+        )
+    if chosen:
+        raise DataFileError(f"{quoted(path)} has no matrix {quoted(chosen)}; it has {choices(matrices)}")
+    if len(matrices) > 1:
+        example = quoted(f"{path}:{next(iter(matrices))}")
+        raise DataFileError(f"{quoted(path)} has {choices(matrices)}; say which, as in {example}")
+    return next(iter(matrices.values()))
+
+
+def _matrix(found: Any, path: str, files: Files) -> Any:
+    files.check_size(Path(path), 8 * max(found.shape))  # a sparse array has a number for each row or column
+    matrix = scipy.sparse.csc_array(found)
+    if matrix.dtype.kind not in "biuf":
+        raise DataFileError(f"{quoted(path)} holds numbers that are not real")
+    return matrix.astype(np.float64)
+
+
+_READERS = {".npz": _from_npz} | dict.fromkeys(ENDINGS[1:], _from_others)

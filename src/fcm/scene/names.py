@@ -1,0 +1,103 @@
+"""Names of contacts and degrees of freedom: what they may be, and which are the same."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import cached_property
+from unicodedata import normalize
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.section import Section
+
+LONGEST_NAME = 100  # bytes: "contact.NAME.tangential.NAME" is the name of a variable of a file, 256 at most
+DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # Nastran's 1 to 6
+_AT_NODE = re.compile(r"(\d+)[: ]?(r?[xyz]|[1-6])", re.IGNORECASE)
+
+
+class Names(tuple[str, ...]):
+    """The degrees of freedom of a structure."""
+
+    key = "modal.dofs"  # where they are given
+
+    @cached_property
+    def _at_nodes(self) -> dict[str, str]:
+        return {at_node(name): name for name in self if at_node(name)}
+
+    @cached_property
+    def place(self) -> dict[str, int]:
+        """The place of each name."""
+        return {name: number for number, name in enumerate(self)}
+
+    def find(self, name: str) -> str:
+        """The degree of freedom of a name, be it written as 40x, 40:x or 40:1; empty if there is none.
+
+        >>> Names(("40x", "tip")).find("40:1"), Names(("40x", "tip")).find("tip")
+        ('40x', 'tip')
+        """
+        return name if name in self.place else self._at_nodes.get(at_node(name), "")
+
+
+class RowNames(Names):
+    """The names of the rows of matrices."""
+
+    key = "structure.dofs"
+
+
+def at_node(name: str) -> str:
+    """A node and a direction in the one way that they are compared; empty if it is none.
+
+    >>> at_node("40:1"), at_node("40X"), at_node("7ry"), at_node("tip")
+    ('40x', '40x', '7ry', '')
+    """
+    match = _AT_NODE.fullmatch(name)
+    if not match:
+        return ""
+    direction = match[2].lower()
+    return match[1] + (DIRECTIONS[int(direction) - 1] if direction.isdecimal() else direction)
+
+
+def checked_names(section: Section, names: object) -> tuple[str, ...] | None:
+    """The names of degrees of freedom: strings, printable, each once; None after a mistake."""
+    if not isinstance(names, list | tuple) or not names:
+        section.wrong("dofs", f"must be a list of at least one name, is {kind(names)}")
+        return None
+    for index, name in enumerate(names):
+        if not isinstance(name, str):
+            section.wrong(f"dofs[{index}]", f"must be a string, is {kind(name)}")
+        elif fault := unfit_name(name):
+            section.wrong(f"dofs[{index}]", fault)
+    words = [name for name in names if isinstance(name, str)]
+    for name, group in same_names(words):
+        what = f"{quoted(name)} is there {len(group)} times{otherwise_written(group)}"
+        section.wrong("dofs", f"{what}; each must be there once")
+    return tuple(words) if len(words) == len(names) else None
+
+
+def unfit_name(name: str) -> str:
+    """What is wrong with a name of a contact or a degree of freedom; empty when nothing is.
+
+    >>> unfit_name(""), unfit_name("tip"), unfit_name("x" * 101)
+    ('"" is not a name that can be printed', '', 'is too long for a name: 101 bytes, of 100 at most')
+    """
+    if not name.strip() or not name.isprintable():
+        return f"{quoted(name)} is not a name that can be printed"
+    size = len(name.encode())
+    return f"is too long for a name: {size} bytes, of {LONGEST_NAME} at most" if size > LONGEST_NAME else ""
+
+
+def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
+    """Names that are equal once their characters are composed: in a file they would be one.
+
+    >>> same_names(["u", "v", "u"])
+    [('u', ['u', 'u'])]
+    """
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(name if name.isascii() else normalize("NFC", name), []).append(name)
+    return [(name, group) for name, group in groups.items() if len(group) > 1]
+
+
+def otherwise_written(group: list[str]) -> str:
+    """A remark for names that look the same and are not, since their characters are composed otherwise."""
+    return "" if len(set(group)) == 1 else " (in other Unicode characters)"

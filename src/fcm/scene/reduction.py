@@ -1,0 +1,105 @@
+"""From the matrices of a [structure] table to the modal table that the rest of a scene is read against."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.model import FloatArray
+from fcm.scene.section import Section
+from fcm.scene.structure_table import Matrices
+from fcm.structure.damping import coupling_effect, projected, proportional, ratios
+from fcm.structure.eigen import StructureError
+from fcm.structure.reduced import Reduced, reduced
+
+MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
+WORTH_SAYING = 1e-4  # relative change of the response by damping between modes
+
+
+def modal_of_matrices(
+    top: Section, matrices: Matrices, loads: FloatArray, outputs: FloatArray, ends: tuple[float, float]
+) -> tuple[dict[str, Any] | None, FloatArray, list[str]]:
+    """Modal table (frequencies in rad/s), shapes at all rows (row, mode), and what is to be said.
+
+    loads (row, load) are the directions of contacts and forces, outputs those that are only reported; `ends`
+    is the range of angular frequencies.
+    """
+    few = outputs[:, :MOST_OUTPUTS] if outputs.shape[1] <= MOST_OUTPUTS else outputs[:, :0]
+    directions = np.concatenate((loads, few), axis=1)
+    top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
+    try:
+        found = reduced(
+            matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility
+        )
+    except StructureError as error:
+        top.wrong("structure", str(error))
+        return None, np.zeros((len(matrices.dofs), 0)), []
+    ratio, said = _damping(matrices, found, loads, outputs, ends)
+    draft = {
+        "mass": np.ones(found.modes.count),
+        "frequency": np.sqrt(found.modes.stiffness),
+        "damping": ratio,
+        "added": found.modes.count - found.kept,
+    }
+    return draft, found.modes.shapes, [_kept(matrices, found, ends), *_warnings(found, ends), *said]
+
+
+def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
+    """What is kept of the structure, and how far it is off."""
+    rows, added = len(matrices.dofs), found.modes.count - found.kept
+    text = f"structure: {found.kept} modes of {rows} degrees of freedom are kept"
+    if not np.isfinite(found.beyond):
+        return f"{text}, all that there are"
+    if not matrices.flexibility:
+        return f"{text}; the flexibility of the others is left out"
+    text += f", and the flexibility of the others as {added} modes"
+    if not np.isfinite(found.bound):
+        return f"{text}; how far it is off cannot be told"
+    return f"{text}: receptances up to the range's end are off by at most {max(found.bound, 1e-15):.1e}"
+
+
+def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
+    said = []
+    if found.rigid:
+        said.append(f"structure: its {found.rigid} lowest modes are rigid-body modes, of frequency 0")
+    if found.missed:
+        said.append(f"structure: the eigensolver has missed {found.missed} modes: ask for another number")
+    if found.beyond < ends[1]:
+        said.append("structure: there are modes within the range that are not kept: raise structure.modes")
+    return said
+
+
+def _damping(
+    matrices: Matrices, found: Reduced, loads: FloatArray, outputs: FloatArray, ends: tuple[float, float]
+) -> tuple[FloatArray, list[str]]:
+    """Damping ratios of the modes, and what the ratios leave out."""
+    stiffness = found.modes.stiffness
+    if matrices.ratio is not None:
+        return np.full(stiffness.size, matrices.ratio), []
+    if matrices.hysteretic:
+        equal = "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance"
+        return np.full(stiffness.size, matrices.hysteretic / 2.0), [equal]
+    if matrices.C is None:
+        said = _undamped(matrices.by_mass, found.rigid)
+        return proportional(matrices.by_mass, matrices.by_stiffness, stiffness), said
+    modal = projected(matrices.C, found.modes)
+    coefficients = np.diagonal(modal)
+    ratio = ratios(coefficients, stiffness)
+    said = _undamped(float(np.abs(coefficients[: found.rigid]).max(initial=0.0)), found.rigid)
+    if np.isfinite(ends).all():
+        shapes = found.modes.shapes
+        seen = shapes.T @ np.concatenate((loads, outputs), axis=1)
+        effect = coupling_effect(modal, stiffness, shapes.T @ loads, seen, *ends)
+        if effect > WORTH_SAYING:
+            said.append(
+                "structure: damping between modes is left out; with it, the response without contacts "
+                f"would change by up to {100 * effect:.2g} %"
+            )
+    return ratio, said
+
+
+def _undamped(of_rigid: float, rigid: int) -> list[str]:
+    if not (rigid and of_rigid):
+        return []
+    return ["structure: the damping of its rigid-body modes is left out: a mode of frequency 0 has no ratio"]

@@ -1,0 +1,226 @@
+"""The [structure] table: matrices, the names of their rows, damping, and how many modes are kept."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+
+from fcm.scene.errors import kind, quoted, shown
+from fcm.scene.files import DataFileError, Files
+from fcm.scene.matrix_file import is_matrix_file, read_matrix
+from fcm.scene.names import Names, RowNames, checked_names
+from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
+from fcm.scene.section import Section
+
+KEYS = ("dofs", "file", "mass", "stiffness", "damping", "modes", "flexibility")
+ASYMMETRY = 1e-8  # relative difference of two entries that ought to be equal
+NEGLIGIBLE = 1e-12  # of the largest entry: differences this small are rounding
+MOST_SHOWN = 3  # entries that are not symmetric, named in a message
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """What a [structure] table says."""
+
+    dofs: Names
+    K: Any  # scipy sparse, (row, row), symmetric
+    M: Any
+    ratio: float | None  # damping of every mode
+    by_mass: float  # damping in proportion
+    by_stiffness: float
+    C: Any | None  # damping matrix
+    hysteretic: float  # loss factor
+    modes: int | None  # how many are kept
+    flexibility: bool  # whether that of the others is kept
+
+
+def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices | None]:
+    """The names of the rows, and all that the table says; None for what is mistaken."""
+    section = top.table("structure", "")
+    if section is None:
+        return None, None
+    before = top.mistakes.count
+    section.only(*KEYS)
+    K, M = (_matrix(section, key, files) for key in ("stiffness", "mass"))
+    rows = None if K is None else K.shape[0]
+    if K is not None and M is not None and M.shape[0] != rows:
+        section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
+    dofs = _row_names(section, files, rows)
+    for key, matrix in (("stiffness", K), ("mass", M)):
+        _check_symmetric(section, key, matrix, dofs)
+    damping = _damping(section, files, rows, dofs)
+    modes = _modes(section)
+    keep = section.data.get("flexibility", True)
+    if not isinstance(keep, bool):
+        section.wrong("flexibility", f"must be true or false, is {kind(keep)}")
+    if top.mistakes.count > before or dofs is None:
+        return dofs, None
+    return dofs, Matrices(dofs, _symmetric(K), _symmetric(M), modes=modes, flexibility=keep, **damping)
+
+
+def _matrix(section: Section, key: str, files: Files) -> Any:
+    """A square matrix as a scipy sparse array: of a file, a list of rows, or the list of a diagonal."""
+    if section.missing(key, 'a file such as "K.npz", or a list of rows'):
+        return None
+    return matrix_of(section, key, section.data[key], files)
+
+
+def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
+    """The matrix that a value of a key is; None after a mistake."""
+    if isinstance(value, str):
+        if not value:
+            section.wrong(key, "is empty; name a file")
+            return None
+        try:
+            matrix = read_matrix(value, files)
+        except DataFileError as error:
+            section.wrong(key, str(error))
+            return None
+    else:
+        matrix = _from_rows(section, key, value)
+        if matrix is None:
+            return None
+    if matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
+        section.wrong(key, f"must be square, has {matrix.shape[0]} rows and {matrix.shape[1]} columns")
+        return None
+    if not np.isfinite(matrix.data).all():
+        section.wrong(key, "has entries that are not finite")
+        return None
+    return matrix
+
+
+def _from_rows(section: Section, key: str, value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or not value:
+        what = shown(value) if isinstance(value, bool | int | float) else kind(value)
+        section.wrong(key, f"must be a file, or a list of rows, is {what}")
+        return None
+    path = section.at(key)
+    if as_float(value[0]) is not None:
+        diagonal = section.numbers(value, path, ANY)
+        return None if diagonal is None else scipy.sparse.diags_array(diagonal, format="csc")
+    rows = [section.numbers(row, f"{path}[{index}]", ANY) for index, row in enumerate(value)]
+    good = [row for row in rows if row is not None]
+    if len(good) < len(rows):
+        return None
+    uneven = [index for index, row in enumerate(good) if len(row) != len(good[0])]
+    for index in uneven:
+        section.wrong(
+            f"{key}[{index}]", f"has {len(good[index])} numbers, but the first row has {len(good[0])}"
+        )
+    return None if uneven else scipy.sparse.csc_array(np.array(good))
+
+
+def _row_names(section: Section, files: Files, rows: int | None) -> Names | None:
+    """The names of the rows: a list, or a file with one on each line."""
+    value = section.data.get("dofs", section.data.get("file"))
+    if "dofs" in section.data and "file" in section.data:
+        section.wrong("", "has both dofs and file; give the names of the rows once")
+        return None
+    if value is None:
+        section.wrong("dofs", 'missing; give a list of the names of the rows, or a file such as "dofs.txt"')
+        return None
+    if isinstance(value, str):
+        key = "dofs" if "dofs" in section.data else "file"
+        try:
+            with files.opened(value) as path:
+                value = names_of(path.read_text("utf-8-sig"))
+        except DataFileError as error:
+            section.wrong(key, str(error))
+            return None
+    names = checked_names(section, value)
+    if names is not None and rows is not None and len(names) != rows:
+        section.wrong("dofs", f"names {len(names)} rows, but the stiffness has {rows}")
+        return None
+    return None if names is None else RowNames(names)
+
+
+def names_of(text: str) -> list[str]:
+    """Names, one on each line; a node and a direction beside each other are one name.
+
+    >>> names_of("40x  # tip\\n40 y\\n\\n41:3")
+    ['40x', '40y', '41:3']
+    """
+    lines = (line.partition("#")[0].replace(",", " ").split() for line in text.splitlines())
+    return ["".join(words) for words in lines if words]
+
+
+def _check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> None:
+    """Note the entries that differ from those across the diagonal."""
+    if matrix is None:
+        return
+    difference = abs(matrix - matrix.T).tocoo()
+    size = abs(matrix)
+    both = scipy.sparse.csc_array(size.maximum(size.T))
+    row, column = difference.coords
+    of_both = np.asarray(both[row, column]).ravel() if row.size else np.zeros(0)
+    largest = float(size.max()) if size.nnz else 0.0
+    wrong = (
+        (difference.data > ASYMMETRY * of_both) & (difference.data > NEGLIGIBLE * largest) & (row < column)
+    )
+    if not wrong.any():
+        return
+    worst = np.flatnonzero(wrong)[np.argsort(-difference.data[wrong], kind="stable")][:MOST_SHOWN]
+    named = dofs is not None and len(dofs) == matrix.shape[0]
+    names = [quoted(name) for name in dofs or ()] if named else [str(i) for i in range(matrix.shape[0])]
+
+    def entry(i: int, j: int) -> str:
+        return f"({names[i]}, {names[j]}) is {shown(float(matrix[i, j]))}"
+
+    entries = "; ".join(f"{entry(row[k], column[k])}, {entry(column[k], row[k])}" for k in worst)
+    section.wrong(key, f"is not symmetric: {int(wrong.sum())} pairs of entries differ; {entries}")
+
+
+def _symmetric(matrix: Any) -> Any:
+    return scipy.sparse.csc_array((matrix + matrix.T) / 2)
+
+
+def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[str] | None) -> dict[str, Any]:
+    """What the damping is: a ratio, proportional, a matrix, a loss factor."""
+    found: dict[str, Any] = {"ratio": None, "by_mass": 0.0, "by_stiffness": 0.0, "C": None, "hysteretic": 0.0}
+    right = 'a ratio, { mass = , stiffness = }, { loss_factor = } or a file such as "C.npz"'
+    if section.missing("damping", right):
+        return found
+    value = section.data["damping"]
+    if isinstance(value, Mapping):
+        return found | _proportional(Section(value, section.at("damping"), section.mistakes))
+    if as_float(value) is not None:
+        return found | {"ratio": section.number("damping", RULES["damping"])}
+    if isinstance(value, str) and not is_matrix_file(value):
+        section.wrong("damping", f"must be {right}, is {quoted(value)}")
+        return found
+    C = matrix_of(section, "damping", value, files)
+    if C is not None and rows is not None and C.shape[0] != rows:
+        section.wrong("damping", f"has {C.shape[0]} rows, but the stiffness has {rows}")
+    _check_symmetric(section, "damping", C, dofs)
+    return found | {"C": None if C is None else _symmetric(C)}
+
+
+def _proportional(table: Section) -> dict[str, Any]:
+    table.only("mass", "stiffness", "loss_factor")
+    if "loss_factor" in table.data:
+        if len(table.data) > 1:
+            table.wrong("", "has a loss_factor beside others; give it alone")
+        return {"hysteretic": table.number("loss_factor", NOT_NEGATIVE)}
+    if not table.data:
+        table.wrong("", "is empty; give { mass = , stiffness = } or { loss_factor = }")
+    return {
+        "by_mass": table.number("mass", NOT_NEGATIVE, default=0.0),
+        "by_stiffness": table.number("stiffness", NOT_NEGATIVE, default=0.0),
+    }
+
+
+def _modes(section: Section) -> int | None:
+    value = section.data.get("modes")
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        what = shown(value) if isinstance(value, bool | int | float) else kind(value)
+        section.wrong("modes", f"must be a whole number of at least 1, is {what}")
+        return None
+    return value

@@ -1,0 +1,51 @@
+"""The damping of modes: from a matrix, in proportion to mass and stiffness, from a loss factor."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.structure.eigen import FloatArray, Matrix, Modes
+
+MOST_FREQUENCIES = 60  # at which two responses are compared
+
+
+def ratios(coefficients: FloatArray, stiffness: FloatArray) -> FloatArray:
+    """Damping ratios c / (2 omega) of modes of mass 1; 0 for rigid-body modes, which have none."""
+    omega = np.sqrt(stiffness)
+    ratio: FloatArray = np.divide(coefficients, 2.0 * omega, out=np.zeros_like(omega), where=omega > 0.0)
+    return ratio
+
+
+def proportional(by_mass: float, by_stiffness: float, stiffness: FloatArray) -> FloatArray:
+    """Ratios of the damping matrix by_mass M + by_stiffness K.
+
+    >>> proportional(0.2, 0.01, np.array([4.0]))  # (0.2 + 0.01 * 4) / (2 * 2)
+    array([0.06])
+    """
+    return ratios(by_mass + by_stiffness * stiffness, stiffness)
+
+
+def projected(C: Matrix, modes: Modes) -> FloatArray:
+    """The damping matrix in modal coordinates, (mode, mode)."""
+    matrix: FloatArray = modes.shapes.T @ (C @ modes.shapes)
+    return matrix
+
+
+def coupling_effect(
+    modal: FloatArray, stiffness: FloatArray, pushes: FloatArray, seen: FloatArray, low: float, high: float
+) -> float:
+    """Greatest change of the linear response by the damping between modes, relative.
+
+    The response of `seen` (mode, displacement) to each of `pushes` (mode, load), of modes of mass 1 with the
+    damping matrix `modal`, at the natural frequencies from low to high and at its ends.
+    """
+    natural = np.sqrt(stiffness)
+    inside = natural[(natural > low) & (natural < high)][:MOST_FREQUENCIES]
+    worst = 0.0
+    for omega in (low, *inside.tolist(), high):
+        undamped = np.diag(stiffness - omega**2).astype(np.complex128)
+        whole = seen.T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
+        alone = seen.T @ (pushes / (np.diagonal(undamped) + 1j * omega * np.diagonal(modal))[:, None])
+        size = np.abs(whole).max()
+        worst = max(worst, float(np.abs(whole - alone).max() / size) if size else 0.0)
+    return worst

@@ -1,0 +1,132 @@
+"""Normal modes of a structure given by its stiffness and mass matrices.
+
+K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s):
+K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes are the
+most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.linalg
+import scipy.sparse
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+FloatArray = npt.NDArray[np.float64]
+Matrix = Any  # scipy sparse array or matrix
+
+DENSE = 600  # rows up to which all modes are computed at once
+SHIFT = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
+NO_MASS = 1e-13  # relative: below it, an eigenvalue of the inverse problem is no mode, but a row without mass
+NEGATIVE = 1e-8  # relative stiffness below which a matrix is not positive semidefinite, beyond rounding
+
+
+class StructureError(ValueError):
+    """Matrices that are no stiffness and mass of a structure."""
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Normal modes in ascending order, of modal mass 1."""
+
+    stiffness: FloatArray  # (mode,) squares of the angular frequencies; rigid-body modes within rounding of 0
+    shapes: FloatArray  # (row, mode)
+
+    @property
+    def count(self) -> int:
+        return self.stiffness.size
+
+
+@dataclass(frozen=True)
+class System:
+    """Stiffness and mass of a structure, and the answer of K - s M to loads."""
+
+    K: Matrix  # (row, row)
+    M: Matrix
+    shift: float  # s
+    solve: Callable[[FloatArray], FloatArray]  # loads (row, load) to displacements
+
+    @property
+    def rows(self) -> int:
+        return int(self.K.shape[0])
+
+
+def system_of(K: Matrix, M: Matrix) -> System:
+    """Factorise K - s M; StructureError where it is not positive definite."""
+    stiff, heavy = K.diagonal(), M.diagonal()
+    if not (heavy > 0.0).any():
+        raise StructureError("the mass has no entry greater than 0 on its diagonal")
+    shift = -SHIFT * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+    if shift == 0.0:
+        raise StructureError("the stiffness has no entry on its diagonal")
+    matrix = scipy.sparse.csc_array(K - shift * M)
+    try:
+        # no pivoting off the diagonal, so that the signs of the pivots are those of the eigenvalues
+        factor = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+    except RuntimeError:
+        raise StructureError("the stiffness is singular where there is no mass") from None
+    pivots = factor.U.diagonal()
+    if (factor.perm_r == factor.perm_c).all() and (pivots < 0.0).any():
+        raise StructureError(
+            f"the stiffness has {int((pivots < 0.0).sum())} negative eigenvalues: no structure at rest has"
+        )
+    return System(K, M, shift, factor.solve)
+
+
+def modes_of(system: System, count: int) -> Modes:
+    """The lowest modes of a structure; fewer where fewer rows have a mass."""
+    rows = system.rows
+    if rows <= DENSE or count > rows // 3:
+        shapes = _all(system)
+    else:
+        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=np.float64)
+        start = np.random.default_rng(0).standard_normal(rows)  # the same answer every time
+        _, shapes = eigsh(system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start)
+    shapes = shapes / np.sqrt(_energy(system.M, shapes))
+    stiffness = _energy(system.K, shapes)
+    order = np.argsort(stiffness)[:count]
+    return Modes(stiffness[order], shapes[:, order])
+
+
+def _all(system: System) -> FloatArray:
+    """The shapes of all modes that have a mass."""
+    mass = system.M.toarray()
+    shifted = system.K.toarray() - system.shift * mass
+    value, shapes = scipy.linalg.eigh(mass, shifted)
+    found: FloatArray = shapes[:, value > NO_MASS * value.max()]
+    return found
+
+
+def _energy(matrix: Matrix, shapes: FloatArray) -> FloatArray:
+    """phi^T A phi of each shape."""
+    energy: FloatArray = np.einsum("ij,ij->j", shapes, matrix @ shapes)
+    return energy
+
+
+def missed(system: System, modes: Modes) -> int | None:
+    """How many modes below the highest of those found are not among them; None where it cannot be told.
+
+    By Sylvester's law of inertia: K - a M has as many negative pivots as there are modes below a.
+    """
+    if modes.count < 2:
+        return None
+    gaps = np.diff(modes.stiffness)
+    at = int(np.argmax(gaps[-min(8, gaps.size) :])) + max(0, gaps.size - 8)
+    between = float(modes.stiffness[at : at + 2].mean())
+    matrix = scipy.sparse.csc_array(system.K - between * system.M)
+    try:
+        factor = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+    except RuntimeError:
+        return None
+    if not (factor.perm_r == factor.perm_c).all():
+        return None
+    return int((factor.U.diagonal() < 0.0).sum()) - (at + 1)

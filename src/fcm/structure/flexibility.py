@@ -1,0 +1,115 @@
+"""The flexibility of the modes that are left out, kept as a few modes of high frequency.
+
+Seen through loads P and displacements P^T x, the modes left out answer P^T (K - w^2 M)^-1 P less the part of
+the kept modes. Their answer is sought among the residual attachment modes, the static displacements under P
+without the part of the kept modes (MacNeal, Rubin), and under the inertia of those, and so on (a block Krylov
+space); Galerkin's method on it gives again modes, of modal mass 1, that are orthogonal to the kept ones. With
+b blocks the first 2 b terms of the answer's series in w^2 are exact.
+
+How far it is off is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
+definite on what is left out, and there K - w^2 M >= (1 - w^2 / lambda_h) K. So with the residual r of
+Galerkin's solution u of one load,
+
+    0 <= error of p^T u <= r^T K^-1 r / (1 - w^2 / lambda_h),
+
+and between two different loads the error is at most the geometric mean of theirs (Cauchy, Schwarz).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from fcm.structure.eigen import FloatArray, Modes, System
+
+ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
+MOST_BLOCKS = 4
+INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
+
+
+@dataclass(frozen=True)
+class Flexibility:
+    """Modes that stand for those left out, and how far their answer is off."""
+
+    modes: Modes
+    bound: float  # of the receptance among the loads, relative to their static one; inf if there is none
+
+
+def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, beyond: float) -> Flexibility:
+    """Modes for what the kept ones leave out, under loads (row, load), up to the angular frequency omega.
+
+    beyond is the square of the angular frequency of the first mode left out, a lower limit of all of them.
+    """
+    basis = np.zeros((system.rows, 0))
+    outer = _without(system, kept, loads)
+    newest = system.solve(outer)
+    found = Flexibility(Modes(np.zeros(0), basis), np.inf)
+    for _ in range(MOST_BLOCKS):
+        newest = _orthogonal(system, kept, newest)
+        basis = np.concatenate((basis, _unit(newest)), axis=1)
+        modes = _galerkin(system, basis)
+        found = Flexibility(modes, error_bound(system, kept, modes, loads, omega, beyond))
+        if found.bound <= ENOUGH or modes.count < basis.shape[1]:
+            break
+        newest = system.solve(system.M @ newest)
+    return found
+
+
+def error_bound(
+    system: System, kept: Modes, modes: Modes, loads: FloatArray, omega: float, beyond: float
+) -> float:
+    """Largest relative error of the receptance of any load by itself at omega; inf from `beyond` on."""
+    if omega**2 >= beyond:
+        return np.inf
+    outer = _without(system, kept, loads)
+    answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.T @ outer)
+    residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
+    residual = _without(system, kept, residual)
+    error = np.einsum("ij,ij->j", residual, _orthogonal(system, kept, system.solve(residual)))
+    return float((np.abs(error) / (1.0 - omega**2 / beyond) / static_receptance(system, kept, loads)).max())
+
+
+def static_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+    """Displacement of each load along itself, at rest, without the rigid-body modes."""
+    outer = _without(system, kept, loads)
+    rest = np.einsum("ij,ij->j", outer, _orthogonal(system, kept, system.solve(outer)))
+    elastic = kept.stiffness > -system.shift
+    on_modes = kept.shapes[:, elastic].T @ loads
+    total: FloatArray = rest + (on_modes**2 / kept.stiffness[elastic, None]).sum(axis=0)
+    return np.where(total > 0.0, total, 1.0)
+
+
+def _without(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+    """Loads less the part that pushes the kept modes."""
+    outer: FloatArray = loads - system.M @ (kept.shapes @ (kept.shapes.T @ loads))
+    return outer
+
+
+def _orthogonal(system: System, kept: Modes, displacements: FloatArray) -> FloatArray:
+    """Displacements less their part in the kept modes."""
+    part: FloatArray = displacements - kept.shapes @ (kept.shapes.T @ (system.M @ displacements))
+    return part
+
+
+def _unit(columns: FloatArray) -> FloatArray:
+    """Columns of length 1; those of length 0 left out."""
+    size = np.sqrt((columns * columns).sum(axis=0))
+    unit: FloatArray = columns[:, size > 0.0] / size[size > 0.0]
+    return unit
+
+
+def _galerkin(system: System, basis: FloatArray) -> Modes:
+    """The modes within a space of displacements; what is nearly a combination of others is left out."""
+    if not basis.shape[1]:
+        return Modes(np.zeros(0), basis)
+    stiffness = basis.T @ (system.K @ basis)
+    unit = 1.0 / np.sqrt(np.diagonal(stiffness))
+    value, vector = scipy.linalg.eigh(stiffness * unit * unit[:, None])
+    good = value > INDEPENDENT * value.max()
+    basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
+    mass, turn = scipy.linalg.eigh(basis.T @ (system.M @ basis))
+    heavy = mass > INDEPENDENT * mass.max(initial=0.0)
+    shapes = basis @ turn[:, heavy] / np.sqrt(mass[heavy])
+    return Modes(np.einsum("ij,ij->j", shapes, system.K @ shapes), shapes)

@@ -1,0 +1,74 @@
+"""The lowest modes of a structure, and modes for the flexibility of the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, system_of
+from fcm.structure.flexibility import flexibility
+from fcm.structure.rigid_body import rigid_by_energy, rigid_by_gap
+
+FEWEST = 10  # modes that are kept at least, where none are asked for
+ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
+WHOLE = 30  # rows up to which all modes are kept
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """A structure as modes of mass 1; the first `kept` are its own, the others stand for what is left out."""
+
+    modes: Modes
+    kept: int
+    rigid: int
+    beyond: float  # [rad/s] first frequency left out; inf if there is none
+    bound: float  # of the receptances among the loads, relative to their static ones
+    missed: int | None  # modes that the eigensolver has missed; None where it cannot be told
+
+
+def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | None, rest: bool) -> Reduced:
+    """Modes of a structure for loads (row, load) up to the angular frequency top.
+
+    count is how many modes are kept, None for all up to some times the top; rest is whether the flexibility
+    of the others is kept as well.
+    """
+    system = system_of(K, M)
+    found = _enough(lambda n: modes_of(system, n), system.rows, top, count)
+    wanted = min(found.count, count or _within(found, top, system.rows))
+    kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
+    rigid = max(rigid_by_energy(K, kept), rigid_by_gap(np.sqrt(np.maximum(kept.stiffness, 0.0))))
+    kept.stiffness[:rigid] = 0.0
+    lost = missed(system, found)
+    if found.count == wanted:
+        return Reduced(kept, wanted, rigid, np.inf, 0.0, lost)
+    beyond = float(found.stiffness[wanted])
+    if not rest:
+        return Reduced(kept, wanted, rigid, float(np.sqrt(beyond)), np.nan, lost)
+    more = flexibility(system, kept, loads, top, beyond)
+    both = Modes(
+        np.concatenate((kept.stiffness, more.modes.stiffness)),
+        np.concatenate((kept.shapes, more.modes.shapes), axis=1),
+    )
+    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), more.bound, lost)
+
+
+def _within(modes: Modes, top: float, rows: int) -> int:
+    """How many modes are kept where no number is asked for."""
+    if rows <= WHOLE:
+        return modes.count
+    return max(FEWEST, int((modes.stiffness < (ABOVE * top) ** 2).sum()))
+
+
+def _enough(modes: Callable[[int], Modes], rows: int, top: float, count: int | None) -> Modes:
+    """The modes that are kept and one more, if there is one."""
+    if count is not None:
+        return modes(min(count + 1, rows))
+    number = min(rows, WHOLE)
+    while True:
+        found = modes(number)
+        enough = found.stiffness[-1] > (ABOVE * top) ** 2 and found.count > _within(found, top, rows)
+        if enough or found.count < number or number == rows:
+            return found
+        number = min(rows, 2 * number)

@@ -1,0 +1,31 @@
+"""Rigid-body modes as an eigensolver gives them: with a small frequency, which is its rounding."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from fcm.structure.eigen import FloatArray, Matrix, Modes
+
+FAR_BELOW = 1e-4  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
+MOST = 6  # rigid-body modes of one body
+CANCELLED = 1e-13  # share of the elastic energy's terms that is left of their sum: rounding
+
+
+def rigid_by_gap(frequency: FloatArray) -> int:
+    """How many of the lowest modes are rigid-body modes, of those with a frequency above 0.
+
+    >>> rigid_by_gap(np.array([2e-4, 1e-3, 2e-3, 52.0, 80.0])), rigid_by_gap(np.array([0.5, 52.0, 80.0]))
+    (3, 0)
+    """
+    ordered = np.sort(frequency[frequency > 0.0])
+    gaps = np.flatnonzero(ordered[:-1] < FAR_BELOW * ordered[1:])
+    return int(gaps[0]) + 1 if gaps.size and gaps[0] < MOST else 0
+
+
+def rigid_by_energy(K: Matrix, modes: Modes) -> int:
+    """How many modes have no elastic energy, beyond the rounding of its sum."""
+    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
+    return int((modes.stiffness <= CANCELLED * terms).sum())

@@ -1,0 +1,274 @@
+"""[structure]: matrices from files and written in the scene, names of their rows, damping, mistakes."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse
+
+from fcm.scene import SceneError, apart, scene_from_dict
+
+# three masses on springs: ground - 1 - 2 - 3
+K = np.array([[3.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+M = np.diag([1.0, 2.0, 0.5])
+NAMES = ["1x", "2x", "3x"]
+EXACT = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(M, K)).real))
+
+
+def data(top=None, **structure):
+    table = {"dofs": NAMES, "stiffness": K.tolist(), "mass": M.tolist(), "damping": 0.01} | structure
+    force = [{"dof": "3x", "amplitude": 1.0}]
+    return {"structure": table, "force": force, "response": {"frequency": [0.1, 5.0]}} | (top or {})
+
+
+def read(folder=".", top=None, **structure):
+    return scene_from_dict(data(top, **structure), "test.toml", folder)
+
+
+def refused(folder=".", top=None, **structure):
+    with pytest.raises(SceneError) as caught:
+        read(folder, top, **structure)
+    return str(caught.value)
+
+
+def answer(modal, omega):
+    weights = modal.frequency**2 - omega**2 + 2j * modal.damping * modal.frequency * omega
+    return modal.shapes.T @ (modal.shapes / (modal.mass * weights)[:, None])
+
+
+def write_npz(path, matrix):
+    scipy.sparse.save_npz(path, scipy.sparse.csr_array(matrix))
+
+
+def write_coo(path, matrix):
+    scipy.sparse.save_npz(path, scipy.sparse.coo_array(matrix))
+
+
+def write_dia(path, matrix):
+    scipy.sparse.save_npz(path, scipy.sparse.dia_array(matrix))
+
+
+def write_mat(path, matrix):
+    scipy.io.savemat(path, {"A": matrix, "note": "of no interest"})
+
+
+def write_sparse_mat(path, matrix):
+    scipy.io.savemat(path, {"A": scipy.sparse.csc_array(matrix)}, do_compression=True)
+
+
+def write_mtx(path, matrix):
+    scipy.io.mmwrite(path, scipy.sparse.coo_array(matrix), symmetry="symmetric")
+
+
+WRITERS = [
+    (write_npz, ".npz"),
+    (write_coo, ".npz"),
+    (write_dia, ".npz"),
+    (lambda path, matrix: np.savez(path, A=matrix), ".npz"),
+    (write_mat, ".mat"),
+    (write_sparse_mat, ".mat"),
+    (lambda path, matrix: scipy.io.savemat(path, {"A": matrix}, format="4"), ".mat"),
+    (write_mtx, ".mtx"),
+    (lambda path, matrix: scipy.io.mmwrite(path, matrix), ".mtx"),
+]
+
+
+@pytest.mark.parametrize("write, ending", WRITERS)
+def test_every_kind_of_file(tmp_path, write, ending):
+    write(tmp_path / f"K{ending}", K)
+    write(tmp_path / f"M{ending}", M)
+    modal = read(tmp_path, stiffness=f"K{ending}", mass=f"M{ending}").modal
+    assert modal.frequency == pytest.approx(EXACT, rel=1e-12)
+    assert modal.dofs == ("1x", "2x", "3x") and modal.added == 0
+
+
+def test_written_in_the_scene():
+    modal = read(mass=[1, 2, 0.5], damping=0.0).modal
+    assert modal.frequency == pytest.approx(EXACT, rel=1e-12)
+    assert answer(modal, 0.7) == pytest.approx(np.linalg.inv(K - 0.49 * M), rel=1e-10)
+
+
+def test_frequencies_in_hertz():
+    scene = read(top={"frequency_unit": "Hz"})
+    assert scene.modal.frequency == pytest.approx(EXACT, rel=1e-12)
+    assert scene.frequency_range == pytest.approx((0.2 * pi, 10 * pi))
+
+
+def test_one_matrix_of_several_in_a_file(tmp_path):
+    np.savez(tmp_path / "model.npz", K=K, M=M)
+    scipy.io.savemat(tmp_path / "model.mat", {"K": K, "M": M})
+    for name in ("model.npz", "model.mat"):
+        modal = read(tmp_path, stiffness=f"{name}:K", mass=f"{name}:M").modal
+        assert modal.frequency == pytest.approx(EXACT, rel=1e-12)
+        assert f'"{name}" has "K", "M"; say which, as in "{name}:K"' in refused(tmp_path, mass=name)
+        assert "structure.mass" in refused(tmp_path, mass=f"{name}:Q")
+
+
+def test_op4(tmp_path):
+    op4 = pytest.importorskip("pyyeti.nastran.op4")
+    op4.write(str(tmp_path / "model.op4"), {"k": K, "m": M})
+    modal = read(tmp_path, stiffness="model.op4:k", mass="model.op4:m").modal
+    assert modal.frequency == pytest.approx(EXACT, rel=1e-12)
+
+
+def test_op4_without_its_package(tmp_path, monkeypatch):
+    (tmp_path / "K.op4").write_text("")
+    hidden = "import sys; sys.modules['pyyeti'] = None; " + apart._CODE
+    monkeypatch.setattr(apart, "_CODE", hidden)
+    assert "needs the package pyyeti: pip install 'fcm[op4]'" in refused(tmp_path, stiffness="K.op4")
+
+
+@pytest.mark.parametrize("key", ["dofs", "file"])
+@pytest.mark.parametrize("text", ["1x\n2x\n3x\n", "1 x # tip\n\n2,x\n3 x", "1:x\r\n2:x\r\n3:x"])
+def test_names_from_a_text_file(tmp_path, key, text):
+    (tmp_path / "dofs.txt").write_text(text)
+    structure = {"stiffness": K.tolist(), "mass": [1, 2, 0.5], "damping": 0.0, key: "dofs.txt"}
+    one = data() | {"structure": structure}
+    assert scene_from_dict(one, "test.toml", tmp_path).forces[0].direction.tolist() == [0, 0, 1]
+
+
+@pytest.mark.parametrize("name", ["3x", "3:x", "3 X", "3:1", "31"])
+def test_a_node_and_a_direction_in_several_ways(name):
+    assert read(top={"force": [{"dof": name, "amplitude": 1.0}]}).forces[0].direction.tolist() == [0, 0, 1]
+
+
+@pytest.mark.parametrize(
+    "structure, words",
+    [
+        ({"stiffness": "gone.npz"}, r'structure.stiffness: "gone.npz" is not there'),
+        ({"stiffness": ""}, "structure.stiffness: is empty; name a file"),
+        ({"stiffness": "K.dat"}, "a file of a matrix is .npz, .mat, .mtx, .op4"),
+        ({"mass": 3}, "structure.mass: must be a file, or a list of rows, is 3"),
+        ({"mass": [[1, 0], [0, 1]]}, "structure.mass: has 2 rows, but the stiffness has 3"),
+        ({"mass": [[1, 0, 0], [0, 1]]}, "structure.mass[1]: has 2 numbers, but the first row has 3"),
+        ({"mass": [[1, 0, 0]]}, "structure.mass: must be square, has 1 rows and 3 columns"),
+        ({"mass": [1, 2, float("nan")]}, "structure.mass[2]: must be finite"),
+        ({"dofs": ["1x", "2x"]}, "structure.dofs: names 2 rows, but the stiffness has 3"),
+        ({"dofs": ["1x", "1x", "2x"]}, 'structure.dofs: "1x" is there 2 times'),
+        ({"dofs": "gone.txt"}, 'structure.dofs: "gone.txt" is not there'),
+        ({"file": "dofs.txt"}, "structure: has both dofs and file"),
+        ({"damping": -0.1}, "structure.damping: must be at least 0, is -0.1"),
+        ({"damping": "high"}, "structure.damping: must be a ratio"),
+        ({"damping": {}}, "structure.damping: is empty"),
+        ({"damping": {"mas": 1}}, 'structure.damping.mas: unknown key; did you mean "mass"?'),
+        ({"damping": {"loss_factor": 0.1, "mass": 1}}, "has a loss_factor beside others; give it alone"),
+        ({"modes": 0}, "structure.modes: must be a whole number of at least 1, is 0"),
+        ({"modes": 2.5}, "structure.modes: must be a whole number of at least 1, is 2.5"),
+        ({"flexibility": 1}, "structure.flexibility: must be true or false"),
+        ({"mode": 3}, 'structure.mode: unknown key; did you mean "modes"?'),
+        ({"mass": [0, 0, 0]}, "structure: the mass has no entry greater than 0"),
+        ({"stiffness": (-K).tolist()}, "structure: the stiffness has 3 negative eigenvalues"),
+    ],
+)
+def test_mistakes(structure, words):
+    assert words in refused(**structure)
+
+
+def test_what_is_missing_and_what_is_there_twice():
+    message = refused(top={"structure": {}, "modal": {}})
+    for words in (
+        "has both [modal] and [structure]",
+        "stiffness: missing",
+        "mass: missing",
+        "damping: missing",
+    ):
+        assert words in message
+
+
+def test_all_mistakes_at_once():
+    top = {"force": [{"dof": "4x", "amplitude": "x"}]}
+    message = refused(top=top, modes=-1, damping=-1, stiffness=[[1, 2], [3, 4]])
+    assert message.startswith("test.toml: 6 mistakes")
+    assert 'unknown degree of freedom "4x"; structure.dofs are "1x", "2x", "3x"' in refused(top=top)
+
+
+def test_entries_that_are_not_symmetric_are_named():
+    skew = K.copy()
+    skew[0, 1], skew[2, 0] = -1.5, 0.25
+    message = refused(stiffness=skew.tolist())
+    assert "structure.stiffness: is not symmetric: 2 pairs of entries differ; " in message
+    assert '("1x", "2x") is -1.5, ("2x", "1x") is -1' in message
+    assert '("1x", "3x") is 0, ("3x", "1x") is 0.25' in message
+
+
+def test_rounding_is_no_asymmetry():
+    nearly = K.copy()
+    nearly[0, 1] *= 1 + 1e-10
+    assert read(stiffness=nearly.tolist()).modal.frequency == pytest.approx(EXACT, rel=1e-9)
+
+
+def test_damping_in_proportion_is_that_of_the_matrix(tmp_path):
+    C = 0.02 * M + 0.03 * K
+    np.savez(tmp_path / "C.npz", C)
+    for damping in ({"mass": 0.02, "stiffness": 0.03}, "C.npz", C.tolist()):
+        scene = read(tmp_path, damping=damping)
+        assert answer(scene.modal, 0.9) == pytest.approx(np.linalg.inv(K - 0.81 * M + 0.9j * C), rel=1e-10)
+        assert not any("between modes" in note for note in scene.notes)
+
+
+def test_damping_between_modes_is_left_out_and_said():
+    C = np.diag([0.0, 0.0, 0.2])
+    scene = read(damping=C.tolist())
+    (note,) = (note for note in scene.notes if "between modes" in note)
+    said = float(note.split()[-2]) / 100
+    worst = 0.0
+    for omega in (0.1, *EXACT, 5.0):
+        whole = np.linalg.inv(K - omega**2 * M + 1j * omega * C)[2, 2]  # of the force, at the force
+        worst = max(worst, abs(whole - answer(scene.modal, omega)[2, 2]) / abs(whole))
+    assert said == pytest.approx(worst, rel=0.01)
+
+
+def test_a_loss_factor_is_half_of_it_at_each_resonance():
+    scene = read(damping={"loss_factor": 0.02})
+    assert any("a loss factor is taken as half of it for damping ratio" in note for note in scene.notes)
+    for omega in EXACT:
+        hysteretic = np.linalg.inv(K * (1 + 0.02j) - omega**2 * M)[2, 2]
+        assert abs(answer(scene.modal, omega)[2, 2]) == pytest.approx(abs(hysteretic), rel=5e-3)
+
+
+def test_rigid_bodies_are_recognised_and_said():
+    free = K - np.diag([2.0, 0, 0])
+    scene = read(stiffness=free.tolist(), damping={"mass": 0.1})
+    assert scene.modal.frequency[0] == 0.0 and (scene.modal.frequency[1:] > 0.5).all()
+    assert any("its 1 lowest modes are rigid-body modes" in note for note in scene.notes)
+    assert any("the damping of its rigid-body modes is left out" in note for note in scene.notes)
+
+
+@pytest.mark.parametrize("lowest, rigid", [([1e-3, 2e-3], 2), ([0.5, 0.7], 0), ([0.0, 1e-3], 1)])
+def test_rigid_bodies_of_an_eigensolver(lowest, rigid):
+    """As a finite-element program gives them, with some thousandths of a hertz."""
+    modal = {"dofs": ["u"], "frequency": [*lowest, 52.0], "damping": 0.01, "shapes": [[1.0], [0.5], [0.2]]}
+    one = {"modal": modal, "frequency_unit": "Hz", "response": {"frequency": [10, 100]}}
+    scene = scene_from_dict(one | {"force": [{"dof": "u", "amplitude": 1.0}]})
+    assert (scene.modal.frequency == 0.0).sum() == rigid + lowest.count(0.0)
+    assert len(scene.notes) == (rigid > 0)
+    assert not rigid or "rigid-body modes: taken as 0" in scene.notes[0]
+
+
+def test_a_low_mode_within_reach_of_the_range_is_a_mode():
+    modal = {"dofs": ["u"], "frequency": [1e-3, 52.0], "damping": 0.01, "shapes": [[1.0], [0.5]]}
+    one = {"modal": modal, "response": {"frequency": [1e-3, 100]}, "force": [{"dof": "u", "amplitude": 1.0}]}
+    assert scene_from_dict(one).modal.frequency[0] == 1e-3
+
+
+def test_numbers_of_matrices_can_be_swept():
+    sweep = {"modal.damping": [0.01, 0.02], "force.3x.dof.2x": [0.0, 1.0]}
+    curves = read(top={"sweep": sweep}).curves
+    assert [curve.modal.damping[0] for curve in curves] == [0.01, 0.01, 0.02, 0.02]
+    assert curves[1].forces[0].direction.tolist() == [0, 1, 1]
+
+
+def test_a_matrix_that_says_it_is_larger_than_its_file(tmp_path):
+    head = "%%MatrixMarket matrix coordinate real general\n"
+    (tmp_path / "K.mtx").write_text(head + "3 3 900000000000\n1 1 2.0\n")
+    assert "is too short for them" in refused(tmp_path, stiffness="K.mtx")
+    (tmp_path / "K.mtx").write_text("%%MatrixMarket matrix array real general\n900000 900000\n1\n")
+    assert "--largest-file" in refused(tmp_path, stiffness="K.mtx")
+    (tmp_path / "K.mtx").write_text(head + "900000000 900000000 1\n1 1 2.0\n")
+    assert "--largest-file" in refused(tmp_path, stiffness="K.mtx")
+    parts = {"row": [0], "col": [0], "data": [1.0], "format": "coo", "shape": [900_000_000] * 2}
+    np.savez(tmp_path / "K.npz", **parts)
+    assert "--largest-file" in refused(tmp_path, stiffness="K.npz")

@@ -1,0 +1,158 @@
+"""Modes of matrices, and the flexibility of those that are left out, beside direct solutions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+import fcm
+from fcm.scene import scene_from_dict
+from fcm.structure.eigen import Modes, StructureError, missed, modes_of, system_of
+from fcm.structure.flexibility import flexibility
+
+from . import beams
+
+CANTILEVER = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349]) ** 2  # (beta L)^2, published
+FREE = np.array([4.7300407449, 7.8532046241]) ** 2
+
+
+@pytest.mark.parametrize("elements", [60, 400])  # all modes at once; by Lanczos
+def test_published_frequencies_of_a_cantilever(elements):
+    K, M, _ = beams.beam(elements)
+    found = modes_of(system_of(K, M), 4)
+    assert np.sqrt(found.stiffness) == pytest.approx(CANTILEVER, rel=2e-5)
+    assert found.shapes.T @ (M @ found.shapes) == pytest.approx(np.eye(4), abs=1e-9)
+
+
+@pytest.mark.parametrize("elements", [60, 400])
+def test_a_free_beam_has_two_rigid_body_modes(elements):
+    K, M, _ = beams.beam(elements, clamped=False)
+    found = modes_of(system_of(K, M), 4)
+    assert np.abs(found.stiffness[:2]).max() < 1e-6 * FREE[0] ** 2
+    assert np.sqrt(found.stiffness[2:]) == pytest.approx(FREE, rel=2e-5)
+
+
+def test_rows_without_mass_are_no_modes():
+    K = scipy.sparse.csc_array(np.array([[3.0, -1, 0], [-1, 2, -1], [0, -1, 1]]))
+    M = scipy.sparse.csc_array(np.diag([1.0, 0.0, 2.0]))
+    found = modes_of(system_of(K, M), 3)
+    condensed = np.array([[2.5, -0.5], [-0.5, 0.5]])  # the middle row taken out by hand
+    value = np.linalg.eigvals(np.diag([1.0, 0.5]) @ condensed)
+    assert found.stiffness == pytest.approx(np.sort(value))
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda K, M: (K - 1e3 * M, M), "negative eigenvalue"),
+        (lambda K, M: (K, 0 * M), "the mass has no entry greater than 0"),
+        (lambda K, M: (0 * K, M), "the stiffness has no entry"),
+    ],
+)
+def test_matrices_of_no_structure(change, words):
+    K, M, _ = beams.beam(20)
+    with pytest.raises(StructureError, match=words):
+        system_of(*(scipy.sparse.csc_array(one) for one in change(K, M)))
+
+
+def test_modes_that_were_missed_are_counted():
+    system = system_of(*beams.beam(40)[:2])
+    whole = modes_of(system, 9)
+    assert missed(system, whole) == 0
+    some = [0, 1, 2, 4, 5, 6]
+    assert missed(system, Modes(whole.stiffness[some], whole.shapes[:, some])) == 1
+
+
+@pytest.mark.parametrize("kept", [2, 3, 5, 12])
+@pytest.mark.parametrize("blocks", [1, 2])
+def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
+    """Of receptances at two points and along a combination, up to just below the first mode left out."""
+    monkeypatch.setattr("fcm.structure.flexibility.MOST_BLOCKS", blocks)
+    monkeypatch.setattr("fcm.structure.flexibility.ENOUGH", 0.0)
+    K, M, names = beams.beam(60)
+    loads = np.zeros((len(names), 3))
+    for column, weights in enumerate([{"60w": 1.0}, {"31w": 1.0}, {"60r": 0.3, "45w": -0.7}]):
+        for name, weight in weights.items():
+            loads[names.index(name), column] = weight
+    system = system_of(K, M)
+    whole = modes_of(system, kept + 1)
+    first = Modes(whole.stiffness[:kept], whole.shapes[:, :kept])
+    beyond = float(whole.stiffness[kept])
+    static = np.diagonal(loads.T @ beams.direct(K, M, 0.0, loads, 0.0)).real
+    for omega in np.sqrt(beyond) * np.array([0.1, 0.5, 0.9]):
+        more = flexibility(system, first, loads, omega, beyond)
+        exact = loads.T @ beams.direct(K, M, 0.0, loads, omega).real
+        found, left_out = np.zeros((3, 3)), exact.copy()
+        for modes in (first, more.modes):
+            on_modes = modes.shapes.T @ loads
+            found += on_modes.T @ (on_modes / (modes.stiffness - omega**2)[:, None])
+            if modes is first:
+                left_out = exact - found
+        error = np.diagonal(exact - found) / static
+        rounding = 1e-8 * np.abs(np.diagonal(exact) / static).max()
+        assert -rounding < error.min() and error.max() < more.bound + rounding
+        assert error.max() < np.abs(np.diagonal(left_out) / static).max() + rounding
+        if more.bound > 100 * rounding and omega < 0.6 * np.sqrt(beyond):
+            assert more.bound < 3 * error.max()
+
+
+def scene(folder, elements=60, **structure):
+    """A beam that rubs at its tip, pushed in the middle."""
+    K, M, names = beams.beam(elements)
+    scipy.sparse.save_npz(folder / "K.npz", K)
+    scipy.sparse.save_npz(folder / "M.npz", M)
+    (folder / "dofs.txt").write_text("\n".join(names))
+    table = {"dofs": "dofs.txt", "mass": "M.npz", "stiffness": "K.npz", "damping": 0.01} | structure
+    contact = {"name": "tip", "tangential": "60w", "normal": "45w", "mu": 0.4, "k_u": 200.0, "k_v": 20.0}
+    data = {
+        "structure": table,
+        "contact": [contact | {"n_0": 0.6}],
+        "force": [{"dof": "31w", "amplitude": 1.0}],
+        "response": {"frequency": [2.0, 30.0]},
+    }
+    return scene_from_dict(data, "beam.toml", folder)
+
+
+def peak(one):
+    """Greatest amplitude at the tip, and its frequency, of the one harmonic."""
+    data = fcm.respond(one, "closed-form")
+    return np.array([data[name].sel(dof="60w").item() for name in ("peak_amplitude", "peak_frequency")])
+
+
+def test_few_modes_with_the_flexibility_of_the_others_are_as_good_as_all(tmp_path):
+    """And without it they are not: the contact's own flexibility is missing."""
+    whole = peak(scene(tmp_path, modes=120))
+    errors = {}
+    for kept in (2, 4):
+        for keep in (True, False):
+            one = scene(tmp_path, modes=kept, flexibility=keep)
+            errors[kept, keep] = np.abs(peak(one) / whole - 1).max()
+    assert errors[4, True] < 1e-6
+    assert errors[2, False] > errors[4, False] > 1e-4
+    assert all(errors[kept, True] < 0.02 * errors[kept, False] for kept in (2, 4))
+
+
+def test_a_scene_says_what_is_kept_and_how_far_it_is_off(tmp_path):
+    few = scene(tmp_path, modes=4)
+    assert few.modal.frequency.size == 4 + few.modal.added
+    (note,) = few.notes
+    assert note.startswith("structure: 4 modes of 120 degrees of freedom are kept, and the flexibility")
+    bound = float(note.rpartition(" ")[2])
+    K, M, names = beams.beam(60)
+    at = [names.index(name) for name in few.modal.dofs]
+    loads = np.eye(len(few.modal.dofs))
+    exact = beams.direct(K, M, 0.0, np.eye(len(names))[:, at], 30.0)[at].real
+    undamped = beams.receptance(few.modal, loads, 30.0)
+    # damping 0.01 of every mode: compare far from resonances, to its order
+    assert np.abs(undamped.real - exact).max() < (bound + 0.01) * np.abs(exact).max()
+    (note,) = scene(tmp_path, modes=4, flexibility=False).notes
+    assert "the flexibility of the others is left out" in note
+    (note,) = scene(tmp_path, modes=500).notes
+    assert note.endswith("120 modes of 120 degrees of freedom are kept, all that there are")
+
+
+def test_a_range_beyond_the_modes_is_said(tmp_path):
+    one = scene(tmp_path, modes=1)
+    assert any("within the range that are not kept" in note for note in one.notes)
+    assert any("how far it is off cannot be told" in note for note in one.notes)
