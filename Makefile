@@ -14,7 +14,7 @@ KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.to
 # What the pictures are made of, so that a change redoes only what it touches.
 CONTACT    := $(wildcard src/fcm/contact/*.py)
 SOLVER     := $(CONTACT) $(wildcard src/fcm/scene/*.py src/fcm/table/*.py src/fcm/response/*.py) tables/default.nc
-SIMULATION := $(SOLVER) $(wildcard src/fcm/simulate/*.py)
+SIMULATION := $(SOLVER) $(wildcard src/fcm/simulate/*.py src/fcm/motion/*.py src/fcm/orbit/*.py)
 LOOK       := src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(LOOK) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py

@@ -17,11 +17,11 @@ import xarray
 
 import fcm
 from fcm.cli import main
+from fcm.orbit import periodic
 from fcm.report import contact_figures, response_figures
 from fcm.report.page import Page, Section, Table, render
 from fcm.report.paper import FIGURES, commands, paper
 from fcm.report.rows import near
-from fcm.simulate import periodic
 
 ROOT = Path(__file__).parents[1]
 # what every run of the program imports, or has no part in a result

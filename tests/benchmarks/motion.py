@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 
 import fcm
+from fcm.orbit import periodic
 from fcm.response import Response
 from fcm.scene import Contact, Force, Modal, Scene
-from fcm.simulate import periodic, trace_exact
+from fcm.simulate import trace_exact
 
 FREQUENCIES = np.linspace(0.7, 1.7, 40)
 STEPS = (100, 200, 400)  # in a cycle

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
+from fcm.orbit import periodic
 from fcm.report.accuracy import accuracy as page
 from fcm.scene import load_scene
-from fcm.simulate import periodic
 
 RANGE = "[0.8, 1.6]"
 

@@ -13,9 +13,9 @@ from fcm.cli.messages import Messages
 from fcm.cli.report import aligned, number, swept
 
 if TYPE_CHECKING:
+    from fcm.motion import Histories
     from fcm.response import Response
     from fcm.scene.model import Scene
-    from fcm.simulate import Histories
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 
@@ -46,8 +46,8 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
 
 def simulated(messages: Messages, scene: Scene, response: Response) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
+    from fcm.motion.histories import histories, not_begun
     from fcm.run.progress import part
-    from fcm.simulate.histories import histories, not_begun
 
     if response.interrupted:
         return not_begun(scene)
@@ -63,7 +63,7 @@ def simulated(messages: Messages, scene: Scene, response: Response) -> Histories
 
 def write_csv(response: Response, path: Path) -> None:
     """Write the motion as CSV."""
-    from fcm.simulate.output import write_csv
+    from fcm.motion.output import write_csv
 
     if response.histories is not None:
         write_csv(response.histories, path)

@@ -9,10 +9,12 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from fcm.compare.lines import Line
+from fcm.motion import SimulationError, State
+from fcm.orbit import harmonic_state, periodic
 from fcm.response.path import Progress
 from fcm.response.result import Curve
 from fcm.scene.model import Scene
-from fcm.simulate import SimulationError, State, harmonic_state, periodic, trace_exact
+from fcm.simulate import trace_exact
 
 LIMIT = 60.0  # [s] of processor time for a curve
 CLOSE = 1e-8  # to which the frequency of a peak is located, relative

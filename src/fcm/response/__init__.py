@@ -54,7 +54,7 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     response = _curves(scene, method, at)
     response.notes = list(scene.notes)
     if scene.schedule:
-        from fcm.simulate import histories
+        from fcm.motion import histories
 
         response.histories = histories(scene)
     return to_dataset(response)

@@ -70,7 +70,7 @@ def summary(response: Response) -> dict[str, Any]:
         "seconds": response.seconds,
     }
     if response.histories is not None:
-        from fcm.simulate import output
+        from fcm.motion import output
 
         data["histories"] = output.summary(response.histories)
     return _without_nan(data)  # type: ignore[no-any-return]
@@ -97,7 +97,7 @@ def fields_of(response: Response) -> dict[str, Field]:
     if response.curves or response.histories is None:
         out |= _point_fields(response)
     if response.histories is not None:
-        from fcm.simulate import output
+        from fcm.motion import output
 
         out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
     return out

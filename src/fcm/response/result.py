@@ -14,7 +14,7 @@ from fcm.scene.model import Scene
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
-    from fcm.simulate.histories import Histories
+    from fcm.motion.histories import Histories
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out

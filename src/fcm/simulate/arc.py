@@ -11,16 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fcm.motion.errors import SimulationError
+from fcm.orbit.periodic import TOLERANCE
+from fcm.orbit.shooting import Shooting, Shot
 from fcm.scene.model import FloatArray, Scene
-from fcm.simulate.errors import SimulationError
-from fcm.simulate.periodic import TOLERANCE, Shot
-from fcm.simulate.system import System, has_friction
 
 MOST_CORRECTIONS = 8
 ROUGH = 100.0  # times TOLERANCE: closed as well as rounding lets it, if no step improves it
-FREQUENCY_STEP = 1e-7  # of the difference quotient by frequency, relative
-KEPT_SYSTEMS = 4
-MOVED = 1e-3  # distance over which that quotient serves Newton's method
 
 
 @dataclass(frozen=True)
@@ -40,36 +37,22 @@ class Equations:
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         self.span = scene.frequency_range[1] - scene.frequency_range[0]
-        modes, contacts = scene.modal.mass.size, len(scene.contacts)
-        carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
-        self.free = np.flatnonzero(np.concatenate((np.ones(2 * modes, dtype=bool), carries)))
-        self.size = 2 * modes + contacts
-        self._systems: dict[float, System] = {}
-        self.periods = 0  # that have been computed
+        self.shooting = Shooting(scene)
+        self.free = self.shooting.free
+
+    @property
+    def periods(self) -> int:
+        """How many periods have been computed."""
+        return self.shooting.periods
 
     def shot(self, z: FloatArray) -> Shot | None:
         """The period from z; None where there is none."""
         if not (np.isfinite(z).all() and z[-1] > 0.0):
             return None
-        x = np.zeros(self.size)
-        x[self.free] = z[:-1]
-        self.periods += 1
         try:
-            return Shot(self._system(float(z[-1])), x, choose=True)
+            return self.shooting.residual(z[:-1], float(z[-1]))
         except SimulationError:
             return None
-
-    def _system(self, omega: float) -> System:
-        """The scene at a frequency; the last few are kept, for Newton's method while it is held."""
-        if omega not in self._systems:
-            if len(self._systems) == KEPT_SYSTEMS:
-                del self._systems[next(iter(self._systems))]
-            self._systems[omega] = System(self.scene, omega)
-        return self._systems[omega]
-
-    def unknowns(self, shot: Shot) -> FloatArray:
-        """z of a shot."""
-        return np.append(shot.x[self.free], shot.system.omega)
 
     def scale(self, shot: Shot) -> FloatArray:
         """Units in which the curve is measured: the size of the motion, the range of frequencies.
@@ -78,31 +61,16 @@ class Equations:
         count by their displacements.
         """
         system, scale = shot.system, shot.scale.copy()
-        y = np.abs([segment.y for segment in shot.segments]).max(axis=0)
+        y = shot.segments.largest()
         rates = np.maximum(self.scene.modal.frequency, system.omega)
         length = max(y[system.q].max(), (y[system.p] / rates).max(), 1e-300)
         scale[system.q], scale[system.p] = length, length * rates
         return np.append(scale[self.free] * np.sqrt(self.free.size), self.span)
 
-    def by_frequency(self, shot: Shot) -> FloatArray:
-        """Derivative of the closure by the frequency, on the shot's own side of a corner: (unknown,)."""
-        rate, z = np.zeros(self.free.size), self.unknowns(shot)
-        for sense in (1.0, -1.0):
-            delta = np.zeros_like(z)
-            delta[-1] = sense * FREQUENCY_STEP * z[-1]
-            near = self.shot(z + delta)
-            if near is not None:
-                rate = (near.gap - shot.gap)[self.free] / delta[-1]
-                if _sequence(near) == _sequence(shot):
-                    break
-        for choice in shot.chosen:
-            if not choice.limited:  # w = 0 at every frequency, though the neighbour may just slip
-                rate[np.searchsorted(self.free, 2 * shot.system.modes + choice.contact)] = 0.0
-        return rate
-
-    def bordered(self, shot: Shot, rate: FloatArray, scale: FloatArray, row: FloatArray) -> FloatArray:
-        """The derivative of the closure, with the rate by frequency, bordered by a row; in units of scale."""
-        columns = np.column_stack((shot.closure[np.ix_(self.free, self.free)], rate))
+    def bordered(self, shot: Shot, scale: FloatArray, row: FloatArray) -> FloatArray:
+        """The derivative of the closure bordered by a row, in units of scale."""
+        by_state = shot.by_state[np.ix_(self.free, self.free)]
+        columns = np.column_stack((by_state, shot.by_frequency[self.free]))
         return np.vstack((columns * scale / scale[:-1, None], row))
 
     def correct(
@@ -113,22 +81,15 @@ class Equations:
         None if Newton's method does not find it, or finds none within that distance of the guess.
         """
         z, before = guess, np.inf
-        rate = np.zeros(guess.size - 1)  # by frequency; not needed while that is held
-        known: FloatArray = guess  # where the rate is from
-        regimes: list[str] = []
         for _ in range(MOST_CORRECTIONS):
             shot = self.shot(z)
             if shot is None:
                 return None
-            z = self.unknowns(shot)
             closed = shot.residual <= TOLERANCE or 0.5 * before < shot.residual <= ROUGH * TOLERANCE
-            old = regimes != _sequence(shot) or _distance(z, known, scale) > (0.0 if closed else MOVED)
-            if old and (closed or row[:-1].any()):
-                rate, known, regimes = self.by_frequency(shot), z, _sequence(shot)
             right = np.zeros((z.size, 2))
             right[:-1, 0] = -shot.gap[self.free] / scale[:-1]
             right[-1] = row @ ((guess - z) / scale), 1.0
-            matrix = self.bordered(shot, rate, scale, row)
+            matrix = self.bordered(shot, scale, row)
             solution = _solved(matrix, right)
             away = _distance(z, guess, scale)
             if solution is None or away > (within if closed else 2.0 * within):
@@ -146,7 +107,7 @@ class Equations:
         shot = self.shot(z)
         if shot is None:
             return None
-        matrix = self.bordered(shot, self.by_frequency(shot), scale, along)
+        matrix = self.bordered(shot, scale, along)
         solution = _solved(matrix, np.eye(z.size)[:, -1:])
         if solution is None:
             return None
@@ -168,10 +129,6 @@ def level(size: int, sense: float = 1.0) -> FloatArray:
     row = np.zeros(size)
     row[-1] = sense
     return row
-
-
-def _sequence(shot: Shot) -> list[str]:
-    return [segment.states for segment in shot.segments]
 
 
 def _distance(z: FloatArray, other: FloatArray, scale: FloatArray) -> float:

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fcm.motion.errors import SimulationError
+from fcm.orbit.periodic import Orbit, periodic
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
 from fcm.simulate.between import with_folds, with_peaks
-from fcm.simulate.errors import SimulationError
 from fcm.simulate.follow import Follower
-from fcm.simulate.periodic import Orbit, periodic
 from fcm.simulate.sample import Sample, sampled
 
 CAME_BACK = "the curve came back to the frequency where it began"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.motion.errors import SimulationError
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group
 from fcm.response.path import Progress
@@ -18,7 +19,6 @@ from fcm.response.trace import ResponseError
 from fcm.run import Checkpoint, Interrupted, fingerprint
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
-from fcm.simulate.errors import SimulationError
 from fcm.simulate.explore import Explorer
 from fcm.simulate.orbit_curve import traced_curve, visited_curve
 from fcm.simulate.visit import Visitor

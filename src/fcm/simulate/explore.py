@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from fcm.motion.errors import SimulationError
+from fcm.motion.system import System
+from fcm.orbit.harmonic import balanced_state
+from fcm.orbit.periodic import Orbit, periodic, shoot
 from fcm.scene.model import Scene
 from fcm.simulate.arc import Equations, Point
 from fcm.simulate.branch import Branch, Progress, finish, first_point, follow
-from fcm.simulate.errors import SimulationError
-from fcm.simulate.harmonic import balanced_state
-from fcm.simulate.periodic import Orbit, periodic, shoot
 from fcm.simulate.sample import Sample, distance, sampled
-from fcm.simulate.system import System
 
 DISTINCT = 1e-5  # solutions further apart than this, relative to their size, are different
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from fcm.motion.measure import Measure
+from fcm.motion.state import State
+from fcm.orbit.periodic import closed, within_unit_circle
+from fcm.orbit.subharmonic import Repeating
 from fcm.scene.model import FloatArray
 from fcm.simulate.arc import Point
-from fcm.simulate.measure import Measure
-from fcm.simulate.periodic import Orbit, within_unit_circle
-from fcm.simulate.state import State
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,19 @@ class Sample:
 
 def sampled(point: Point) -> Sample:
     """What is kept of a point."""
-    orbit: Orbit = point.shot.orbit(0)
+    orbit = closed(point.shot)
     return Sample(
         orbit.frequency, orbit.state, orbit.states, orbit.measure, orbit.multipliers, orbit.residual,
         point.z, point.scale, point.tangent, point.orientation,
+    )  # fmt: skip
+
+
+def repeated(omega: float, state: State, motion: Repeating) -> Sample:
+    """What is kept of a motion of several periods; it is stable, as it was come to."""
+    none = np.zeros(0)
+    return Sample(
+        omega, state, motion.states, motion.measure, none.astype(np.complex128), motion.error,
+        none, none, none, 0.0,
     )  # fmt: skip
 
 

@@ -11,18 +11,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fcm.motion.errors import CycleError, SimulationError
+from fcm.motion.run import cycles_from
+from fcm.motion.state import State
+from fcm.motion.system import System
+from fcm.orbit.periodic import Orbit, shoot
+from fcm.orbit.subharmonic import repeating
 from fcm.response.jumps import Jump
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
 from fcm.simulate.branch import Progress, first_point, shown
-from fcm.simulate.errors import CycleError, SimulationError
 from fcm.simulate.explore import solution_at
-from fcm.simulate.periodic import Orbit, shoot
-from fcm.simulate.run import cycles_from
-from fcm.simulate.sample import Sample, sampled
-from fcm.simulate.state import State
-from fcm.simulate.subharmonic import repeating
-from fcm.simulate.system import System
+from fcm.simulate.sample import Sample, repeated, sampled
 
 FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
@@ -151,14 +151,15 @@ class Visitor:
             near = orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED
             if orbit is not None and near and self._take(first_point(self.equations, orbit)):
                 return
-            self._sample = repeating(system, state)
-            if self._sample is not None:
+            several = repeating(system, state)
+            if several is not None:
+                self._sample = repeated(omega, state, several)
                 return
 
 
 def _distance(state: State, orbit: Orbit) -> float:
     """Of a state from a periodic solution, relative to the size of its motion."""
-    size: FloatArray = np.abs([segment.y for segment in orbit.cycle.segments]).max(axis=0)
+    size = orbit.cycle.segments.largest()
     system = orbit.cycle.system
     parts = ((state.q, orbit.state.q, system.q), (state.velocity, orbit.state.velocity, system.p))
     return max(float(np.abs(a - b).max()) / max(float(size[part].max()), 1e-300) for a, b, part in parts)

@@ -1,0 +1,138 @@
+"""The flow of one combination of contact states, without the forces: matrix, exits, powers, table.
+
+The exits are rows g of y that stay positive while the states last. The conditions are (9), (10), (13) to
+(16), free of division: E lasts while mu n - f and mu n + f are positive, P and N while their slip velocity
+times +-k_u and n are, S while -n is.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.motion.errors import SimulationError
+from fcm.motion.flow import BLOCK, LEADING, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
+from fcm.scene.model import FloatArray
+
+if TYPE_CHECKING:
+    from fcm.motion.system import System
+
+Codes = npt.NDArray[np.int8]
+
+
+class Flow(NamedTuple):
+    """What `Flows.add` takes; matrices are of the part of y without the forces, transposed."""
+
+    states: Codes  # (contact,)
+    step: float  # [s], the reciprocal of a bound of the rates of the motion
+    rows: FloatArray  # (exit, linear)
+    owner: list[int]  # (exit,) the contact that it belongs to
+    goal: list[int]  # (exit,) the state to which it leads
+    powers: FloatArray  # (POWERS, linear, linear)
+    rounding: FloatArray  # (LEADING, exit, linear) sizes of the Taylor coefficients of the exits
+    sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
+    table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
+
+
+def made(system: System, states: Codes) -> Flow:
+    """The flow of a combination, with steps that resolve the frequency of the system as well."""
+    matrix = _matrix(system, states)
+    step = _step(system, matrix)
+    terms = _series(matrix * step)
+    rows, owner, goal = _exits(system, states)
+    powers = [terms[::-1].sum(axis=0)]
+    for _ in range(POWERS - 1):
+        powers.append(powers[-1] @ powers[-1])
+    looks = rows @ terms[[0, 1, 4]] * np.array([1.0, 1.0, 24.0])[:, None, None]  # (3, exit, linear)
+    table = [looks.reshape(3 * len(owner), matrix.shape[0])]
+    for _ in range(BLOCK):
+        table.append(table[-1] @ powers[0])
+    return Flow(
+        states.copy(), step, rows, owner, goal,
+        np.array(powers).transpose(0, 2, 1),
+        np.abs(rows @ terms[:LEADING]),
+        np.abs(terms[:3]).sum(axis=0).T,
+        np.concatenate(table).T,
+    )  # fmt: skip
+
+
+def _matrix(system: System, states: Codes) -> FloatArray:
+    """The matrix of (q, q', f, n, 1), (linear, linear)."""
+    modal, m = system.scene.modal, system.modes
+    a = np.zeros((system.size - 2, system.size - 2))
+    a[system.q, system.p] = np.eye(m)
+    a[system.p, system.q] = -np.diag(modal.frequency**2)
+    a[system.p, system.p] = -np.diag(2.0 * modal.damping * modal.frequency)
+    for j, (contact, state) in enumerate(zip(system.contacts, states.tolist(), strict=True)):
+        f, n = system.f.start + j, system.n.start + j
+        push_u, push_v = system.tangential[j] / modal.mass, system.normal[j] / modal.mass
+        a[n, system.p] = contact.k_v * system.normal[j]
+        if state == OPEN:
+            a[system.p, -1] += push_v * max(contact.n_0, 0.0)  # the preload that is missing
+            continue
+        a[system.p, -1] -= push_v * min(contact.n_0, 0.0)  # a gap is not pressed
+        a[system.p, f], a[system.p, n] = -push_u, -push_v
+        if state == STICK:
+            a[f, system.p] = contact.k_u * system.tangential[j] if contact.mu > 0.0 else 0.0
+        else:
+            a[f, system.p] = (1.0 if state == POSITIVE else -1.0) * contact.mu * a[n, system.p]
+    return a
+
+
+def _step(system: System, a: FloatArray) -> float:
+    """One over a bound of the rates [1/s] at which the motion changes: no frequency of it is higher.
+
+    The bound of the structure is doubled until it bounds the frequency of the forces.
+    """
+    loads = slice(system.f.start, system.n.stop)
+    root = np.sqrt(system.scene.modal.mass)
+    with np.errstate(over="ignore", invalid="ignore"):
+        stiffness = -a[system.p, system.q] - a[system.p, loads] @ a[loads, system.p]
+        stiffness *= root[:, None] / root
+    if not np.isfinite(stiffness).all():
+        raise SimulationError("the stiffness overflows; use units in which its numbers are smaller")
+    damping = 2.0 * system.scene.modal.damping * system.scene.modal.frequency
+    rate = float(np.sqrt(np.linalg.norm(stiffness, 2)) + np.abs(damping).max(initial=0.0))
+    if rate == 0.0:
+        return 1.0 / system.omega
+    return float(1.0 / (rate * 2.0 ** max(np.ceil(np.log2(system.omega / rate)), 0.0)))
+
+
+def _series(a: FloatArray) -> FloatArray:
+    """a**j / j! for j = 0 ... ORDER."""
+    terms = np.empty((ORDER + 1, *a.shape))
+    terms[0] = np.eye(a.shape[0])
+    for j in range(1, ORDER + 1):
+        terms[j] = terms[j - 1] @ a / j
+    return terms
+
+
+def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:
+    """The rows of the exits (by f, n and the rates of u and v), their contacts, and where each leads."""
+    rows: list[FloatArray] = []
+    owner: list[int] = []
+    goal: list[int] = []
+
+    def add(j: int, leads_to: int, f: float = 0.0, n: float = 0.0, u: float = 0.0, v: float = 0.0) -> None:
+        contact, row = system.contacts[j], np.zeros(system.size - 2)
+        row[system.f.start + j], row[system.n.start + j], row[-1] = f, n, n * contact.n_0
+        row[system.p] = u * system.tangential[j] + v * system.normal[j]
+        rows.append(row)
+        owner.append(j)
+        goal.append(leads_to)
+
+    for j, (contact, state) in enumerate(zip(system.contacts, states.tolist(), strict=True)):
+        rough = contact.mu > 0.0 and contact.k_u > 0.0
+        if state == STICK and rough:
+            add(j, POSITIVE, n=contact.mu, f=-1.0)
+            add(j, NEGATIVE, n=contact.mu, f=1.0)
+        elif state in (POSITIVE, NEGATIVE):
+            sign = 1.0 if state == POSITIVE else -1.0
+            add(j, STICK, u=sign * contact.k_u, v=-contact.mu * contact.k_v)
+        if state == OPEN:
+            add(j, STICK, n=-1.0)
+        elif state != STICK or not rough:
+            add(j, OPEN, n=1.0)
+    return np.array(rows).reshape(len(rows), system.size - 2), owner, goal

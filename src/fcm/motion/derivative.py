@@ -1,0 +1,231 @@
+"""The derivative of the motion by its start and by the frequency.
+
+Across a segment it is the exponential of the segment's matrix. The frequency acts on the forces alone: at a
+fixed time the derivatives of sin(omega t) and cos(omega t) are t cos(omega t) and -t sin(omega t), and
+that of the columns of the forces is known with the flow. Across a transition whose instant moves with the
+start or with the frequency it is the saltation matrix
+
+    S = R + (F+ - R F-) g / (g F-),    F = A y at the transition,
+
+with g the row that vanishes there and R the derivative of what the transition does to the state.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs
+
+from fcm.motion.flow import ORDER
+
+if cython.compiled:
+    from cython.cimports.fcm.motion.flow import Flows, summed
+    from cython.cimports.fcm.motion.segments import Segments
+else:
+    from fcm.motion.flow import Flows, summed
+    from fcm.motion.segments import Segments
+
+GRAZING = cython.declare(
+    cython.double, 1e-12
+)  # an exit passed this slowly, relative to its terms, is touched
+DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
+_ORDER = cython.declare(cython.int, 19)
+_POWERS = cython.declare(cython.int, 8)
+_OPEN = cython.declare(cython.int, 0)
+_POSITIVE = cython.declare(cython.int, 2)
+_NEGATIVE = cython.declare(cython.int, 3)
+
+
+@cython.cclass
+class Derivative:
+    """Of a motion by x = (q, q', f) at its start and by the frequency.
+
+    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
+    them that by the frequency, at a fixed time; the last row is the state vector itself; `rate` is A y there.
+    """
+
+    def __init__(self, flows: Flows) -> None:
+        self.flows = flows
+        self.unknowns, self.at = 2 * flows.modes + flows.contacts, 0
+        self.columns = np.zeros((self.unknowns + 2, flows.size))
+        self.rate = np.zeros(flows.size)
+        self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
+        self._rates, self._room = np.zeros((2, flows.size)), np.zeros((self.unknowns, flows.linear))
+
+    def begins(self, segments: Segments) -> None:
+        """Put the derivative at the start of the segments."""
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        m: cython.Py_ssize_t = self.flows.modes
+        n: cython.Py_ssize_t = 2 * m + self.flows.contacts
+        self.at = 0
+        np.asarray(self.columns)[:] = np.eye(self.unknowns + 2, self.flows.size)
+        np.asarray(self.columns)[self.unknowns] = 0.0
+        for k in range(m):
+            for j in range(self.flows.contacts):
+                self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
+        for k in range(self.unknowns):
+            self._put_friction(self.columns, k, segments, 0, True)
+        np.asarray(self.columns)[self.unknowns + 1] = np.asarray(segments.y)[0]
+
+    def go(self, segments: Segments, last: int, position: float) -> int:
+        """To a position in a segment; the segment whose flow is missing, or -1 when it is there."""
+        segment: cython.Py_ssize_t = last
+        end: cython.double = position
+        missing: cython.Py_ssize_t
+        with cython.nogil:
+            missing = self._go(segments, segment, end)
+        return int(missing)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _go(self, segments: Segments, last: cython.Py_ssize_t, position: cython.double) -> cython.Py_ssize_t:
+        slot: cython.Py_ssize_t
+        new: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        while True:
+            slot = self.flows.find(segments.states, self.at)
+            if slot < 0:
+                return self.at
+            self.flows.refresh(slot)
+            if self.at == last:
+                self._follow(slot, position)
+                self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0, 1.0)
+                for i in range(self.flows.size):
+                    self.rate[i] = self._rates[0, i]
+                return -1
+            new = self.flows.find(segments.states, self.at + 1)
+            if new < 0:
+                return self.at + 1
+            self._follow(slot, segments.length[self.at])
+            self._across(segments, self.at, slot, new)
+            self.at += 1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.void:
+        """Along a flow, to a position in steps."""
+        whole: cython.longlong = cython.cast(cython.longlong, position)
+        x: cython.double = position - whole
+        j: cython.int
+        while whole >> _POWERS:
+            self._whole(slot, _POWERS - 1)
+            whole -= 1 << (_POWERS - 1)
+        for j in range(_POWERS):
+            if whole >> j & 1:
+                self._whole(slot, j)
+        self._part(slot, x)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+        """By 2**j steps."""
+        n: cython.Py_ssize_t = self.flows.linear
+        u: cython.Py_ssize_t = self.unknowns
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        sine: cython.double = self.columns[u + 1, n]
+        cosine: cython.double = self.columns[u + 1, n + 1]
+        h: cython.double = self.flows.step[slot] * (1 << j)
+        if n < DENSE:
+            for k in range(u):
+                self.flows.advance(slot, j, self.columns, k)
+        else:
+            with cython.gil:
+                columns = np.asarray(self.columns)[:u, :n]
+                np.matmul(columns, np.asarray(self.flows.power)[slot, j], out=np.asarray(self._room))
+                columns[:] = self._room
+        self.flows.advance(slot, j, self.columns, u)
+        self.flows.advance(slot, j, self.columns, u + 1)
+        for i in range(n):
+            self.columns[u, i] += self.flows.forced[slot, j, 2, i] * sine
+            self.columns[u, i] += self.flows.forced[slot, j, 3, i] * cosine
+        self.columns[u, n] += h * self.columns[u + 1, n + 1]
+        self.columns[u, n + 1] -= h * self.columns[u + 1, n]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
+        """By a part x < 1 of a step."""
+        n: cython.Py_ssize_t = self.flows.linear
+        u: cython.Py_ssize_t = self.unknowns
+        k: cython.Py_ssize_t
+        j: cython.int
+        h: cython.double = self.flows.step[slot]
+        for k in range(u):
+            self.flows.part(slot, x, self.columns, k)
+        self.flows.taylor(slot, self.columns, u + 1, self._terms)
+        for k in range(self.flows.size):
+            self._grades[0, k] = self.columns[u, k]
+        for j in range(_ORDER):
+            self.flows.derive(slot, self._grades, j, self._grades, j + 1, h / (j + 1))
+            self._grades[j + 1, n] += h / (j + 1) * self._terms[j, n + 1]
+            self._grades[j + 1, n + 1] -= h / (j + 1) * self._terms[j, n]
+        summed(self._terms, x, self.columns, u + 1)
+        summed(self._grades, x, self.columns, u)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _across(
+        self, segments: Segments, i: cython.Py_ssize_t, old: cython.Py_ssize_t, new: cython.Py_ssize_t
+    ) -> cython.void:
+        """Across the transition that ends segment i: the state is continuous, only its rate jumps."""
+        n: cython.Py_ssize_t = self.flows.linear
+        u: cython.Py_ssize_t = self.unknowns
+        k: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        e: cython.Py_ssize_t = segments.ended[i]
+        speed: cython.double = 0.0
+        size: cython.double = 0.0
+        moved: cython.double
+        for p in range(self.flows.size):
+            self.columns[u + 1, p] = segments.y[i + 1, p]
+        self.flows.derive(old, self.columns, u + 1, self._rates, 0, 1.0)
+        self.flows.derive(new, self.columns, u + 1, self._rates, 1, 1.0)
+        for p in range(n):
+            speed += self.flows.row[old, e, p] * self._rates[0, p]
+            size += fabs(self.flows.row[old, e, p]) * fabs(self._rates[0, p])
+        self._put_friction(self._rates, 0, segments, i + 1, False)
+        for p in range(n):
+            self._rates[1, p] -= self._rates[0, p]
+        for k in range(u + 1):
+            moved = 0.0
+            if fabs(speed) > GRAZING * size:
+                for p in range(n):
+                    moved += self.flows.row[old, e, p] * self.columns[k, p]
+                moved /= speed
+            self._put_friction(self.columns, k, segments, i + 1, False)
+            for p in range(n):
+                self.columns[k, p] += self._rates[1, p] * moved
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _put_friction(
+        self,
+        z: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        segments: Segments,
+        i: cython.Py_ssize_t,
+        every: cython.bint,
+    ) -> cython.void:
+        """Put the friction in row k where segment i wants it, of all contacts or of those that changed."""
+        j: cython.Py_ssize_t
+        c: cython.Py_ssize_t = self.flows.contacts
+        f: cython.Py_ssize_t = 2 * self.flows.modes
+        state: cython.int
+        for j in range(c):
+            state = segments.states[i, j]
+            if not every and segments.states[i - 1, j] == state:
+                continue
+            if state == _POSITIVE:
+                z[k, f + j] = self.flows.mu[j] * z[k, f + c + j]
+            elif state == _NEGATIVE:
+                z[k, f + j] = -self.flows.mu[j] * z[k, f + c + j]
+            elif state == _OPEN:
+                z[k, f + j] = 0.0

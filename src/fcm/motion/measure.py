@@ -1,0 +1,67 @@
+"""What is reported of a cycle: greatest and least displacement, mean, fundamental, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.motion.cycle import Cycle
+from fcm.motion.gauge import Gauge
+from fcm.motion.segments import Segments
+from fcm.motion.system import System
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One cycle of each degree of freedom; lengths in the scene's unit."""
+
+    amplitude: FloatArray  # (dof,) half the peak-to-peak
+    fundamental: FloatArray  # (dof,) amplitude of the fundamental
+    phase: FloatArray  # (dof,) [rad], of fundamental * sin(omega t + phase)
+    mean: FloatArray  # (dof,) time average
+    greatest: FloatArray  # (dof,)
+    least: FloatArray  # (dof,)
+
+
+def measure(cycle: Cycle) -> Measure:
+    """Measure the displacements over a cycle.
+
+    The integrals are exact to rounding; each extreme is a root of the velocity.
+    """
+    system, shapes = cycle.system, cycle.system.scene.modal.shapes
+    rows = np.zeros((shapes.shape[1], system.size - 2))
+    rows[:, system.q] = shapes.T
+    found = _gauged(system, cycle.segments, rows)
+    # x = a sin(theta + phase): its integral with sin(theta) + i cos(theta) is a exp(i phase) T / 2
+    wave = 2.0 / cycle.duration * (np.asarray(found.sine) + 1j * np.asarray(found.cosine)) @ shapes
+    mean = np.asarray(found.mean) @ shapes / cycle.duration
+    high, low = np.asarray(found.greatest), np.asarray(found.least)
+    return Measure(0.5 * (high - low), np.abs(wave), np.angle(wave), mean, high, low)
+
+
+class Extreme(NamedTuple):
+    """The least value of a row over segments, and where it is."""
+
+    value: float
+    segment: int
+    position: float  # in steps
+
+
+def least(system: System, segments: Segments, rows: FloatArray) -> list[Extreme]:
+    """Of each of rows @ y, y without the angle of the forces: rows (row, d - 2)."""
+    found = _gauged(system, segments, rows)
+    places = np.asarray(found.place)[:, 2:]
+    return [
+        Extreme(value, int(place[0]), place[1])
+        for value, place in zip(np.asarray(found.least).tolist(), places.tolist(), strict=True)
+    ]
+
+
+def _gauged(system: System, segments: Segments, rows: FloatArray) -> Gauge:
+    steps = system.steps(segments)
+    gauge = Gauge(steps, rows)
+    system.run(gauge, steps)
+    return gauge

@@ -1,0 +1,66 @@
+"""The segments of a motion: what happens between two transitions."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs
+
+from fcm.scene.model import FloatArray
+
+
+@cython.cclass
+class Segments:
+    """Arrays over segments, of which the first `count` are there.
+
+    A segment begins at the time `start` [s] with the state vector `y` (d,), lasts for `length` steps of the
+    flow of its `states` (contact,), and is `ended` by an exit of that flow, or (-1) by the end of the motion.
+    """
+
+    def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:
+        self.count = 0
+        self.y, self.states = np.zeros((capacity, size)), np.zeros((capacity, contacts), np.int8)
+        self.start, self.length = np.zeros(capacity), np.zeros(capacity)
+        self.ended = np.zeros(capacity, np.intp)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def largest(self) -> FloatArray:
+        """The greatest magnitude of each component at the ends of segments: (d,)."""
+        out: cython.double[::1] = np.zeros(self.y.shape[1])
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        for k in range(self.count):
+            for i in range(self.y.shape[1]):
+                out[i] = max(out[i], fabs(self.y[k, i]))
+        return np.asarray(out)
+
+    def seen(self) -> list[int]:
+        """For each contact the sum of 2**code of the states that it has been in."""
+        found: list[int] = []
+        seen: cython.int
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for j in range(self.states.shape[1]):
+            seen = 0
+            for k in range(self.count):
+                seen |= 1 << self.states[k, j]
+            found.append(seen)
+        return found
+
+    def trim(self) -> Segments:
+        """These segments without room for more."""
+        k: cython.Py_ssize_t = self.count
+        self.y, self.states, self.ended = self.y[:k], self.states[:k], self.ended[:k]
+        self.start, self.length = self.start[:k], self.length[:k]
+        return self
+
+    def room(self, capacity: int) -> Segments:
+        """The same segments with room for more."""
+        made = Segments(self.y.shape[1], self.states.shape[1], capacity)
+        k = made.count = self.count
+        np.asarray(made.y)[:k], np.asarray(made.states)[:k] = self.y[:k], self.states[:k]
+        np.asarray(made.start)[:k], np.asarray(made.length)[:k] = self.start[:k], self.length[:k]
+        np.asarray(made.ended)[:k] = self.ended[:k]
+        return made

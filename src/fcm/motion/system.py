@@ -1,0 +1,145 @@
+"""A scene as what its motion in time depends on: modes, contacts, forces; one at each frequency."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from fcm.motion.combination import Codes, made
+from fcm.motion.derivative import Derivative
+from fcm.motion.errors import SimulationError
+from fcm.motion.flow import Flows
+from fcm.motion.march import March
+from fcm.motion.segments import Segments
+from fcm.motion.steps import Steps
+from fcm.scene.model import Contact, FloatArray, Scene
+
+LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
+MOST_BYTES = 2**29  # of the flows that are kept,
+FEWEST = 8  # but so many are, whatever their size
+_SHARED = (
+    "tangential", "normal", "preload", "mu", "k_u", "stiffness", "per_unit", "sine", "cosine",
+    "flows", "_march", "_derivative",
+)  # fmt: skip
+
+
+class Kernel(Protocol):
+    """What goes through steps; -1 where the flow of the next segment is missing."""
+
+    def go(self) -> int: ...
+
+
+class System:
+    """A scene at an excitation frequency omega [rad/s]; the flows serve every frequency.
+
+    Parameters
+    ----------
+    scene : Scene
+    omega : float
+    other : System, optional
+        The same scene at another frequency, whose flows are used on.
+    """
+
+    def __init__(self, scene: Scene, omega: float, other: System | None = None) -> None:
+        if not (np.isfinite(omega) and omega > 0.0):
+            raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
+        self.scene, self.omega = scene, float(omega)
+        self.contacts = scene.contacts
+        modal = scene.modal
+        m, c = modal.mass.size, len(scene.contacts)
+        self.modes, self.size = m, 2 * m + 2 * c + 3
+        self.q, self.p = slice(0, m), slice(m, 2 * m)
+        self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
+        self.unknowns = 2 * m + c  # (q, q', f): the rest follows
+        if other is not None:
+            self.__dict__ |= {name: getattr(other, name) for name in _SHARED}
+            return
+        self.tangential = np.array([modal.shapes @ k.tangential for k in scene.contacts]).reshape(c, m)
+        self.normal = np.array([modal.shapes @ k.normal for k in scene.contacts]).reshape(c, m)
+        self.preload = np.array([contact.n_0 for contact in scene.contacts])
+        self.mu, self.k_u, self.stiffness = (
+            np.array([(k.mu, k.k_u, k.k_v) for k in scene.contacts]).reshape(c, 3).T
+        )
+        shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
+        self.per_unit = np.where(
+            shapes > 0.0, shapes, 1.0
+        )  # displacement by a mode, whatever its mass and unit
+        self.sine, self.cosine = _modal_force(scene)
+        self.flows = self._flows()
+        self._march, self._derivative = March(self.flows), Derivative(self.flows)
+
+    def at(self, omega: float) -> System:
+        """The same scene at another frequency."""
+        return System(self.scene, omega, self)
+
+    @property
+    def period(self) -> float:
+        """Period of the force [s]."""
+        return 2.0 * np.pi / self.omega
+
+    def tuned(self) -> Flows:
+        """The flows at this frequency."""
+        self.flows.at(self.omega)
+        return self.flows
+
+    def march(self) -> March:
+        """The march through the flows at this frequency; there is one for all frequencies."""
+        self.tuned()
+        return self._march
+
+    def derivative(self) -> Derivative:
+        """The derivative of motions at this frequency; there is one for all frequencies."""
+        self.tuned()
+        return self._derivative
+
+    def make(self, states: Codes) -> int:
+        """Put the flow of a combination of states into the pool; returns its place."""
+        if self.flows.count > FEWEST and self.flows.bytes() > MOST_BYTES:
+            self.flows.clear()
+        return int(self.flows.add(*made(self, states)))
+
+    def slot(self, states: Codes) -> int:
+        """The place in the pool of a combination of states."""
+        found = int(self.tuned().slot(states))
+        return found if found >= 0 else self.make(states)
+
+    def steps(self, segments: Segments) -> Steps:
+        """The steps of segments at this frequency."""
+        return Steps(self.tuned(), segments)
+
+    def run(self, kernel: Kernel, steps: Steps) -> None:
+        """Let a kernel go through all its steps, making the flows that are missing."""
+        while kernel.go() < 0:
+            self.make(np.asarray(steps.segments.states)[steps.at + 1])
+
+    def loads(self, y: FloatArray) -> FloatArray:
+        """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
+        return self.preload + y[self.n]
+
+    def _flows(self) -> Flows:
+        modal, c = self.scene.modal, self.contacts
+        law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
+        return Flows(
+            (
+                modal.frequency**2,
+                2.0 * modal.damping * modal.frequency,
+                np.array([self.sine, self.cosine]) / modal.mass,
+            ),
+            (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
+            law,
+        )
+
+
+def has_friction(contact: Contact) -> bool:
+    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
+    return contact.mu > 0.0 and contact.k_u > 0.0
+
+
+def _modal_force(scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """Modal amplitudes of sin(theta) and of cos(theta)."""
+    total = np.zeros(len(scene.modal.dofs), dtype=np.complex128)
+    for force in scene.forces:
+        total += force.direction * force.amplitude * np.exp(1j * force.phase)
+    modal = scene.modal.shapes @ total
+    return modal.real.copy(), modal.imag.copy()

@@ -1,0 +1,38 @@
+"""The derivative of a motion by its start and by the frequency, as arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.motion.segments import Segments
+from fcm.motion.system import System
+from fcm.scene.model import FloatArray
+
+
+class Along(NamedTuple):
+    """The derivative at an instant."""
+
+    columns: FloatArray  # (unknown + 2, d): rows by each of x = (q, q', f), by the frequency; last the state
+    rate: FloatArray  # (d,) of the state [1/s]
+
+
+def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
+    """At a position (in steps) in a segment."""
+    kernel = system.derivative()
+    kernel.begins(segments)
+    while (missing := kernel.go(segments, last, position)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    return Along(np.array(kernel.columns), np.array(kernel.rate))
+
+
+def period_derivative(system: System, segments: Segments) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of x = (q, q', f) after one period by x at its start, and by the frequency.
+
+    The period shortens as the frequency grows: dT / d omega = -T / omega.
+    """
+    last, u = len(segments) - 1, system.unknowns
+    there = derivative_at(system, segments, last, segments.length[last])
+    by_frequency = there.columns[u, :u] - system.period / system.omega * there.rate[:u]
+    return there.columns[:u, :u].T, by_frequency

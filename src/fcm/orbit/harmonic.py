@@ -1,0 +1,128 @@
+"""A state to start from, from a point of single-harmonic balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact import fourier_coefficients, hysteresis_loop, normal_coefficients
+from fcm.motion.errors import SimulationError
+from fcm.motion.state import State
+from fcm.motion.system import System, has_friction
+from fcm.response.balance import Balance
+from fcm.response.displacement import displacements
+from fcm.response.law import ClosedForm
+from fcm.response.start import starting_points
+from fcm.response.structure import group_of, with_contact
+from fcm.scene.model import Contact, FloatArray, Scene
+
+
+def harmonic_state(
+    scene: Scene,
+    frequency: float,
+    amplitude: npt.ArrayLike,
+    phase: npt.ArrayLike,
+    mean: npt.ArrayLike,
+) -> State:
+    """The state at the forces' angle 0 of the motion mean + amplitude sin(omega t + phase) (section 4.3).
+
+    The motion is known at the degrees of freedom, of which there may be fewer than modes: the contacts'
+    balanced forces (27), (29) follow from it, and the modes from these.
+
+    Parameters
+    ----------
+    scene : Scene
+    frequency : float
+        [rad/s]
+    amplitude, phase, mean : (dof,)
+        As in a point of a response curve; phase in rad.
+
+    Returns
+    -------
+    State
+        A guess for `periodic`, with the friction forces of the steady hysteresis loops.
+
+    Raises
+    ------
+    SimulationError
+        If the point is not finite, or a mode has no stiffness, or no damping at its own frequency.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.orbit import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> point = fcm.respond(scene, "closed-form").isel(curve=0, point=-1)
+    >>> guess = harmonic_state(scene, float(point.frequency), point.amplitude, point.phase, point["mean"])
+    >>> periodic(scene, float(point.frequency), guess).stable
+    True
+    """
+    x = np.asarray(amplitude) * np.exp(1j * np.asarray(phase, dtype=np.float64))
+    average = np.asarray(mean, dtype=np.float64)
+    if not (np.isfinite(x).all() and np.isfinite(average).all()):
+        raise SimulationError("the point of the response curve to start from is not finite")
+    system = System(scene, frequency)
+    wave: npt.NDArray[np.complex128] = system.sine + 1j * system.cosine
+    steady = np.zeros(system.modes)
+    friction = np.zeros(len(scene.contacts))
+    for j, contact in enumerate(scene.contacts):
+        u, v, v_mean = contact.tangential @ x, contact.normal @ x, float(contact.normal @ average)
+        pair, means, friction[j] = _forces(contact, u, v, v_mean)
+        wave = wave - system.tangential[j] * pair[0] - system.normal[j] * pair[1]
+        steady -= system.tangential[j] * means[0] + system.normal[j] * (means[1] - max(contact.n_0, 0.0))
+    return _modal(system, wave, steady, friction)
+
+
+def balanced_state(scene: Scene, frequency: float) -> State | None:
+    """A guess from the scene's own harmonic balance at a frequency [rad/s]; None if it has none there."""
+    if not scene.modal.frequency.all():
+        return None
+    balance = Balance(group_of([with_contact(scene)]), ClosedForm())
+    omega = np.array([frequency])
+    with np.errstate(all="ignore"):  # at a resonance without damping there is none
+        x, found = starting_points(balance, omega)
+        if not found[0]:
+            return None
+        X, mean = displacements(balance, x, omega)
+    return harmonic_state(scene, frequency, np.abs(X[0]), np.angle(X[0]), mean[0])
+
+
+def _modal(
+    system: System, wave: npt.NDArray[np.complex128], steady: FloatArray, friction: FloatArray
+) -> State:
+    """The modes' answer to harmonic and steady modal forces, at the angle 0."""
+    modal, omega = system.scene.modal, system.omega
+    stiffness = modal.frequency**2
+    dynamic = (modal.frequency - omega) * (modal.frequency + omega) + (
+        2j * modal.damping * modal.frequency * omega
+    )
+    if not (stiffness.all() and dynamic.all()):
+        raise SimulationError(
+            "a mode without stiffness, or without damping at its own frequency, has no harmonic balance; "
+            "start from a simulated state"
+        )
+    q = wave / (modal.mass * dynamic)
+    return State(steady / (modal.mass * stiffness) + q.imag, omega * q.real, friction)
+
+
+def _forces(
+    contact: Contact, u: complex, v: complex, v_mean: float
+) -> tuple[tuple[complex, complex], tuple[float, float], float]:
+    """Balanced friction and normal force: their fundamentals, their means; the friction at the angle 0."""
+    a, b, load = abs(u), abs(v), contact.n_0 + contact.k_v * v_mean
+    normal, normal_mean = 0j, max(load, 0.0)
+    if contact.k_v * b > 0.0:
+        n_b, n_s = normal_coefficients(load / (contact.k_v * b))
+        normal, normal_mean = contact.k_v * v * float(n_s), contact.k_v * b * float(n_b)
+    if not has_friction(contact) or a == 0.0:
+        return (0j, normal), (0.0, normal_mean), 0.0
+    stiff = contact.k_u * a
+    arguments = contact.mu * load / stiff, contact.mu * contact.k_v * b / stiff, _angle(v) - _angle(u)
+    f_b, f_s, f_c = (float(f) for f in fourier_coefficients(*arguments))
+    friction = contact.k_u * u * complex(f_s, f_c)
+    start = stiff * float(hysteresis_loop(*arguments).force(_angle(u)))
+    return (friction, normal), (stiff * f_b, normal_mean), start
+
+
+def _angle(z: complex) -> float:
+    return float(np.angle(z))

@@ -1,0 +1,160 @@
+"""Periodic solutions by shooting: the fixed points of the motion over one period, and their stability."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.motion.cycle import Cycle
+from fcm.motion.errors import SimulationError
+from fcm.motion.measure import Measure, measure
+from fcm.motion.motion import Motion
+from fcm.motion.run import cycles_from
+from fcm.motion.state import State
+from fcm.motion.system import System
+from fcm.orbit.shooting import Shot
+from fcm.scene.model import FloatArray, Scene
+
+TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
+MOST_ITERATIONS = 25
+RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
+STABLE = 1e-7  # by which a multiplier may exceed 1
+FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic solution, one period from the instant at which the forces' angle is 0."""
+
+    scene: Scene
+    frequency: float  # [rad/s]
+    state: State  # at its start
+    cycle: Cycle
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which it fails to close, relative to its size
+    iterations: int
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out, or at least do not grow."""
+        return within_unit_circle(self.multipliers)
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """For each contact the sequence of its states over the period, such as 'EPEN'."""
+        return self.cycle.states
+
+    @cached_property
+    def measure(self) -> Measure:
+        """Amplitudes (half the peak-to-peak, and the fundamental), phase and mean."""
+        return measure(self.cycle)
+
+    @property
+    def motion(self) -> Motion:
+        """The period as a motion."""
+        return Motion(self.scene, (self.cycle,), self.state)
+
+
+def within_unit_circle(multipliers: npt.NDArray[np.complex128]) -> bool:
+    """Whether no disturbance grows, but for rounding."""
+    return bool(np.abs(multipliers).max(initial=0.0) <= 1.0 + STABLE)
+
+
+def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbit:
+    """A periodic solution of a scene, stable or not, at one frequency.
+
+    Newton's method on the closure of one period of the exact motion (shooting), with the exact derivative.
+
+    Parameters
+    ----------
+    scene : Scene
+        From `fcm.load_scene`.
+    frequency : float
+        Of the external forces [rad/s].
+    guess : State, optional
+        At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
+        `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
+        goes around when that one is not stable.
+
+    Raises
+    ------
+    SimulationError
+        If no periodic solution is found from there.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> orbit = periodic(fcm.load_scene("yang1998-n5"), 1.3)
+    >>> orbit.stable, orbit.states
+    (True, ('SPEN',))
+    """
+    system = System(scene, frequency)
+    if guess is not None:
+        orbit = shoot(system, guess)
+        if orbit is None:
+            raise SimulationError(
+                f"no periodic solution is found at {frequency:g} rad/s from this state; simulate some cycles "
+                "and start from their end, or from a solution at a frequency nearby"
+            )
+        return orbit
+    return _approached(system)
+
+
+def _approached(system: System) -> Orbit:
+    """The periodic solution that a simulation from rest comes near to."""
+    state, unstable = State.rest(system.scene), 0
+    for cycles in FREE_CYCLES:
+        *_, (_, state) = cycles_from(system, cycles, state)
+        orbit = shoot(system, state)
+        unstable += orbit is not None and not orbit.stable
+        # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
+        if orbit is not None and (orbit.stable or unstable > 1):
+            return orbit
+    raise SimulationError(
+        f"the motion from rest at {system.omega:g} rad/s has not become periodic in {sum(FREE_CYCLES)} "
+        "cycles; it may grow without end, repeat only after several periods, or need a guess"
+    )
+
+
+def shoot(system: System, guess: State) -> Orbit | None:
+    """Newton's method from a state at the forces' angle 0; None when it does not converge."""
+    shot = Shot(system, np.concatenate((guess.q, guess.velocity, guess.friction)))
+    for iteration in range(MOST_ITERATIONS):
+        if shot.residual <= TOLERANCE:
+            return closed(shot, iteration)
+        better = _improved(shot)
+        if better is None:
+            return closed(shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
+        shot = better
+    return None
+
+
+def closed(shot: Shot, iterations: int = 0) -> Orbit:
+    """The orbit of a shot that closes."""
+    system = shot.system
+    return Orbit(
+        system.scene, system.omega, shot.state, shot.cycle, shot.multipliers, shot.residual, iterations
+    )
+
+
+def _step(shot: Shot) -> FloatArray:
+    """Newton's step; along directions in which nothing changes, none."""
+    matrix = shot.by_state * shot.scale / shot.scale[:, None]
+    solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=RANK)[0]
+    step: FloatArray = solution * shot.scale
+    return step
+
+
+def _improved(shot: Shot) -> Shot | None:
+    """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
+    step, size = _step(shot), 1.0
+    while size > 1e-3:
+        new = Shot(shot.system, shot.x + size * step)
+        # across corners of the map the residual may grow for one step
+        if new.residual < shot.residual * (1.0 if size < 1.0 else 2.0 if shot.residual > 1e-6 else 1.0):
+            return new
+        size *= 0.5
+    return None

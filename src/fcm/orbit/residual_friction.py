@@ -1,0 +1,124 @@
+"""The friction force of a contact that sticks all through the period.
+
+Its slip motion w can have any value between the greatest lower and the least upper slip limit, and the
+solution is one of a family. A contact that starts with some w ends with the w nearest to it: that one is
+chosen, so that the solutions over the frequency are one curve. It starts unstressed, w = 0, unless the
+scene's [start] says otherwise.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.motion.flow import NEGATIVE, OPEN, POSITIVE, STICK
+from fcm.motion.measure import Extreme, least
+from fcm.motion.segments import Segments
+from fcm.motion.system import System, has_friction
+from fcm.orbit.derivative import derivative_at
+from fcm.scene.model import FloatArray, Scene
+
+MARGIN = 1e-9  # distance from the slip limit, relative to the forces
+
+
+class Choice(NamedTuple):
+    """How far a stuck contact's friction force is from the one that is chosen."""
+
+    contact: int
+    gap: float  # to be added to the force
+    row: FloatArray  # (2 modes + contacts,) derivative of the gap by x = (q, q', f)
+    rate: float  # and by the frequency
+    limited: bool  # whether it is a limit of slip, and not the w that is wanted
+
+
+def resting(scene: Scene) -> FloatArray:
+    """The slip motions w of the contacts where the scene starts: (contact,)."""
+    start = scene.start
+    if start is None:
+        return np.zeros(len(scene.contacts))
+    x = scene.modal.shapes.T @ start.displacement
+    force = zip(scene.contacts, start.friction.tolist(), strict=True)
+    return np.array([c.tangential @ x - f / c.k_u if c.k_u > 0.0 else 0.0 for c, f in force]).reshape(-1)
+
+
+def always_stuck(system: System, segments: Segments) -> list[int]:
+    """The contacts that stick all through the segments."""
+    return [
+        j
+        for j, (contact, seen) in enumerate(zip(system.contacts, segments.seen(), strict=True))
+        if seen == 1 << STICK and has_friction(contact)
+    ]
+
+
+def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choice]:
+    """The choices for all contacts that stick all through the segments; wanted are their w, (contact,)."""
+    return [_choice(system, segments, j, float(wanted[j])) for j in always_stuck(system, segments)]
+
+
+def _choice(system: System, segments: Segments, j: int, wanted: float) -> Choice:
+    """The force for the w that is wanted, or the nearest to it that keeps |f| <= mu n for all of the period.
+
+    It keeps a little away from the limit, so that rounding does not decide between stick and slip.
+    """
+    contact, y, force = system.contacts[j], np.asarray(segments.y)[0], system.f.start + j
+    row = np.zeros(system.unknowns)
+    row[system.q], row[force] = contact.k_u * system.tangential[j], -1.0
+    gap = float(row @ y[: system.unknowns]) - contact.k_u * wanted
+    if gap == 0.0:
+        return Choice(j, 0.0, row, 0.0, False)
+    margin, sign = _margin(system, y, j), 1.0 if gap > 0.0 else -1.0
+    rooms = _rooms(system, segments, j, sign)
+    room, other = rooms[0].value, rooms[1].value
+    if abs(gap) <= room - margin:
+        return Choice(j, gap, row, 0.0, False)
+    there, rate = _room_derivative(system, segments, j, sign, rooms[0])
+    if room + other > 2.0 * margin:
+        return Choice(j, sign * (room - margin), sign * there, sign * rate, True)
+    elsewhere, other_rate = _room_derivative(system, segments, j, -sign, rooms[1])
+    return Choice(
+        j, 0.5 * sign * (room - other), 0.5 * sign * (there - elsewhere),
+        0.5 * sign * (rate - other_rate), True,
+    )  # fmt: skip
+
+
+def _margin(system: System, y: FloatArray, j: int) -> float:
+    contact = system.contacts[j]
+    limit = contact.mu * (abs(contact.n_0) + abs(y[system.n.start + j]))
+    return MARGIN * float(abs(y[system.f.start + j]) + limit)
+
+
+def overshoots(system: System, segments: Segments) -> list[tuple[int, float]]:
+    """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
+
+    None of these is periodic: the slip takes the force to its limit, where the contact sticks.
+    """
+    found = []
+    for j, (contact, seen) in enumerate(zip(system.contacts, segments.seen(), strict=True)):
+        ways = seen & (1 << POSITIVE | 1 << NEGATIVE)
+        if has_friction(contact) and not seen & 1 << OPEN and ways in (1 << POSITIVE, 1 << NEGATIVE):
+            sign = 1.0 if ways == 1 << POSITIVE else -1.0
+            found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
+    return found
+
+
+def _limit(system: System, j: int, sign: float) -> FloatArray:
+    """The row of mu n - sign f."""
+    contact, row = system.contacts[j], np.zeros(system.size - 2)
+    row[system.f.start + j], row[system.n.start + j] = -sign, contact.mu
+    row[-1] = contact.mu * contact.n_0
+    return row
+
+
+def _rooms(system: System, segments: Segments, j: int, sign: float) -> list[Extreme]:
+    """The least of mu n - sign f and of mu n + sign f over the segments."""
+    return least(system, segments, np.array([_limit(system, j, sign), _limit(system, j, -sign)]))
+
+
+def _room_derivative(
+    system: System, segments: Segments, j: int, sign: float, place: Extreme
+) -> tuple[FloatArray, float]:
+    """The derivatives of the least of mu n - sign f by x and by the frequency."""
+    columns = derivative_at(system, segments, place.segment, place.position).columns
+    rates = columns[:-1, :-2] @ _limit(system, j, sign)
+    return rates[:-1], float(rates[-1])

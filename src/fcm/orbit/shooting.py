@@ -1,0 +1,150 @@
+"""Shooting: how the motion over one period fails to close, with the derivatives of that."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.motion.cycle import Cycle
+from fcm.motion.run import march
+from fcm.motion.segments import Segments
+from fcm.motion.state import State, entry
+from fcm.motion.system import System, has_friction
+from fcm.orbit.derivative import period_derivative
+from fcm.orbit.residual_friction import choices, overshoots, resting
+from fcm.scene.model import FloatArray, Scene
+
+TINY = 1e-300  # instead of a division by zero where nothing moves
+
+
+class Shot:
+    """The motion over one period from x = (q, q', f), and how it fails to close.
+
+    Parameters
+    ----------
+    system : System
+    x : (unknown,)
+    resting : (contact,), optional
+        The slip motions w that contacts which always stick are to have; any will do by default.
+    """
+
+    def __init__(self, system: System, x: FloatArray, resting: FloatArray | None = None) -> None:
+        m, u = system.modes, system.unknowns
+        self.system, self.x = system, x
+        self.state = State(x[:m], x[m : 2 * m], x[2 * m :])
+        y, states = entry(system, self.state)
+        self.segments, end, _ = march(system, y, states, system.period)
+        self.gap = end[:u] - x
+        self.chosen = [] if resting is None else choices(system, self.segments, resting)
+        for choice in self.chosen:
+            self.gap[2 * m + choice.contact] = choice.gap
+        for contact, missing in () if resting is None else overshoots(system, self.segments):
+            self.gap[2 * m + contact] -= missing
+        self.scale = _scale(system, self.segments)
+        self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
+
+    @property
+    def cycle(self) -> Cycle:
+        """The period."""
+        return Cycle(self.system, 0.0, self.system.period, 0.0, self.segments)
+
+    @cached_property
+    def sequence(self) -> bytes:
+        """The states of the contacts from segment to segment: while it stays, the gap is smooth."""
+        return np.asarray(self.segments.states).tobytes()
+
+    @cached_property
+    def _derivatives(self) -> tuple[FloatArray, FloatArray]:
+        return period_derivative(self.system, self.segments)
+
+    @property
+    def derivative(self) -> FloatArray:
+        """Of the state after the period by x: (unknown, unknown)."""
+        return self._derivatives[0]
+
+    @cached_property
+    def by_state(self) -> FloatArray:
+        """Derivative of the gap by x: (unknown, unknown)."""
+        matrix: FloatArray = self.derivative - np.eye(self.x.size)
+        for choice in self.chosen:
+            matrix[2 * self.system.modes + choice.contact] = choice.row
+        return matrix
+
+    @cached_property
+    def by_frequency(self) -> FloatArray:
+        """Derivative of the gap by the frequency: (unknown,)."""
+        rate = self._derivatives[1].copy()
+        for choice in self.chosen:
+            rate[2 * self.system.modes + choice.contact] = choice.rate
+        return rate
+
+    @cached_property
+    def multipliers(self) -> npt.NDArray[np.complex128]:
+        """Floquet's, the greatest first; 1 for each contact that always sticks."""
+        matrix = self.derivative * self.scale / self.scale[:, None]
+        values = np.linalg.eigvals(matrix).astype(np.complex128)
+        return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+class Shooting:
+    """Periodic motions of a scene as the roots of a residual, over all frequencies.
+
+    The unknowns are (q, q', f) at the forces' angle 0 without the friction forces that are always zero:
+    `free` has their places. The residual is continuous, and smooth while the sequence of states stays.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.orbit import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> problem, orbit = Shooting(scene), periodic(scene, 1.3)
+    >>> shot = problem.residual(problem.unknowns(orbit.state), 1.3)
+    >>> shot.by_state.shape, shot.by_frequency.shape, bool(shot.residual < 1e-11)
+    ((5, 5), (5,), True)
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.resting = scene, resting(scene)
+        carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
+        self.free = np.flatnonzero(np.concatenate((np.ones(2 * scene.modal.mass.size, dtype=bool), carries)))
+        self.size = 2 * scene.modal.mass.size + len(scene.contacts)
+        self.periods = 0  # that have been computed
+        self._system: System | None = None
+
+    def system(self, omega: float) -> System:
+        """The scene at a frequency [rad/s]."""
+        if self._system is None or self._system.omega != omega:
+            self._system = System(self.scene, omega, self._system)
+        return self._system
+
+    def unknowns(self, state: State) -> FloatArray:
+        """The unknowns of a state at the forces' angle 0."""
+        whole: FloatArray = np.concatenate((state.q, state.velocity, state.friction))
+        return whole[self.free]
+
+    def residual(self, unknowns: FloatArray, omega: float) -> Shot:
+        """The period from a state at a frequency.
+
+        Raises
+        ------
+        SimulationError
+            If the period cannot be computed.
+        """
+        x = np.zeros(self.size)
+        x[self.free] = unknowns
+        self.periods += 1
+        return Shot(self.system(omega), x, self.resting)
+
+
+def _scale(system: System, segments: Segments) -> FloatArray:
+    """The size of the displacements, velocities and friction forces."""
+    y = segments.largest()
+    length = max(
+        (system.per_unit * y[system.q]).max(), (system.per_unit * y[system.p]).max() / system.omega, TINY
+    )
+    limit = system.mu * (np.abs(system.preload) + y[system.n])
+    force = np.maximum(np.maximum(y[system.f], np.minimum(limit, system.k_u * length)), TINY)
+    modes = length / system.per_unit
+    return np.concatenate((modes, modes * system.omega, force))

@@ -1,0 +1,80 @@
+"""Steady motions at given frequencies: both branches, jumps, and motions of several periods."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.motion import simulate
+from fcm.simulate import trace_exact
+
+from ..motion.cases import one_mode, two_contacts, yang
+
+
+def visited(scene, at):
+    """The curve, and its amplitudes of the first degree of freedom by sweep and frequency."""
+    (curve,) = trace_exact(scene, at).curves
+    keys = zip(curve.orbits.sweep.tolist(), curve.frequency.round(9).tolist(), strict=True)
+    return curve, dict(zip(keys, curve.amplitude[:, 0], strict=True))
+
+
+def test_both_states_of_the_paper():
+    """Upper at 1.195 and not at 1.190, lower at 1.235 and not at 1.240: amplitudes of test_published."""
+    at = [1.17, 1.19, 1.195, 1.235, 1.24, 1.26]
+    curve, u = visited(yang(), at)
+    assert curve.complete and curve.stable.all()
+    assert curve.frequency == pytest.approx(at + at[::-1])
+    assert curve.orbits.sweep.tolist() == ["up"] * 6 + ["down"] * 6
+    assert u["up", 1.235] == pytest.approx(2.5641, abs=1e-3)
+    assert u["up", 1.24] > 10.0
+    assert u["down", 1.195] == pytest.approx(14.7229, abs=1e-3)
+    assert u["down", 1.19] == pytest.approx(1.7088, abs=1e-3)
+    up, down = curve.jumps()
+    assert (up.sweep, down.sweep) == ("up", "down")
+    assert 1.235 < up.frequency < 1.24 and 1.19 < down.frequency < 1.195
+    assert up.after[0] > 10.0 > up.before[0] and down.before[0] > 10.0 > down.after[0]
+
+
+@pytest.mark.parametrize("scene", [one_mode(), two_contacts(), yang(10.0)], ids=["one", "two", "yang"])
+def test_the_same_as_long_simulations(scene):
+    at = [0.9, 1.15, 1.4]
+    curve, _ = visited(scene, at)
+    for k, omega in enumerate(at):
+        last = simulate(scene, omega, 400).measures(last=1)[0]
+        for point in (k, -1 - k):
+            assert curve.amplitude[point] == pytest.approx(last.amplitude, rel=1e-7)
+            assert curve.orbits.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
+
+
+def test_a_motion_of_two_periods():
+    """n_0 = 0 at 0.74: every second cycle is larger, and the extremes are those of both."""
+    curve, u = visited(yang(0.0), [0.71, 0.74, 0.78])
+    assert curve.complete and len(curve.jumps()) == 2
+    two = simulate(yang(0.0), 0.74, 300).measures(last=2)
+    assert abs(two[0].amplitude[0] - two[1].amplitude[0]) > 0.1
+    span = max(m.greatest[0] for m in two) - min(m.least[0] for m in two)
+    assert u["up", 0.74] == pytest.approx(0.5 * span, rel=1e-4)
+    assert u["down", 0.74] == pytest.approx(0.5 * span, rel=1e-4)
+
+
+def test_frequencies_without_steady_motion_are_named():
+    """At the natural frequency without damping; the others are there."""
+    scene = yang(-1e15)
+    scene = replace(scene, modal=replace(scene.modal, damping=np.zeros(2)))
+    curve, u = visited(scene, [0.9, 1.0])
+    assert not curve.complete and curve.reason.startswith("at 1 rad/s the motion does not become steady")
+    assert list(u) == [("up", 0.9), ("down", 0.9)]
+
+
+def test_order_and_repetition_do_not_matter():
+    one, _ = visited(one_mode(), [1.2, 0.9, 1.2])
+    other, _ = visited(one_mode(), [0.9, 1.2])
+    np.testing.assert_array_equal(one.amplitude, other.amplitude)
+
+
+def test_a_frequency_too_low_to_follow_says_so():
+    curve, _ = visited(yang(5.0), [1e-9])
+    assert not curve.complete and curve.points == 0
+    assert curve.reason.startswith("a cycle at 1e-09 rad/s lasts")
