@@ -20,7 +20,7 @@ def compiled() -> bool:
     # imported here, before doctests are collected: pytest would load their sources beside the compiled ones
     files = [Path(import_module(name).__file__) for name in kernels()]
     machine = [file for file in files if file.suffix != ".py"]
-    stale = [file for file in machine if file.stat().st_mtime < _source(file).stat().st_mtime]
+    stale = [file for file in machine if ROOT in file.parents and _older(file, file.name.split(".")[0])]
     if stale or len(machine) not in (0, len(files)):
         pytest.exit(
             f"the compiled kernels are not those of the sources ({stale or machine}): make kernels", 3
@@ -28,8 +28,9 @@ def compiled() -> bool:
     return bool(machine)
 
 
-def _source(file: Path) -> Path:
-    return file.with_name(file.name.split(".")[0] + ".py")
+def _older(file: Path, kernel: str) -> bool:
+    sources = [file.with_name(f"{kernel}{suffix}") for suffix in (".py", ".pxd")]
+    return file.stat().st_mtime < max(source.stat().st_mtime for source in sources if source.exists())
 
 
 def pytest_configure(config):

@@ -4,16 +4,18 @@ A kernel is Python that Cython's pure mode can also compile. Where it is compile
 code, which then lies beside the source; where it could not be, the source itself: slower, and else the same.
 ``python src/fcm/build_kernels.py`` in the top folder, or ``make kernels``, compiles them in place.
 
-What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python and no lock,
+What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python, no lock,
 and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.cycle` and `closed_form`.
 There a float is a double; other types are named as Cython does. What is not declared is for Python to call.
 """
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
-from setuptools import Extension, setup
+from Cython.Build import cythonize
+from setuptools import setup
 from setuptools.command.build_ext import build_ext
 
 DIRECTIVES = {
@@ -36,14 +38,28 @@ class Kernels(build_ext):
             kernel.py_limited_api = True
             kernel.define_macros, kernel.extra_compile_args = [ANY_PYTHON], FLAGS
         super().finalize_options()
-        self.cython_directives, self.cython_c_in_temp = DIRECTIVES, True
+        self.parallel = os.cpu_count()
 
-    def build_extension(self, ext: Extension) -> None:
-        ext.optional = self.editable_mode or not self.inplace
-        made, source = Path(self.get_ext_fullpath(ext.name)), Path(ext.sources[0])
-        if made.exists() and made.stat().st_mtime < source.stat().st_mtime:
-            made.unlink()  # should this fail, the old one must not be taken
-        super().build_extension(ext)
+    def build_extensions(self) -> None:
+        for kernel in self.extensions:
+            kernel.optional = self.editable_mode or not self.inplace
+            self._discard_if_old(kernel.name, kernel.sources[0])
+        translated = cythonize(  # type: ignore[no-untyped-call]
+            self.extensions,
+            nthreads=self.parallel,
+            build_dir=self.build_temp,
+            compiler_directives=DIRECTIVES,
+            force=self.force,
+        )
+        for kernel, in_C in zip(self.extensions, translated, strict=True):
+            kernel.sources = in_C.sources
+        super().build_extensions()
+
+    def _discard_if_old(self, name: str, source: str) -> None:
+        """What is out of date goes first: should it not be made anew, the source must take its place."""
+        made = Path(self.get_ext_fullpath(name))
+        if made.exists() and made.stat().st_mtime < Path(source).stat().st_mtime:
+            made.unlink()
 
 
 if __name__ == "__main__":

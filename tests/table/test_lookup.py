@@ -1,5 +1,6 @@
 """Look-up: shapes, special arguments, symmetry, continuity, derivatives of the interpolant."""
 
+import os
 import subprocess
 import sys
 
@@ -12,8 +13,12 @@ from fcm import fourier_coefficients
 from fcm.contact import fourier_gradients
 from fcm.table.measure import sample
 
+COUNT = int(
+    20_000 * float(os.environ.get("FCM_TEST_SCALE", "1"))
+)  # points of a test; see tests/contact/cases
 
-def points(count=20_000, seed=11):
+
+def points(count=COUNT, seed=11):
     return sample(count, seed)
 
 
@@ -36,10 +41,10 @@ def test_scalars_lists_integers_and_nothing(default):
 
 
 def test_bulk_is_the_same_as_one_by_one(default):
-    n0, b, phi = points(9000)
+    n0, b, phi = points(COUNT // 2)
     F, dF = default.gradients(n0, b, phi)
     assert np.allclose(F, np.stack(default(n0, b, phi)), rtol=0, atol=1e-14)
-    for k in range(0, 9000, 450):
+    for k in range(0, COUNT // 2, COUNT // 40):
         one, slope = default.gradients(n0[k], b[k], phi[k])
         assert np.allclose(one, F[:, k], rtol=0, atol=1e-13)
         assert np.allclose(slope, dF[:, :, k], rtol=1e-7, atol=1e-7)
@@ -135,7 +140,7 @@ def test_symmetry_is_exact(default):
 
 @pytest.mark.parametrize("at", [-1.0, 1.0])
 def test_continuous_where_the_contact_opens(default, at):
-    b = 10.0 ** np.random.default_rng(0).uniform(-6, 6, 20_000)
+    b = 10.0 ** np.random.default_rng(0).uniform(-6, 6, COUNT)
     phi = np.random.default_rng(1).uniform(-4, 4, b.size)
     jump = np.stack(default(np.nextafter(at * b, -np.inf), b, phi)) - np.stack(default(at * b, b, phi))
     assert np.abs(jump).max() < (2e-5 if at > 0 else 1e-10)
@@ -143,7 +148,7 @@ def test_continuous_where_the_contact_opens(default, at):
 
 def test_continuous_at_the_slip_limit_and_across_the_fold(default):
     random = np.random.default_rng(2)
-    b, phi = 10.0 ** random.uniform(-6, 2, 20_000), random.uniform(0, 2 * np.pi, 20_000)
+    b, phi = 10.0 ** random.uniform(-6, 2, COUNT), random.uniform(0, 2 * np.pi, COUNT)
     limit = 0.5 * (np.abs(1.0 - b * np.exp(1j * phi)) + np.abs(1.0 + b * np.exp(1j * phi)))
     jump = np.stack(default(limit * (1 + 1e-12), b, phi)) - np.stack(default(limit * (1 - 1e-12), b, phi))
     assert np.abs(jump).max() < 1e-9
@@ -177,7 +182,7 @@ def test_derivatives_are_those_of_the_interpolant(default, variable, regime):
 
 
 def test_derivatives_are_near_those_of_the_closed_form(default):
-    n0, b, phi = points(50_000)
+    n0, b, phi = points(2 * COUNT)
     error = np.abs(default.gradients(n0, b, phi)[1] - fourier_gradients(n0, b, phi)[1])
     assert np.quantile(error, 0.5) < 1e-4
     assert np.quantile(error, 0.95) < 2e-2
