@@ -9,7 +9,7 @@ PAPER  := build/paper
 REPORT := build/report
 
 # What is compiled: a list of modules in pyproject.toml.
-KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd)
+KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
 
 # What the pictures are made of, so that a change redoes only what it touches.
 CONTACT    := $(wildcard src/fcm/contact/*.py)
@@ -30,7 +30,8 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills kernels extremes bench-time bench-others report demo picture paper figures test check tables clean bench study
+.PHONY: help kills dist kernels extremes bench-time bench-others report demo picture paper figures test check tables \
+	clean bench study
 
 help:  ## this list
 	@sed -n 's/^\([a-z-]*\):.*##/  make \1  -/p' $(MAKEFILE_LIST)
@@ -113,7 +114,7 @@ tables: $(VENV)/installed  ## build the shipped tables again
 study: $(VENV)/installed  ## two hundred random scenes, each with three step limits: do the answers agree?
 	$(BIN)/python tests/response/random_scenes.py
 
-bench: $(VENV)/installed  ## run times beside one another: closed form, table, scipy, curves
+bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
@@ -145,6 +146,10 @@ $(REPORT)/%.png: $(REPORT)/%.nc src/fcm/plot/accuracy.py src/fcm/plot/style.py
 $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*.py) tables/fast.nc $(VENV)/installed
 	@mkdir -p $(@D)
 	$(BIN)/fcm respond $* --compare --json -o $@ > $(@:.nc=.json)
+
+dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, in build/dist
+	rm -rf build/dist
+	$(BIN)/python -m build --outdir build/dist .
 
 kernels:  ## compile the kernels in place after a change; BIN= names the folder of another Python
 	$(BIN)/python src/fcm/build_kernels.py

@@ -1,4 +1,4 @@
-"""The wheel holds what the program needs beside its code."""
+"""A wheel built without a C compiler holds all that the program needs."""
 
 import os
 import shutil
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 def wheel(tmp_path_factory):
     """The names in a wheel built from a copy, as a clean clone would give it."""
     folder = tmp_path_factory.mktemp("package")
-    unwanted = shutil.ignore_patterns("__pycache__", "*.egg-info")
+    unwanted = shutil.ignore_patterns("__pycache__", "*.egg-info", "*.so", "*.pyd")
     for name in ("src", "tables"):
         shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=unwanted)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
@@ -25,7 +25,7 @@ def wheel(tmp_path_factory):
     done = subprocess.run(
         [*pip, "--no-build-isolation", "--wheel-dir", "made", "."],
         cwd=folder,
-        env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore"},
+        env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore", "CC": "false"},
         capture_output=True,
         text=True,
     )
@@ -44,6 +44,8 @@ def test_the_tables_and_scenes_are_in_it(wheel):
 
 
 def test_every_module_is_in_it(wheel):
-    modules = {str(path.relative_to(ROOT / "src")) for path in (ROOT / "src/fcm").rglob("*.py")}
+    sources = (path for suffix in ("py", "pxd") for path in (ROOT / "src/fcm").rglob(f"*.{suffix}"))
+    modules = {str(path.relative_to(ROOT / "src")) for path in sources}
+    assert not [name for name in wheel if name.endswith(".so")]
     assert modules <= set(wheel) and "fcm/py.typed" in wheel
     assert not [name for name in wheel if name.startswith("tests")]

@@ -1,7 +1,8 @@
-"""Run times beside one another, in one process: ``make bench`` prints them as a table with their ratios.
+"""Run times beside one another, in one process: ``make bench`` prints them as tables.
 
-Processor times: they depend on the machine, and less than others on what else it does; the ratios within a
-block depend on it least.
+Processor times: they depend on the machine, and less than others on what else it does. So each is given also
+as a multiple of the time that `numpy.sin` takes for a value, measured in turn with it, and as the time that
+would be on a machine where that is 10 ns. The multiples carry over to other machines.
 """
 
 from __future__ import annotations
@@ -15,27 +16,38 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 import fcm
+from fcm.contact.cycle import __file__ as kernel
 from fcm.response import trace
+from fcm.table.locate import locate
 
-REPEATS = 5
+REPEATS = 7
+SINE = 0.01  # [us] a value, of the machine to which times are scaled
+ANGLES = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 200_000)
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles
 
 
-def block(title: str, rows: list[Row], unit: float, name: str, repeats: int = REPEATS) -> None:
-    """Median times per element, and the ratio to the first row; the rows take turns."""
-    times: list[list[float]] = [[] for _ in rows]
+def block(title: str, rows: list[Row], repeats: int = REPEATS) -> None:
+    """Median times per element; the rows take turns, and each is divided by the sines of its turn."""
+    times: list[list[tuple[float, float]]] = [[] for _ in rows]
     for _ in range(repeats):
         for samples, (_, call, elements) in zip(times, rows, strict=True):
-            begin = time.process_time()
-            call()
-            samples.append((time.process_time() - begin) / elements)
-    medians = [float(np.median(samples)) for samples in times]
-    print(f"\n{title}")
-    for (what, _, _), median in zip(rows, medians, strict=True):
-        print(f"  {what:46s} {median / unit:10.3f} {name}  {median / medians[0]:9.2f}")
+            sine = seconds(lambda: np.sin(ANGLES)) / ANGLES.size
+            taken = seconds(call) / elements
+            samples.append((taken, taken / sine))
+    print(f"\n{title}\n{'':48s}{'us':>12s}{'sines':>10s}{'us scaled':>12s}")
+    for (what, _, _), samples in zip(rows, times, strict=True):
+        taken, multiple = np.median(samples, axis=0)
+        print(f"  {what:46s}{taken * 1e6:12.3f}{multiple:10.1f}{multiple * SINE:12.3f}")
+
+
+def seconds(call: Callable[[], object]) -> float:
+    begin = time.process_time()
+    call()
+    return time.process_time() - begin
 
 
 def contact_points(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Random contacts, of which most slip and more than half separate."""
     rng = np.random.default_rng(0)
     b_bar = rng.uniform(0.0, 3.0, count)
     return rng.uniform(-1.0, 1.5, count) * b_bar, b_bar, rng.uniform(0.0, 2.0 * np.pi, count)
@@ -49,28 +61,38 @@ def rectilinear() -> RegularGridInterpolator:
 
 
 def coefficients() -> None:
+    """Three coefficients of each of many contacts, and of one at a time."""
     table, box = fcm.open_table(), rectilinear()
-    for count in (1, 10, 1000, 1_000_000):
-        x = contact_points(count)
-        points = np.column_stack(x)
-        calls = max(1000 // count, 1)
+    x = contact_points(1_000_000)
+    cells = locate(np.stack(x), table.resolution).q.astype(int)
+    by_cell = tuple(part[np.lexsort(cells[::-1])] for part in x)
+    count, points = x[0].size, np.column_stack(x)
+    block(
+        "three coefficients, a million points, a point",
+        [
+            ("closed form", lambda: fcm.fourier_coefficients(*x), count),
+            ("closed form with derivatives", lambda: fcm.fourier_gradients(*x), count),
+            ("table", lambda: table(*x), count),
+            ("table with derivatives", lambda: table.gradients(*x), count),
+            ("table with derivatives, sorted by cell", lambda: table.gradients(*by_cell), count),
+            ("scipy RegularGridInterpolator, linear", lambda: box(points), count),
+        ],
+    )
+    one = tuple(map(float, (part[0] for part in x)))
+    calls = 2000
+    block(
+        "three coefficients, one point, a call from Python",
+        [
+            ("closed form with derivatives", lambda: repeat(fcm.fourier_gradients, one, calls), calls),
+            ("table with derivatives", lambda: repeat(table.gradients, one, calls), calls),
+            ("scipy RegularGridInterpolator, linear", lambda: repeat(box, (points[:1],), calls), calls),
+        ],
+    )
 
-        def row(what: str, call: Callable[..., object], *arguments: np.ndarray, calls: int = calls) -> Row:
-            def many() -> None:
-                for _ in range(calls):
-                    call(*arguments)
 
-            return what, many, arguments[0].shape[0] * calls
-
-        rows = [
-            row("np.sin", np.sin, x[2]),
-            row("closed form", fcm.fourier_coefficients, *x),
-            row("closed form with derivatives", fcm.fourier_gradients, *x),
-            row("table", table, *x),
-            row("table with derivatives", table.gradients, *x),
-            row("scipy RegularGridInterpolator, linear", box, points),
-        ]
-        block(f"three coefficients, {count} points at a time", rows, 1e-6, "us a point")
+def repeat(call: Callable[..., object], arguments: tuple[object, ...], times: int) -> None:
+    for _ in range(times):
+        call(*arguments)
 
 
 def curves() -> None:
@@ -83,7 +105,7 @@ def curves() -> None:
         ("ten curves together, closed form", lambda: trace(scene, "closed-form"), points),
         ("a loop over single curves", lambda: [trace(single, table=table) for single in singles], points),
     ]
-    block("the ten curves of yang1998, everything included", rows, 1e-3, "ms a point")
+    block("the ten curves of yang1998, everything included, a point", rows)
 
 
 def many_curves(count: int = 1000) -> None:
@@ -101,15 +123,13 @@ def many_curves(count: int = 1000) -> None:
         ("together", lambda: trace(scene, table=table, jobs=1), points),
         ("together, closed form", lambda: trace(scene, "closed-form", jobs=1), points),
     ]
-    block(f"{count} curves of random mu and n_0, everything included", rows, 1e-3, "ms a point", repeats=1)
+    block(f"{count} curves of random mu and n_0, everything included, a point", rows, repeats=1)
 
 
 def main() -> None:
-    print(f"fcm {fcm.__version__}, Python {sys.version.split()[0]}, numpy {np.__version__}")
-    print(
-        "processor time, the median of 5 runs in turn (one run of the thousand curves); "
-        "the last column is the ratio to the first row of the block"
-    )
+    mode = "run as Python" if kernel.endswith(".py") else "compiled"
+    print(f"fcm {fcm.__version__}, kernels {mode}, Python {sys.version.split()[0]}, numpy {np.__version__}")
+    print("processor time; the median of 7 runs in turn, one run of the thousand curves")
     coefficients()
     curves()
     many_curves()

@@ -21,8 +21,8 @@ if normal_load.__file__.endswith(".py"):
 
     if multiprocessing.parent_process() is None:  # workers need not say it again
         warnings.warn(
-            "the kernels of fcm run as Python, slowly: when it was installed they were not compiled, for want "
-            "of a C compiler",
+            "the kernels of fcm run as Python, slowly: they were not compiled when it was installed, for "
+            "want of a C compiler",
             RuntimeWarning,
             stacklevel=2,
         )

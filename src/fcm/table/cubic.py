@@ -36,7 +36,7 @@ class Cubic:
         self.step_x = columns
         self.step_u = rows * columns
         self.last = planes * self.step_u - (3 * self.step_u + 3 * self.step_x + 4)
-        self.coefficients = coefficients.reshape(-1)
+        self.coefficients = coefficients.reshape(-1).data
 
     def evaluate(
         self,
@@ -48,15 +48,15 @@ class Cubic:
         at: cython.Py_ssize_t,
     ) -> None:
         """Values of the three at (u, x, z), in nodes, to out[at:], then their derivatives by u, x and z."""
-        w_u = cython.declare(cython.double[4])
-        w_x = cython.declare(cython.double[4])
-        w_z = cython.declare(cython.double[4])
-        d_u = cython.declare(cython.double[4])
-        d_x = cython.declare(cython.double[4])
-        d_z = cython.declare(cython.double[4])
         i: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, u)
         j: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, x)
         k: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, z)
+        w_u: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+        w_x: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+        w_z: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+        d_u: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+        d_x: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
+        d_z: cython.double[4] = [0.0, 0.0, 0.0, 0.0]
         w_u[0], w_u[1], w_u[2], w_u[3] = weights(u - i)
         w_x[0], w_x[1], w_x[2], w_x[3] = weights(x - j)
         w_z[0], w_z[1], w_z[2], w_z[3] = weights(z - k)

@@ -90,9 +90,9 @@ class Tabulated(Law):
 
     def _chain(self, out: cython.double[::1], at: cython.Py_ssize_t) -> None:
         """From derivatives of G by the coordinates to derivatives of F by n0_bar, b_bar and phi."""
-        by_u = cython.declare(cython.double[3])
-        by_x = cython.declare(cython.double[3])
-        by_z = cython.declare(cython.double[3])
+        by_u: cython.double[3] = [0.0, 0.0, 0.0]
+        by_x: cython.double[3] = [0.0, 0.0, 0.0]
+        by_z: cython.double[3] = [0.0, 0.0, 0.0]
         i: cython.Py_ssize_t
         for i in range(3):
             by_u[i], by_x[i], by_z[i] = out[at + 3 + i], out[at + 6 + i], out[at + 9 + i]

@@ -1,0 +1,46 @@
+"""The kernels: which modules they are, what a run says when they are not compiled, threads."""
+
+import subprocess
+import sys
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+
+SOURCES = Path(__file__).parents[1] / "src"
+LISTED = tomllib.loads((SOURCES.parent / "pyproject.toml").read_text())["tool"]["setuptools"]["ext-modules"]
+
+
+def run(*arguments):
+    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=True)
+    return done.stderr.count("the kernels of fcm run as Python")
+
+
+def test_every_kernel_is_listed_to_be_compiled():
+    """All that have declarations, and each under its own name."""
+    declared = {path.relative_to(SOURCES).with_suffix(".py") for path in SOURCES.rglob("*.pxd")}
+    assert declared <= {Path(kernel["name"].replace(".", "/") + ".py") for kernel in LISTED}
+    assert all(kernel["sources"] == [f"src/{kernel['name'].replace('.', '/')}.py"] for kernel in LISTED)
+
+
+def test_a_run_says_once_that_kernels_are_not_compiled(tmp_path):
+    compiled = not import_module("fcm.contact.law").__file__.endswith(".py")
+    expected = 0 if compiled else 1
+    assert run("-c", "import fcm.table, fcm.contact.cycle, fcm.contact.loop") == expected
+    assert run("-m", "fcm.cli", "respond", "yang1998", "-o", str(tmp_path / "curves.nc")) == expected
+    assert run("-m", "fcm.cli", "--help") == run("-c", "import fcm") == 0
+
+
+@pytest.mark.parametrize("law", [fcm.fourier_gradients, fcm.open_table().gradients])
+def test_threads_do_not_disturb_one_another(law):
+    points = np.random.default_rng(0).uniform(0.0, 2.0, (8, 3, 2000))
+    with ThreadPoolExecutor(4) as threads:
+        together = list(threads.map(lambda x: law(*x), points))
+    for (F, dF), x in zip(together, points, strict=True):
+        alone = law(*x)
+        assert np.array_equal(F, alone[0]) and np.array_equal(dF, alone[1])
