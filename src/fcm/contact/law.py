@@ -46,8 +46,8 @@ class Law:
         numbers: cython.Py_ssize_t = 12 if gradient else 3
         out = np.empty((n0.size, numbers))
         # ravel copies what is not contiguous; elements of a memoryview, unlike an array's, are plain floats
-        n0, b, ph = n0.ravel().data, b.ravel().data, ph.ravel().data
-        if self._fill(n0, b, ph, gradient, out.reshape(-1).data, numbers):
+        points = n0.ravel().data, b.ravel().data, ph.ravel().data
+        if self._fill(points[0], points[1], points[2], gradient, out.reshape(-1).data, numbers):
             raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
         return out.T.reshape(numbers, *shape)
 
