@@ -17,6 +17,8 @@ if TYPE_CHECKING:
         hysteresis_loop,
         normal_coefficients,
         normal_gradients,
+        periodic_forces,
+        periodic_gradients,
     )
     from fcm.response import respond
     from fcm.scene import load_scene
@@ -32,6 +34,8 @@ _HOME = {
     "normal_coefficients": "fcm.contact",
     "normal_gradients": "fcm.contact",
     "open_table": "fcm.table",
+    "periodic_forces": "fcm.contact",
+    "periodic_gradients": "fcm.contact",
     "respond": "fcm.response",
 }
 
@@ -43,6 +47,8 @@ __all__ = [
     "normal_coefficients",
     "normal_gradients",
     "open_table",
+    "periodic_forces",
+    "periodic_gradients",
     "respond",
 ]
 

@@ -1,6 +1,6 @@
 """The contact law of any periodic motion marched through cells, in extended precision; knows of no sequence.
 
-Cells of the cycle are halved until bounds of second derivatives forbid that in one of them the load vanishes
+Cells of the cycle are halved until Taylor's series with a bounded rest forbids that in one of them the load vanishes
 or a limit turns, or until they are so short that it does not matter (1e-18 rad of the load, 1e-9 rad of a
 limit, whose extreme is flat). In a cell a slider between two monotone limits can only be clipped to them.
 It starts unstressed and is marched for three cycles; the force of the last is integrated by Gauss's rule.
@@ -13,6 +13,7 @@ real, cplx = np.longdouble, np.clongdouble
 PI = real("3.14159265358979323846264338327950288")
 CELLS = 128
 SHORTEST_LOAD, SHORTEST_LIMIT = real(2.0) ** -60, real(2.0) ** -30  # of a first cell
+ROUNDING = real(1e-19)
 WIDEST = 0.05  # [rad] of a piece that is integrated at once
 NODES, WEIGHTS = (x.astype(real) for x in np.polynomial.legendre.leggauss(14))
 
@@ -35,7 +36,8 @@ NODES, WEIGHTS = _polished()
 class Motion:
     """u and n_0 + k_v v, scaled to forces; both limits."""
 
-    def __init__(self, u, v, mu, k_u, k_v, n_0):
+    def __init__(self, u, v, mu, k_u, k_v, n_0, depth=2):
+        self.depth = depth  # of Taylor's series, the order of the derivative that is bounded
         u, v = np.asarray(u, cplx), np.asarray(v, cplx)
         self.order = np.arange(u.size).astype(real)
         self.u = real(k_u) * u
@@ -43,6 +45,7 @@ class Motion:
         self.load = real(k_v) * v
         self.load[0] = self.load[0].real + real(n_0)
         self.mu = real(mu)
+        self.size = self.bound(self.u, 1) + self.mu * self.bound(self.load, 1) + np.abs(self.load).sum()
         self.limits = {-1: self.u - self.mu * self.load, 1: self.u + self.mu * self.load}
         self.centre = real(k_u) * real(np.asarray(u, cplx)[0].real)
 
@@ -59,10 +62,14 @@ class Motion:
         return np.sum(np.abs(coefficients) * self.order**derivative)
 
     def safe(self, coefficients, derivative, turn, half):
-        """Whether that derivative has one sign within half of each angle."""
+        """Whether that derivative has one sign within half of each angle, or is nothing but rounding."""
         value = np.abs(self.value(coefficients, turn, derivative))
-        slope = np.abs(self.value(coefficients, turn, derivative + 1))
-        return value > half * (slope + 0.5 * half * self.bound(coefficients, derivative + 2))
+        change, term = np.zeros_like(value), real(1)
+        for k in range(1, self.depth):
+            term = term * half / k
+            change += term * np.abs(self.value(coefficients, turn, derivative + k))
+        change += term * half / self.depth * self.bound(coefficients, derivative + self.depth)
+        return (value > change) | (value + change <= ROUNDING * self.size)
 
 
 def cells(motion):
@@ -131,9 +138,9 @@ def _merged(found):
     return whole
 
 
-def forces(u, v, mu, k_u, k_v, n_0, outputs):
+def forces(u, v, mu, k_u, k_v, n_0, outputs, depth=2):
     """Harmonics 0 to outputs of the friction and of the normal force, and the greatest of each."""
-    motion = Motion(u, v, mu, k_u, k_v, n_0)
+    motion = Motion(u, v, mu, k_u, k_v, n_0, depth)
     whole = _merged(pieces(motion))
     half = np.array([0.5 * (end - begin) for _, begin, end, _ in whole])
     centre = np.array([0.5 * (end + begin) for _, begin, end, _ in whole])

@@ -6,14 +6,18 @@ from fcm.contact import normal_load
 from fcm.contact.fourier import fourier_coefficients, fourier_gradients
 from fcm.contact.loop import Loop, hysteresis_loop
 from fcm.contact.normal import normal_coefficients, normal_gradients
+from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
 
 __all__ = [
     "Loop",
+    "PeriodicGradients",
     "fourier_coefficients",
     "fourier_gradients",
     "hysteresis_loop",
     "normal_coefficients",
     "normal_gradients",
+    "periodic_forces",
+    "periodic_gradients",
 ]
 
 if normal_load.__file__.endswith(".py"):

@@ -14,7 +14,7 @@ cdef class Crossings:
     cdef double fourth, last, last_value, last_slope
     cdef void begin(self) noexcept nogil
     cdef void search(self, int row, int rising, int falling) noexcept nogil
-    cdef double rounding(self) noexcept nogil
+    cdef void bounds(self) noexcept nogil
     cdef int definite_node(self) noexcept nogil
     cdef void interval(self, int j) noexcept nogil
     cdef bint proved(self, double length, double g_0, double d_0, double g_1, double d_1) noexcept nogil

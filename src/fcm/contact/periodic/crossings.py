@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import fabs, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LOAD, Motion
+    from cython.cimports.fcm.contact.periodic.motion import EPSILON, LOAD, LOAD_RATE, Motion
 else:
-    from fcm.contact.periodic.motion import EPSILON, LOAD, Motion
+    from fcm.contact.periodic.motion import EPSILON, LOAD, LOAD_RATE, Motion
 
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
 SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
@@ -50,15 +50,13 @@ class Crossings:
     @cython.nogil
     @cython.exceptval(check=False)
     def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> cython.void:
-        """Append the crossings of a row, as kinds `rising` and `falling`; -1 leaves one kind out.
+        """Append the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind out.
 
         The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
         """
         j: cython.int
         self.row, self.rising, self.falling = row, rising, falling
-        self.curvature = self.motion.bound(row if row == LOAD else row - 1, 2 if row == LOAD else 3)
-        self.fourth = self.motion.bound(row if row == LOAD else row - 1, 4 if row == LOAD else 5)
-        self.noise = self.rounding()
+        self.bounds()
         self.sign = 0
         start: cython.int = self.definite_node()
         for j in range(start, start + self.motion.nodes):
@@ -67,12 +65,22 @@ class Crossings:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def rounding(self) -> cython.double:
-        """What the value of the row may err by, at an angle known to rounding."""
+    def bounds(self) -> cython.void:
+        """Of the second and fourth derivative of the row, and what its value may err by, at a rounded angle."""
+        k: cython.int
+        amplitude: cython.double
         order: cython.int = 0 if self.row == LOAD else 1
-        row: cython.int = self.row - order
-        total: cython.double = 4.0 * (self.motion.bound(row, order) + self.motion.bound(row, order + 1))
-        return EPSILON * (total + 2.0 * fabs(self.motion.mean[self.row]))
+        if self.row <= LOAD_RATE:
+            self.noise = self.motion.load_bound[order] + self.motion.load_bound[order + 1]
+        else:
+            self.noise = self.motion.limit_bound[order] + self.motion.limit_bound[order + 1]
+        self.noise = EPSILON * (4.0 * self.noise + 2.0 * fabs(self.motion.mean[self.row]))
+        self.curvature = self.fourth = 0.0
+        for k in range(self.motion.count):
+            amplitude = fabs(self.motion.re[self.row, k]) + fabs(self.motion.im[self.row, k])
+            amplitude *= self.motion.order[k] * self.motion.order[k]
+            self.curvature += amplitude
+            self.fourth += amplitude * self.motion.order[k] * self.motion.order[k]
 
     @cython.cfunc
     @cython.nogil
@@ -187,6 +195,10 @@ class Crossings:
         """
         up: cython.bint = g_high > 0.0
         length: cython.double = high - low
+        # near an end where it turns, the sign of the row is that of a rounding error
+        floor: cython.double = 0.0
+        if g_low == 0.0:
+            floor = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
         x: cython.double = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
         i: cython.int
         for i in range(100):  # noqa: B007
@@ -194,7 +206,7 @@ class Crossings:
             value -= level
             if value == 0.0:
                 return x
-            if (value > 0.0) == up:
+            if (value > 0.0) == up and fabs(value) > floor:
                 high = x
             else:
                 low = x
@@ -216,20 +228,32 @@ def _cubic(
     g_0: cython.double, d_0: cython.double, g_1: cython.double, d_1: cython.double
 ) -> cython.double:
     """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
-    c_0: cython.double = g_0
-    c_1: cython.double = d_0
     c_2: cython.double = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
     c_3: cython.double = d_0 + d_1 - 2.0 * (g_1 - g_0)
-    if c_0 == 0.0:
-        c_0, c_1, c_2, c_3 = c_1, c_2, c_3, 0.0
-    if (c_0 > 0.0) == (g_1 > 0.0) or c_0 == 0.0:
-        return 0.5
-    t: cython.double = c_0 / (c_0 - g_1)
+    if g_0 == 0.0:
+        return _last_root(d_0, c_2, c_3)
+    t: cython.double = g_0 / (g_0 - g_1) if (g_0 > 0.0) != (g_1 > 0.0) else 0.5
     i: cython.int
     for i in range(3):  # noqa: B007
-        value: cython.double = c_0 + t * (c_1 + t * (c_2 + t * c_3))
-        slope: cython.double = c_1 + t * (2.0 * c_2 + t * 3.0 * c_3)
+        value: cython.double = g_0 + t * (d_0 + t * (c_2 + t * c_3))
+        slope: cython.double = d_0 + t * (2.0 * c_2 + t * 3.0 * c_3)
         if slope == 0.0 or not 0.0 < t - value / slope < 1.0:
             return t
         t -= value / slope
     return t
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _last_root(c_0: cython.double, c_1: cython.double, c_2: cython.double) -> cython.double:
+    """The greatest root of a quadratic in [0.01, 1], else the middle."""
+    root: cython.double = c_1 * c_1 - 4.0 * c_0 * c_2
+    if root < 0.0:
+        return 0.5
+    root = -0.5 * (c_1 + sqrt(root) if c_1 >= 0.0 else c_1 - sqrt(root))
+    one: cython.double = c_0 / root if root != 0.0 else 0.0
+    other: cython.double = root / c_2 if c_2 != 0.0 else 0.0
+    one = one if one <= 1.0 else 0.0
+    other = other if other <= 1.0 else 0.0
+    return max(one, other) if max(one, other) >= 0.01 else 0.5

@@ -1,6 +1,7 @@
 from fcm.contact.periodic.motion cimport Motion
 from fcm.contact.periodic.crossings cimport Crossings
 
+cdef int CLOSES, OPENS, TOP, BOTTOM, SLIPS
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 cdef double TWO_PI
 
@@ -10,8 +11,8 @@ cdef class Cycle:
     cdef readonly int pieces, events
     cdef readonly double overlap
     cdef readonly double[::1] event_cos, event_sin, event_angle, lower, upper, moved
-    cdef readonly double[::1] lower_rate, upper_rate, load_rate, motion_rate
-    cdef readonly int[::1] state, event, cause
+    cdef readonly double[::1] lower_rate, upper_rate, load_rate, motion_rate, margin
+    cdef readonly int[::1] state, event, cause, event_kind
     cdef readonly double[::1] begin, rest
     cdef int[::1] order
     cdef int slipping, span, span_cause
@@ -19,12 +20,12 @@ cdef class Cycle:
     cdef int solve(self, int behaviour, double start) noexcept nogil
     cdef bint far_inside(self, double start) noexcept nogil
     cdef void sort_cuts(self) noexcept nogil
-    cdef int place(self, double theta) noexcept nogil
+    cdef int place(self, double theta, int kind) noexcept nogil
     cdef void add(self, int state, int event, double theta, double rest, int cause) noexcept nogil
     cdef int never_open(self, double start) noexcept nogil
     cdef void march(self, int first, int kind) noexcept nogil
     cdef void close(self) noexcept nogil
     cdef bint pushes(self, int side) noexcept nogil
-    cdef void advance(self, double theta, int kind) noexcept nogil
+    cdef void advance(self, int end, double theta, int kind) noexcept nogil
     cdef void slip(self, int side, int end, double theta) noexcept nogil
     cdef double slip_begin(self, int side, int end, double theta) noexcept nogil

@@ -55,6 +55,7 @@ CLOSES = cython.declare(cython.int, 0)  # kinds of cuts
 OPENS = cython.declare(cython.int, 1)
 TOP = cython.declare(cython.int, 2)
 BOTTOM = cython.declare(cython.int, 3)
+SLIPS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
 
 STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest
 POSITIVE = cython.declare(cython.int, 1)
@@ -79,6 +80,7 @@ class Cycle:
         self.lower, self.upper, self.moved = np.zeros(size), np.zeros(size), np.zeros(size)
         self.lower_rate, self.upper_rate = np.zeros(size), np.zeros(size)
         self.load_rate, self.motion_rate = np.zeros(size), np.zeros(size)
+        self.event_kind, self.margin = np.zeros(size, dtype=np.intc), np.zeros(size)
         self.order = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
         self.cause = np.zeros(size, dtype=np.intc)
@@ -112,14 +114,13 @@ class Cycle:
                     self.add(SEPARATION, 0, 0.0, 0.0, 0)
                     return OPEN
                 behaviour = CLOSED
-        first: cython.int = self.crossings.count
         self.crossings.search(LOWER_RATE, -1, TOP)
         self.crossings.search(UPPER_RATE, BOTTOM, -1)
-        self.crossings.curvature = self.motion.bound(LOWER, 2)
+        self.crossings.curvature = self.motion.limit_bound[2]
         self.sort_cuts()
         if behaviour == CLOSED:
             return self.never_open(start)
-        first = 0
+        first: cython.int = 0
         while self.crossings.kind[self.order[first]] != CLOSES:
             first += 1
         self.march(first, CLOSES)
@@ -130,7 +131,7 @@ class Cycle:
     @cython.exceptval(check=False)
     def far_inside(self, start: cython.double) -> cython.bint:
         """Whether the slider stays between the limits whatever the phases of the harmonics."""
-        return self.motion.mean[REACH] >= self.motion.bound(LOWER, 0) + fabs(start)
+        return self.motion.mean[REACH] >= self.motion.limit_bound[0] + fabs(start)
 
     @cython.cfunc
     @cython.nogil
@@ -153,7 +154,7 @@ class Cycle:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def place(self, theta: cython.double) -> cython.int:
+    def place(self, theta: cython.double, kind: cython.int) -> cython.int:
         """A new event at an angle: its limits and their rates."""
         c_1: cython.double = cos(theta)
         s_1: cython.double = sin(theta)
@@ -178,6 +179,7 @@ class Cycle:
             u_1 -= self.motion.order[k] * (self.motion.re[FORCE, k] * s + self.motion.im[FORCE, k] * c)
             y_1 -= self.motion.order[k] * (self.motion.re[LOAD, k] * s + self.motion.im[LOAD, k] * c)
         y = max(y + self.motion.mean[REACH], 0.0)
+        self.event_kind[e], self.margin[e] = kind, 0.0
         self.event_angle[e], self.event_cos[e], self.event_sin[e] = theta, c_1, s_1
         self.moved[e], self.lower[e], self.upper[e] = u, u - y, u + y
         self.motion_rate[e], self.load_rate[e] = u_1, y_1
@@ -216,14 +218,14 @@ class Cycle:
         bottom: cython.int = -1
         first: cython.int = 0
         for i in range(self.crossings.count):
-            e = self.place(self.crossings.angle[self.order[i]])
+            e = self.place(self.crossings.angle[self.order[i]], self.crossings.kind[self.order[i]])
             if self.crossings.kind[self.order[i]] == TOP:
                 if top < 0 or self.lower[e] > self.lower[top]:
                     top, first = e, i
             elif bottom < 0 or self.upper[e] < self.upper[bottom]:
                 bottom = e
         if top < 0 or bottom < 0:  # a limit that does not move at all, or hardly
-            e = self.place(self.motion.first)
+            e = self.place(self.motion.first, SLIPS)
             top, bottom = e if top < 0 else top, e if bottom < 0 else bottom
         self.overlap = self.lower[top] - self.upper[bottom]
         if self.overlap <= 0.0 or self.crossings.count == 0:
@@ -234,7 +236,6 @@ class Cycle:
             else:
                 self.add(STICK, 0, 0.0, start, 0)
             return STUCK
-        self.events = 0
         self.march(first, TOP)
         return MIXED
 
@@ -250,11 +251,12 @@ class Cycle:
         theta: cython.double = self.crossings.angle[self.order[first]]
         opened: cython.bint = False
         self.slipping, self.span_cause = 0, POSITIVE
-        self.span = self.place(theta)
+        self.span = first if kind == TOP else self.place(theta, kind)
         self.span_begin, self.w = theta, self.lower[self.span]
+        never_opens: cython.bint = kind == TOP  # then all cuts have been placed, in their order
         if kind == CLOSES:
             self.close()
-        for i in range(count):  # noqa: B007
+        for i in range(count if never_opens else count - 1):  # noqa: B007
             at += 1
             if at == count:
                 at, turn = 0, TWO_PI
@@ -263,10 +265,10 @@ class Cycle:
             if opened:
                 if kind == CLOSES:
                     opened = False
-                    self.span, self.span_begin = self.place(theta), theta
+                    self.span, self.span_begin = self.place(theta, kind), theta
                     self.close()
                 continue
-            self.advance(theta, kind)
+            self.advance(at if never_opens else self.place(theta, kind), theta, kind)
             if kind == OPENS:
                 opened = True
                 self.add(SEPARATION, self.span, theta, 0.0, 0)
@@ -295,11 +297,11 @@ class Cycle:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def advance(self, theta: cython.double, kind: cython.int) -> cython.void:
+    def advance(self, end: cython.int, theta: cython.double, kind: cython.int) -> cython.void:
         """One span, to a cut at which the contact is closed or opens."""
-        end: cython.int = self.place(theta)
         if kind == OPENS:
             self.lower[end] = self.upper[end] = self.moved[end]
+        self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
         w: cython.double = max(self.lower[end], min(self.w, self.upper[end]))
         side: cython.int = POSITIVE if w > self.w else NEGATIVE if w < self.w else 0
         if side == 0 or side != self.slipping:
@@ -321,7 +323,7 @@ class Cycle:
             self.add(side, self.span, self.span_begin, 0.0, 0)
         else:
             begin = self.slip_begin(side, end, theta)
-            self.add(side, self.place(begin), begin, 0.0, 0)
+            self.add(side, self.place(begin, SLIPS), begin, 0.0, 0)
 
     @cython.cfunc
     @cython.nogil

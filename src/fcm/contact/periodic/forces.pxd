@@ -19,3 +19,4 @@ cdef class PeriodicContact:
     cdef void remember_all(self) noexcept nogil
     cdef void remember(self, int p) noexcept nogil
     cdef void rescale(self, bint derivatives, double mu, double k_u, double k_v) noexcept nogil
+    cdef void rescale_row(self, int row, double by_motion, double by_load) noexcept nogil

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
@@ -111,6 +111,8 @@ class PeriodicContact:
             OPEN, STUCK, MIXED; or UNKNOWN where a number is not finite, and then so are the results.
         """
         behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        if not isfinite(start):
+            behaviour = UNKNOWN
         self.kind = self.cycle.solve(behaviour, k_u * (start - x[first]) / self.motion.scale)
         i: cython.int
         j: cython.int
@@ -133,10 +135,7 @@ class PeriodicContact:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def stuck(
-        self,
-        derivatives: cython.bint,
-    ) -> cython.void:
+    def stuck(self, derivatives: cython.bint) -> cython.void:
         """The slider rests; its place is the start's, or the extreme of the limit that holds it."""
         i: cython.int
         k: cython.int
@@ -168,10 +167,7 @@ class PeriodicContact:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def assemble(
-        self,
-        derivatives: cython.bint,
-    ) -> cython.void:
+    def assemble(self, derivatives: cython.bint) -> cython.void:
         """Forces and derivatives from the sums, but for what sticks remember."""
         i: cython.int
         h: cython.int
@@ -318,16 +314,27 @@ class PeriodicContact:
     ) -> cython.void:
         """From forces divided by the greatest amplitude, and derivatives by forces, to those asked for."""
         i: cython.int
-        j: cython.int
-        friction: cython.bint
-        for i in range(self.equations):
-            friction = i == 0 if i < 2 else (i - 2) % 4 < 2
-            self.forces[i] *= self.motion.scale if friction else self.motion.load_scale
-            if derivatives:
-                for j in range(self.unknowns):
-                    if not friction:
-                        self.jacobian[i, j] *= k_v
-                    elif j == 0 if j < 2 else (j - 2) % 4 < 2:
-                        self.jacobian[i, j] *= k_u
-                    else:
-                        self.jacobian[i, j] *= mu * k_v
+        for i in range(-1, self.outputs):
+            row: cython.int = 2 + 4 * i if i >= 0 else 0
+            step: cython.int = 2 if i >= 0 else 1
+            part: cython.int
+            for part in range(step):
+                self.forces[row + part] *= self.motion.scale
+                self.forces[row + step + part] *= self.motion.load_scale
+                if derivatives:
+                    self.rescale_row(row + part, k_u, mu * k_v)
+                    self.rescale_row(row + step + part, 0.0, k_v)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def rescale_row(self, row: cython.int, by_motion: cython.double, by_load: cython.double) -> cython.void:
+        """Derivatives of one number by u and by v."""
+        k: cython.int
+        self.jacobian[row, 0] *= by_motion
+        self.jacobian[row, 1] *= by_load
+        for k in range(2, self.unknowns, 4):
+            self.jacobian[row, k] *= by_motion
+            self.jacobian[row, k + 1] *= by_motion
+            self.jacobian[row, k + 2] *= by_load
+            self.jacobian[row, k + 3] *= by_load

@@ -14,10 +14,10 @@ from cython.cimports.libc.math import sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
-    from cython.cimports.fcm.contact.periodic.motion import FORCE, Motion
+    from cython.cimports.fcm.contact.periodic.motion import FORCE, REACH, Motion
 else:
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
-    from fcm.contact.periodic.motion import FORCE, Motion
+    from fcm.contact.periodic.motion import FORCE, REACH, Motion
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
@@ -144,23 +144,26 @@ class Integrals:
         h: cython.int
         a: cython.double
         b: cython.double
+        reach: cython.double = 0.5 * (self.cycle.upper[e] - self.cycle.lower[e])
         start: cython.double = 0.0
         if self.cycle.cause[p] != SEPARATION:
-            start = self.cycle.cause[p] * 0.5 * (self.cycle.upper[e] - self.cycle.lower[e])
+            start = self.cycle.cause[p] * reach
         for m in range(self.most + 1):
             self.stick_re[m] = self.stick_im[m] = 0.0
         for i in range(POINTS):
             y: cython.double = self.points[i] * length
             half: cython.double = sin(0.5 * y)
             f: cython.double = start
+            limit: cython.double = reach
             self.grow(-2.0 * half * half, sin(y))
             for k in range(self.motion.count):
                 h = self.motion.number[k]
-                a = self.motion.re[FORCE, k] * self.power_cos[begin, h]
-                a -= self.motion.im[FORCE, k] * self.power_sin[begin, h]
-                b = self.motion.re[FORCE, k] * self.power_sin[begin, h]
-                b += self.motion.im[FORCE, k] * self.power_cos[begin, h]
-                f += a * self.grow_re[h] - b * self.grow_im[h]
+                a = self.power_cos[begin, h] * self.grow_re[h] - self.power_sin[begin, h] * self.grow_im[h]
+                b = self.power_sin[begin, h] * self.grow_re[h] + self.power_cos[begin, h] * self.grow_im[h]
+                f += self.motion.re[FORCE, k] * a - self.motion.im[FORCE, k] * b
+                limit += self.motion.re[REACH, k] * a - self.motion.im[REACH, k] * b
+            # of a load that is tiny beside the motion, a rounding error may put it past the limit
+            f = max(-limit, min(f, limit))
             f *= self.weights[i] * length
             for m in range(self.most + 1):
                 self.stick_re[m] += f * (1.0 + self.grow_re[m])

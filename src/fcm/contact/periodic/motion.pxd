@@ -1,4 +1,4 @@
-cdef int LOAD, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, REACH
+cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH
 cdef int OPEN, CLOSED, MIXED, UNKNOWN
 cdef double EPSILON
 
@@ -6,12 +6,12 @@ cdef class Motion:
     cdef readonly int count, highest, nodes
     cdef readonly double step, first, scale, load_scale, ratio, preload
     cdef readonly int[::1] number
-    cdef readonly double[::1] order, mean
+    cdef readonly double[::1] order, mean, load_bound, limit_bound
     cdef readonly double[:, ::1] re, im, node_cos, node_sin, at
     cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
     cdef int behaviour(self) noexcept nogil
-    cdef double bound(self, int row, int power) noexcept nogil
+    cdef void bound(self) noexcept nogil
     cdef void sample(self) noexcept nogil
     cdef (double, double) evaluate(self, int row, double theta) noexcept nogil
     cdef int node_before(self, double theta) noexcept nogil

@@ -16,15 +16,17 @@ from cython.cimports.libc.math import cos, fabs, floor, hypot, isfinite, sin
 
 # Rows of coefficients and of samples. The row after one is its derivative.
 LOAD = cython.declare(cython.int, 0)
-LOWER = cython.declare(cython.int, 2)
-LOWER_RATE = cython.declare(cython.int, 3)
-UPPER = cython.declare(cython.int, 5)
-UPPER_RATE = cython.declare(cython.int, 6)
-ROWS = cython.declare(cython.int, 8)
-# Rows of coefficients only
-FORCE = cython.declare(cython.int, 8)  # k_u u
-REACH = cython.declare(cython.int, 9)  # mu n
+LOAD_RATE = cython.declare(cython.int, 1)
+LOWER = cython.declare(cython.int, 3)
+LOWER_RATE = cython.declare(cython.int, 4)
+UPPER = cython.declare(cython.int, 6)
+UPPER_RATE = cython.declare(cython.int, 7)
+FORCE = cython.declare(cython.int, 9)  # k_u u
+FORCE_RATE = cython.declare(cython.int, 10)
+REACH = cython.declare(cython.int, 12)  # mu n; of coefficients only
+ROWS = cython.declare(cython.int, 13)
 
+POWERS = cython.declare(cython.int, 3)  # of a harmonic's number, in bounds
 OPEN = cython.declare(cython.int, 0)
 CLOSED = cython.declare(cython.int, 1)
 MIXED = cython.declare(cython.int, 2)
@@ -54,10 +56,11 @@ class Motion:
         angle = np.outer(self.first + self.step * np.arange(self.nodes), np.arange(self.highest + 1))
         self.node_cos = np.ascontiguousarray(np.cos(angle)[:, numbers])
         self.node_sin = np.ascontiguousarray(np.sin(angle)[:, numbers])
-        self.re = np.zeros((10, max(self.count, 1)))
-        self.im = np.zeros((10, max(self.count, 1)))
-        self.mean = np.zeros(10)
-        self.at = np.zeros((8, self.nodes))
+        self.re = np.zeros((ROWS, max(self.count, 1)))
+        self.im = np.zeros((ROWS, max(self.count, 1)))
+        self.mean = np.zeros(ROWS)
+        self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
+        self.at = np.zeros((REACH, self.nodes))
 
     @cython.cfunc
     @cython.nogil
@@ -86,7 +89,7 @@ class Motion:
         self.preload = n_0 + k_v * x[first + 1]
         self.load_scale = max(k_v * variation, FAINT * fabs(self.preload), LEAST)
         self.scale = max(k_u * motion, mu * self.load_scale, FAINT * k_u * fabs(x[first]), LEAST)
-        if not isfinite(self.scale + self.preload + x[first]):
+        if not isfinite(self.scale + self.preload + x[first] + mu + k_u + k_v):
             return UNKNOWN
         self.ratio = mu * (self.load_scale / self.scale)
         self.fill(x, first + 2, k_u, k_v)
@@ -94,6 +97,7 @@ class Motion:
         self.mean[REACH] = self.ratio * self.mean[LOAD]
         self.mean[LOWER] = -self.mean[REACH]
         self.mean[UPPER] = self.mean[REACH]
+        self.bound()
         return self.behaviour()
 
     @cython.cfunc
@@ -105,6 +109,7 @@ class Motion:
         """The coefficients of all rows."""
         k: cython.int
         i: cython.Py_ssize_t = first
+        row: cython.int
         order: cython.double
         for k in range(self.count):
             order = self.order[k]
@@ -118,10 +123,9 @@ class Motion:
             self.im[LOWER, k] = self.im[FORCE, k] - self.im[REACH, k]
             self.re[UPPER, k] = self.re[FORCE, k] + self.re[REACH, k]
             self.im[UPPER, k] = self.im[FORCE, k] + self.im[REACH, k]
-            self.re[LOWER_RATE, k] = -order * self.im[LOWER, k]
-            self.im[LOWER_RATE, k] = order * self.re[LOWER, k]
-            self.re[UPPER_RATE, k] = -order * self.im[UPPER, k]
-            self.im[UPPER_RATE, k] = order * self.re[UPPER, k]
+            for row in range(LOAD, REACH, 3):
+                self.re[row + 1, k] = -order * self.im[row, k]
+                self.im[row + 1, k] = order * self.re[row, k]
             i += 4
 
     @cython.cfunc
@@ -140,25 +144,26 @@ class Motion:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def bound(self, row: cython.int, power: cython.int) -> cython.double:
-        """No value of the derivative of that order is greater: sum of order**power times the amplitude.
+    def bound(self) -> cython.void:
+        """`load_bound` and `limit_bound`: no value of the derivative of an order is greater.
 
-        Of a limit it is that of the motion and the load, so that it also bounds their rounding.
+        They are sums of order**power times the amplitude; of a limit those of the motion and the load, so
+        that they also bound their rounding.
         """
         k: cython.int
         p: cython.int
-        total: cython.double = 0.0
-        amplitude: cython.double
+        load: cython.double
+        limit: cython.double
+        for p in range(POWERS):
+            self.load_bound[p] = self.limit_bound[p] = 0.0
         for k in range(self.count):
-            if row == LOAD:
-                amplitude = fabs(self.re[LOAD, k]) + fabs(self.im[LOAD, k])
-            else:
-                amplitude = fabs(self.re[FORCE, k]) + fabs(self.im[FORCE, k])
-                amplitude += fabs(self.re[REACH, k]) + fabs(self.im[REACH, k])
-            for p in range(power):  # noqa: B007
-                amplitude *= self.order[k]
-            total += amplitude
-        return total
+            load = fabs(self.re[LOAD, k]) + fabs(self.im[LOAD, k])
+            limit = fabs(self.re[FORCE, k]) + fabs(self.im[FORCE, k]) + self.ratio * load
+            for p in range(POWERS):
+                self.load_bound[p] += load
+                self.limit_bound[p] += limit
+                load *= self.order[k]
+                limit *= self.order[k]
 
     @cython.cfunc
     @cython.nogil
@@ -191,15 +196,12 @@ class Motion:
                 y += real
                 y_1 -= order * imag
                 y_2 -= order * order * real
-            self.at[0, j] = self.mean[LOAD] + y
-            self.at[1, j] = y_1
-            y, y_1, y_2 = self.mean[REACH] + self.ratio * y, self.ratio * y_1, self.ratio * y_2
-            self.at[2, j] = u - y
-            self.at[3, j] = u_1 - y_1
-            self.at[4, j] = u_2 - y_2
-            self.at[5, j] = u + y
-            self.at[6, j] = u_1 + y_1
-            self.at[7, j] = u_2 + y_2
+            y += self.mean[LOAD]
+            self.at[LOAD, j], self.at[LOAD + 1, j], self.at[LOAD + 2, j] = y, y_1, y_2
+            y, y_1, y_2 = self.ratio * y, self.ratio * y_1, self.ratio * y_2
+            self.at[LOWER, j], self.at[LOWER + 1, j], self.at[LOWER + 2, j] = u - y, u_1 - y_1, u_2 - y_2
+            self.at[UPPER, j], self.at[UPPER + 1, j], self.at[UPPER + 2, j] = u + y, u_1 + y_1, u_2 + y_2
+            self.at[FORCE, j], self.at[FORCE + 1, j], self.at[FORCE + 2, j] = u, u_1, u_2
 
     @cython.cfunc
     @cython.nogil
