@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         normal_gradients,
         periodic_forces,
         periodic_gradients,
+        periodic_loop,
     )
     from fcm.response import respond
     from fcm.scene import load_scene
@@ -36,6 +37,7 @@ _HOME = {
     "open_table": "fcm.table",
     "periodic_forces": "fcm.contact",
     "periodic_gradients": "fcm.contact",
+    "periodic_loop": "fcm.contact",
     "respond": "fcm.response",
 }
 
@@ -49,6 +51,7 @@ __all__ = [
     "open_table",
     "periodic_forces",
     "periodic_gradients",
+    "periodic_loop",
     "respond",
 ]
 

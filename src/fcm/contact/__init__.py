@@ -7,10 +7,12 @@ from fcm.contact.fourier import fourier_coefficients, fourier_gradients
 from fcm.contact.loop import Loop, hysteresis_loop
 from fcm.contact.normal import normal_coefficients, normal_gradients
 from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
+from fcm.contact.periodic.loop import PeriodicLoop, periodic_loop
 
 __all__ = [
     "Loop",
     "PeriodicGradients",
+    "PeriodicLoop",
     "fourier_coefficients",
     "fourier_gradients",
     "hysteresis_loop",
@@ -18,6 +20,7 @@ __all__ = [
     "normal_gradients",
     "periodic_forces",
     "periodic_gradients",
+    "periodic_loop",
 ]
 
 if normal_load.__file__.endswith(".py"):

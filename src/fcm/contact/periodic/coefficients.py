@@ -137,6 +137,16 @@ def periodic_gradients(
     return PeriodicGradients(f, n, df, dn)
 
 
+def one_motion(
+    u: npt.ArrayLike, v: npt.ArrayLike, **numbers: float
+) -> tuple[PeriodicContact, FloatArray, FloatArray]:
+    """A contact of its own for one motion, its unknowns, and mu, k_u, k_v, n_0, start as `periodic_forces` checks."""
+    motion = _Motion.of(u, v, None, **numbers)
+    if motion.shape:
+        raise ValueError(f"one loop needs numbers and one motion, not arrays of shape {motion.shape}")
+    return motion.contact, motion.unknowns[0], motion.parameters[0]
+
+
 class _Motion(NamedTuple):
     """Arguments as the kernel takes them: a row for each contact."""
 

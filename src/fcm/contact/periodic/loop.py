@@ -1,0 +1,195 @@
+"""The hysteresis loop of a contact over any periodic motion: its states, when each begins, force at any angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
+from fcm.contact.periodic.cycle import Cycle
+from fcm.contact.periodic.measures import Measures
+
+# A state shorter than this [rad], or a slip that moves w by less of its greatest extent, is rounding.
+INVISIBLE = 1e-14
+LETTERS = {-1: "N", 0: "E", 1: "P", 2: "S"}  # by the kernel's states
+
+
+@dataclass(frozen=True)
+class PeriodicLoop:
+    """One steady cycle of a contact under x(theta) = Re sum_h X_h exp(i h theta).
+
+    Attributes
+    ----------
+    u, v : ndarray, complex, shape (harmonic,) [length]
+        The motion, as given to `periodic_loop`, as are mu [-], k_u, k_v [force / length] and n_0 [force].
+    sequence : str
+        The states in order, E stick, P positive slip, N negative slip, S separation: 'EPEN', 'SEPSP', ...
+    angles : ndarray, shape (len(sequence),) or (0,) for a single state [rad]
+        ``angles[i]`` in [0, 2 pi) is where state ``sequence[i]`` begins and the one before it ends.
+    slip_motion : ndarray, shape (max(len(angles), 1),) [length]
+        w while the contact sticks, for each state; NaN for the others.
+    dissipation : float
+        Energy that friction takes in a cycle [force length].
+    slip_path : float
+        Way of the slider while it slips, in a cycle [length].
+    greatest_force, least_load, greatest_load : float
+        Greatest |f|; least and greatest n_0 + k_v v, negative where the contact is open [force].
+    overlap : float
+        How far the slip limits of k_u w exceed each other, equation (25) [force]: below 0 it never slips.
+    """
+
+    u: ComplexArray
+    v: ComplexArray
+    mu: float
+    k_u: float
+    k_v: float
+    n_0: float
+    sequence: str
+    angles: FloatArray
+    slip_motion: FloatArray
+    dissipation: float
+    slip_path: float
+    greatest_force: float
+    least_load: float
+    greatest_load: float
+    overlap: float
+    _since: FloatArray = field(default_factory=lambda: np.empty(0), repr=False)  # angles from the first on
+
+    def displacement(self, theta: npt.ArrayLike) -> FloatArray:
+        """u [length] at each angle theta [rad]."""
+        return _values(self.u, theta)
+
+    def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
+        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
+        return np.maximum(self.n_0 + self.k_v * _values(self.v, theta), 0.0)
+
+    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
+        """mu n [force] at each angle theta [rad]."""
+        return self.mu * self.normal_load(theta)
+
+    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
+        """State letter at each angle theta [rad]."""
+        return np.array(list(self.sequence))[self._region(np.asarray(theta, dtype=np.float64))]
+
+    def force(self, theta: npt.ArrayLike) -> FloatArray:
+        """Friction force f [force] at each angle theta [rad].
+
+        >>> periodic_loop([0.0, -1j], [0.0], 0.5, 1.0, 1.0, 1.0).force(np.pi / 2).item()
+        0.5
+        """
+        angle = np.asarray(theta, dtype=np.float64)
+        region = self._region(angle)
+        state, limit = np.array(list(self.sequence))[region], self.slip_limit(angle)
+        stick = self.k_u * (self.displacement(angle) - np.nan_to_num(self.slip_motion)[region])
+        stick = np.clip(stick, -limit, limit)  # at an event, a rounding error may put it past the limit
+        return np.select([state == "E", state == "P", state == "N"], [stick, limit, -limit], 0.0)
+
+    def _region(self, theta: FloatArray) -> npt.NDArray[np.intp]:
+        if self._since.size == 0:
+            return np.zeros(theta.shape, dtype=np.intp)
+        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
+        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
+
+
+def periodic_loop(
+    u: npt.ArrayLike,
+    v: npt.ArrayLike,
+    mu: float,
+    k_u: float,
+    k_v: float,
+    n_0: float,
+    *,
+    start: float = 0.0,
+) -> PeriodicLoop:
+    """The steady hysteresis loop of one contact under any periodic motion, its events located exactly.
+
+    Parameters
+    ----------
+    u, v : array_like, complex, shape (harmonic,)
+        Coefficients of the displacements, and mu, k_u, k_v, n_0 and start, as in `periodic_forces`; numbers.
+
+    Returns
+    -------
+    PeriodicLoop
+        With `sequence`, `angles`, `force(theta)`, `normal_load(theta)`, `displacement(theta)`, `states(theta)`.
+
+    Raises
+    ------
+    ValueError
+        If mu, k_u or k_v is negative, or a number is not finite.
+
+    Examples
+    --------
+    >>> loop = periodic_loop([0.0, -1j, 0.0, 0.4], [0.0, 1.0], mu=0.4, k_u=1.0, k_v=1.0, n_0=0.5)
+    >>> loop.sequence
+    'SNEPEPEN'
+    """
+    contact, x, parameters = one_motion(u, v, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
+    if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
+        raise ValueError("all coefficients and parameters must be finite numbers")
+    contact.at(x, *parameters, False)
+    measures = Measures(contact.cycle)
+    measures.take(k_u)
+    length = contact.motion.scale / k_u if k_u > 0.0 else 0.0
+    mean = float(x[0])
+    regions = _ordered(_visible(contact.cycle))
+    since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
+    angles = np.mod(regions[0][1] + since, 2.0 * np.pi)
+    angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
+    single = len(regions) == 1
+    return PeriodicLoop(
+        np.atleast_1d(np.asarray(u, np.complex128)),
+        np.atleast_1d(np.asarray(v, np.complex128)),
+        float(mu), float(k_u), float(k_v), float(n_0),
+        "".join(state for state, _, _ in regions),
+        angles[:0] if single else angles,
+        np.array([mean + length * rest if state == "E" else np.nan for state, _, rest in regions]),
+        measures.dissipation, measures.slip_path,
+        measures.greatest_friction, measures.least_load, measures.greatest_load, measures.overlap,
+        since[:0] if single else since,
+    )  # fmt: skip
+
+
+def _values(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
+    """Re sum_h X_h exp(i h theta)."""
+    angle = np.asarray(theta, dtype=np.float64)
+    values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ X).real
+    return values
+
+
+def _visible(cycle: Cycle) -> list[tuple[str, float, float]]:
+    """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
+    begin = np.asarray(cycle.begin)[: cycle.pieces]
+    length = np.diff(begin, append=begin[0] + 2.0 * np.pi)
+    regions: list[tuple[str, float, float]] = []
+    for p in range(cycle.pieces):
+        if length[p] > INVISIBLE or cycle.pieces == 1:
+            state, rest = LETTERS[cycle.state[p]], float(cycle.rest[p])
+            if state in "PN":
+                rest, moves = _slip(cycle, p)
+                state = state if moves else "E"
+            if not regions or regions[-1][0] != state:
+                regions.append((state, float(begin[p]), rest))
+    return regions[1:] if len(regions) > 1 and regions[0][0] == regions[-1][0] else regions
+
+
+def _slip(cycle: Cycle, p: int) -> tuple[float, bool]:
+    """Where the slider is when slip p begins, and whether it is seen to move."""
+    limit = cycle.lower if cycle.state[p] > 0 else cycle.upper
+    begin, end = (float(limit[cycle.event[q % cycle.pieces]]) for q in (p, p + 1))
+    return begin, abs(end - begin) > INVISIBLE
+
+
+def _ordered(regions: list[tuple[str, float, float]]) -> list[tuple[str, float, float]]:
+    """From a separation on, else from a stick after negative slip, the first of them after angle 0."""
+    states = [state for state, _, _ in regions]
+    firsts = [i for i, state in enumerate(states) if state == "S"] or [
+        i for i, state in enumerate(states) if state == "E" and states[i - 1] == "N"
+    ]
+    if not firsts:
+        return regions
+    first = min(firsts, key=lambda i: regions[i][1] % (2.0 * np.pi))
+    turned = [(state, begin + 2.0 * np.pi, rest) for state, begin, rest in regions[:first]]
+    return regions[first:] + turned
