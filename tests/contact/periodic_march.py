@@ -149,7 +149,9 @@ def forces(u, v, mu, k_u, k_v, n_0, outputs, depth=2):
     theta = centre[:, None] + half[:, None] * NODES
     load = np.maximum(motion.at(motion.load, theta), 0)
     stick = motion.at(motion.u, theta) - w
-    friction = np.select([states == "E", states == "P", states == "N"], [stick, motion.mu * load, -motion.mu * load], 0)
+    friction = np.select(
+        [states == "E", states == "P", states == "N"], [stick, motion.mu * load, -motion.mu * load], 0
+    )
     load = np.where(states == "S", 0, load)
     found = []
     for force in (friction, load):

@@ -31,7 +31,9 @@ def test_beside_the_boundaries(name):
         assert max(errors(near(BOUNDARIES[name], miss), depth=18)) <= ALLOWED, miss
 
 
-@pytest.mark.parametrize("name", ["linear", "near_boundaries", "near_degenerate", "between_sequences", "turned_often"])
+@pytest.mark.parametrize(
+    "name", ["linear", "near_boundaries", "near_degenerate", "between_sequences", "turned_often"]
+)
 def test_with_one_harmonic_it_is_the_closed_form(name):
     check_closed_form(*points(name, 1000))
 
@@ -113,7 +115,8 @@ def test_arguments_broadcast():
 def test_the_imaginary_part_of_a_mean_does_not_count():
     u, v = [1.0 + 5.0j, 2.0, 1j], [0.5 - 3.0j, 1.0j]
     np.testing.assert_array_equal(
-        periodic_forces(u, v, 0.4, 1.0, 1.0, 1.0), periodic_forces([1.0, *u[1:]], [0.5, *v[1:]], 0.4, 1.0, 1.0, 1.0)
+        periodic_forces(u, v, 0.4, 1.0, 1.0, 1.0),
+        periodic_forces([1.0, *u[1:]], [0.5, *v[1:]], 0.4, 1.0, 1.0, 1.0),
     )
 
 

@@ -57,13 +57,17 @@ def test_differences(seed):
     compared = 0
     cases = random_cases(10, 100 + seed, most=9)
     for case in cases:
-        direction = [rng.standard_normal(case.u.size) + 1j * rng.standard_normal(case.u.size) for _ in range(2)]
+        direction = [
+            rng.standard_normal(case.u.size) + 1j * rng.standard_normal(case.u.size) for _ in range(2)
+        ]
         if any(sequence(moved(case, direction, s * CLEAR * STEP)) != sequence(case) for s in (-1, 0.3, 1)):
             continue
         compared += 1
         gradients = periodic_gradients(*case.arguments(), harmonics=case.u.size + 1)
         size = np.array([case.k_u + case.mu * case.k_v, case.k_v]) * np.linalg.norm(direction)
-        for mine, theirs, scale in zip(along(gradients, direction), marched(case, direction), size, strict=True):
+        for mine, theirs, scale in zip(
+            along(gradients, direction), marched(case, direction), size, strict=True
+        ):
             assert np.abs(mine - theirs).max() <= 1e-9 * scale
     assert compared >= 0.5 * len(cases)
 
@@ -77,7 +81,9 @@ def check_homogeneous(case):
     u, v = (np.pad(x, (0, count - x.size)) for x in (case.u, case.v))
     v = v + np.eye(1, count)[0] * case.n_0 / case.k_v
     motion = np.sum(np.abs(case.k_u * u)) + np.sum(np.abs(case.mu * case.k_v * v))
-    for force, slope, scale in zip(G[:2], along(G, (u, v)), (motion, case.k_v * np.sum(np.abs(v))), strict=True):
+    for force, slope, scale in zip(
+        G[:2], along(G, (u, v)), (motion, case.k_v * np.sum(np.abs(v))), strict=True
+    ):
         assert np.abs(force - slope).max() <= 3e-13 * scale
 
 
@@ -117,10 +123,14 @@ def test_gradients_broadcast():
 
 def test_where_it_just_does_not_slip_the_derivative_is_that_of_sticking():
     """u = sin(theta) at its slip limit: stiffness k_u inside; beyond, the slip takes some of it."""
-    derivative = [periodic_gradients(SINE, STILL, 1.0, 1.0, 1.0, n_0).df[1, 0, 1, 1] for n_0 in (1.0, 1.0 - 1e-9)]
+    derivative = [
+        periodic_gradients(SINE, STILL, 1.0, 1.0, 1.0, n_0).df[1, 0, 1, 1] for n_0 in (1.0, 1.0 - 1e-9)
+    ]
     assert derivative[0] == 1j
     assert derivative[1].imag == pytest.approx(1.0, abs=1e-3)  # the stiffness is continuous, its mean is not:
-    mean = [periodic_gradients([0.0, -1j], STILL, 1.0, 1.0, 1.0, n_0).df[0, 0, 0, 0] for n_0 in (1.0, 1.0 - 1e-9)]
+    mean = [
+        periodic_gradients([0.0, -1j], STILL, 1.0, 1.0, 1.0, n_0).df[0, 0, 0, 0] for n_0 in (1.0, 1.0 - 1e-9)
+    ]
     assert mean == [1.0, 0.0]
 
 

@@ -54,7 +54,10 @@ def test_the_loop_has_the_coefficients():
         f, n = case.forces()
         for h in range(0, f.size, 3):
             for force, F in ((loop.force, f[h]), (loop.normal_load, n[h])):
-                wave = (lambda t, h=h, force=force: force(t) * np.cos(h * t), lambda t, h=h, force=force: -force(t) * np.sin(h * t))
+                wave = (
+                    lambda t, h=h, force=force: force(t) * np.cos(h * t),
+                    lambda t, h=h, force=force: -force(t) * np.sin(h * t),
+                )
                 found = complex(*(integrated(loop, w) for w in wave)) / (np.pi if h else 2.0 * np.pi)
                 assert found == pytest.approx(F, abs=1e-11 * size(case) / min(case.mu or 1.0, 1.0))
 
@@ -74,9 +77,14 @@ def test_energy_is_only_taken():
 
 def test_path_and_extremes():
     for case, loop in loops():
-        load = case.n_0 + case.k_v * (np.exp(1j * np.multiply.outer(THETA, np.arange(case.v.size))) @ case.v).real
+        load = (
+            case.n_0
+            + case.k_v * (np.exp(1j * np.multiply.outer(THETA, np.arange(case.v.size))) @ case.v).real
+        )
         fine = 1e-3 * size(case) * case.v.size**2
-        assert loop.least_load <= load.min() + 1e-12 * size(case) and loop.greatest_load >= load.max() - 1e-12 * size(case)
+        assert loop.least_load <= load.min() + 1e-12 * size(
+            case
+        ) and loop.greatest_load >= load.max() - 1e-12 * size(case)
         assert loop.least_load == pytest.approx(load.min(), abs=fine / min(case.mu or 1.0, 1.0))
         force = np.abs(loop.force(THETA)).max()
         assert force <= loop.greatest_force * (1.0 + 1e-12) + 1e-15 * size(case)
@@ -119,9 +127,13 @@ def test_shift_of_time():
         for shift in (1e-3, 1.0, np.pi, 5.0):
             turn = np.exp(1j * shift * np.arange(16))
             f, n = case.forces()
-            g, m = periodic_forces(case.u * turn[: case.u.size], case.v * turn[: case.v.size], *case.arguments()[2:])
+            g, m = periodic_forces(
+                case.u * turn[: case.u.size], case.v * turn[: case.v.size], *case.arguments()[2:]
+            )
             np.testing.assert_allclose(g, f * turn[: f.size], atol=1e-13 * size(case))
-            np.testing.assert_allclose(m, n * turn[: n.size], atol=1e-13 * size(case) / min(case.mu or 1.0, 1.0))
+            np.testing.assert_allclose(
+                m, n * turn[: n.size], atol=1e-13 * size(case) / min(case.mu or 1.0, 1.0)
+            )
 
 
 def test_twice_as_fast():
@@ -162,9 +174,18 @@ np.save(sys.argv[2], found)
 
 def test_the_sources_run_as_python(tmp_path):
     """Without a compiler the same files run, slowly, and give the same numbers."""
-    shutil.copytree(Path(fcm.__file__).parent, tmp_path / "fcm", ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
-    cases = [c for c in [*random_cases(60, 5, most=3), *BOUNDARIES.values()] if c.u.size <= 4 and c.v.size <= 4][:40]
-    u, v = (np.array([np.pad(x, (0, 4 - x.size)) for x in column]) for column in zip(*((c.u, c.v) for c in cases), strict=True))
+    shutil.copytree(
+        Path(fcm.__file__).parent,
+        tmp_path / "fcm",
+        ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"),
+    )
+    cases = [
+        c for c in [*random_cases(60, 5, most=3), *BOUNDARIES.values()] if c.u.size <= 4 and c.v.size <= 4
+    ][:40]
+    u, v = (
+        np.array([np.pad(x, (0, 4 - x.size)) for x in column])
+        for column in zip(*((c.u, c.v) for c in cases), strict=True)
+    )
     numbers = {name: [getattr(c, name) for c in cases] for name in ("mu", "k_u", "k_v", "n_0")}
     given, made = tmp_path / "given.npz", tmp_path / "made.npy"
     np.savez(given, u=u, v=v, **numbers)

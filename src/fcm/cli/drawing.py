@@ -37,10 +37,10 @@ def picture_of(file: Path, output: Path | None, ending: str) -> Path:
 
 def angles(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:
     """Callback of an option for angles [rad]."""
-    return tuple(map(_angle, texts))
+    return tuple(map(angle, texts))
 
 
-def _angle(text: str) -> float:
+def angle(text: str) -> float:
     """A number of radians, or of degrees: 0.5, 15deg."""
     try:
         number = float(text.removesuffix("deg"))

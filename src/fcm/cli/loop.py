@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.drawing import ENDINGS, angles, save_picture
+from fcm.cli.drawing import ENDINGS, angle, angles, save_picture
 from fcm.cli.files import check_output, output_option
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
-    from fcm.cli.loop_cases import Case
+    from fcm.cli.loop_cases import Case, Harmonic
 
 MOST_LOOPS = 12
+HIGHEST = 100  # harmonic of a motion
 OF_FILE = ("curves", "at", "contact", "solution", "dimensionless")
 OF_RATIOS = ("n0_bars", "b_bars")
 OF_CONTACT = ("mu", "k_u", "k_v", "n_0", "a", "b")
@@ -50,6 +51,22 @@ def _ratio(low: float) -> Callable[..., Any]:
     return check
 
 
+def _harmonics(
+    _ctx: click.Context, _param: click.Parameter, values: tuple[tuple[str, int, float, str], ...]
+) -> tuple[Harmonic, ...]:
+    """Callback: each harmonic of u and of v once, from the second on."""
+    from fcm.cli.loop_cases import Harmonic
+
+    found: dict[tuple[str, int], Harmonic] = {}
+    for motion, order, amplitude, phase in values:
+        if not (math.isfinite(amplitude) and amplitude >= 0.0):
+            raise click.BadParameter(f"{amplitude:g} is no amplitude; it is a number of at least 0.")
+        if (motion, order) in found:
+            raise click.BadParameter(f"harmonic {order} of {motion} is given twice.")
+        found[motion, order] = Harmonic(motion, order, amplitude, angle(phase))
+    return tuple(found.values())
+
+
 def _several(name: str, field: str, check: Callable[..., Any], text: str, **more: Any) -> Callable[..., Any]:
     return click.option(
         name, field, type=float, multiple=True, metavar="X", callback=check, help=text, **more
@@ -73,6 +90,12 @@ def _parameters(command: Any) -> Any:
         _several("--n0", "n_0", _number(None), "the preload, negative for a gap,"),
         _several("--a", "a", positive, "the amplitude of the tangential motion,"),
         _several("--b", "b", amplitude, "and that of the normal motion."),
+        click.option(
+            "--harmonic", "harmonics", multiple=True, callback=_harmonics, metavar="u|v H AMPLITUDE PHASE",
+            type=(click.Choice(["u", "v"]), click.IntRange(2, HIGHEST), float, str),
+            help="Beside --a and --b a harmonic of the tangential or normal motion, as u 3 0.1 20deg: 0.1 "
+            "sin(3 theta + 20deg).",
+        ),
     )  # fmt: skip
     for option in reversed(options):
         command = option(command)
@@ -145,7 +168,8 @@ def loop(
     for case in cases:
         messages.info(_sentence(case, cosine))
     seconds = time.perf_counter() - begin
-    messages.info(f"wrote {output}: from the closed form, in {seconds:.2f} s")
+    how = "from events located exactly" if options["harmonics"] else "from the closed form"
+    messages.info(f"wrote {output}: {how}, in {seconds:.2f} s")
 
 
 def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> list[Case]:
@@ -154,7 +178,9 @@ def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> li
 
     given = {name for name in options if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     if file is not None:
-        _useless(given, (*OF_RATIOS, *OF_CONTACT, "phases"), "with a FILE: its points have their own")
+        _useless(
+            given, (*OF_RATIOS, *OF_CONTACT, "phases", "harmonics"), "with a FILE: its points have their own"
+        )
         return of_file(
             file,
             options["curves"] or [None],
@@ -168,8 +194,11 @@ def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> li
         missing = [_option(name) for name in OF_CONTACT if name not in given]
         if missing:
             raise click.UsageError(f"the contact is not complete: {', '.join(missing)} missing.")
-        return of_contact({name: options[name] for name in OF_CONTACT}, options["phases"])
+        return of_contact(
+            {name: options[name] for name in OF_CONTACT}, options["phases"], options["harmonics"]
+        )
     _useless(given, OF_FILE, "without a FILE")
+    _useless(given, ("harmonics",), "without --mu, --k-u, --k-v, --n0, --a and --b")
     return of_ratios(options["n0_bars"] or (0.8,), options["b_bars"] or (1.0,), options["phases"])
 
 

@@ -14,7 +14,7 @@ import click
 from fcm.cli.drawing import shorten
 
 if TYPE_CHECKING:
-    from fcm.contact import Loop
+    from fcm.contact import Loop, PeriodicLoop
     from fcm.plot.loop_file import LoopPoint
 
 WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
@@ -23,6 +23,21 @@ _SYMBOL = {
     "n0_bar": r"$\bar{n}_0$", "b_bar": r"$\bar{b}$", "mu": r"$\mu$", "k_u": "$k_u$", "k_v": "$k_v$",
     "n_0": "$n_0$", "a": "$a$", "b": "$b$",
 }  # fmt: skip
+
+
+class Harmonic(NamedTuple):
+    """A harmonic of the motion beside the fundamental: amplitude sin(order theta + phase)."""
+
+    motion: str  # u or v
+    order: int
+    amplitude: float
+    phase: float  # [rad]
+
+    def name(self) -> Name:
+        """As it is written, in a picture and in a message."""
+        value = f"{self.amplitude:.4g} at {math.degrees(self.phase):.4g}°"
+        plain = f"{self.motion}_{self.order} = {value}"
+        return Name(f"${self.motion}_{{{self.order}}}$ = {value}".replace("-", "−"), plain)
 
 
 class Name(NamedTuple):
@@ -36,7 +51,8 @@ class Name(NamedTuple):
 class Case:
     """A loop; its parameters as they are named in a picture, and what else is to be said of it."""
 
-    loop: Loop
+    loop: Loop | PeriodicLoop  # dimensionless: displacements divided by a, forces by k_u a
+    ratios: tuple[float, float, float]  # n0_bar, b_bar [-] and phi [rad]; with harmonics, of the fundamental
     names: tuple[Name, ...]  # one for each parameter, the same in every case
     note: str = ""
     amplitude: float = 1.0  # a
@@ -45,16 +61,12 @@ class Case:
 
     def record(self, from_greatest: bool) -> dict[str, Any]:
         """What ``--json`` prints of the loop; displacements and forces are divided by a and k_u a."""
-        from fcm.contact import fourier_coefficients
         from fcm.contact.sampled import shown_degrees, transitions
 
         loop = self.loop
-        coefficients = fourier_coefficients(loop.n0_bar, loop.b_bar, loop.phi)
         return {
             **self.facts,
-            "n0_bar": loop.n0_bar,
-            "b_bar": loop.b_bar,
-            "phi": loop.phi,
+            **dict(zip(("n0_bar", "b_bar", "phi"), self.ratios, strict=True)),
             "sequence": loop.sequence,
             "transitions": [
                 {
@@ -66,8 +78,18 @@ class Case:
                 }
                 for one in transitions(loop)
             ],
-            **{name: float(F) for name, F in zip(("F_b", "F_s", "F_c"), coefficients, strict=True)},
+            **dict(zip(("F_b", "F_s", "F_c"), self._coefficients(), strict=True)),
         }
+
+    def _coefficients(self) -> tuple[float, float, float]:
+        from fcm.contact import PeriodicLoop, fourier_coefficients, periodic_forces
+
+        loop = self.loop
+        if isinstance(loop, PeriodicLoop):
+            f, _ = periodic_forces(loop.u, loop.v, loop.mu, loop.k_u, loop.k_v, loop.n_0)
+            return f[0].real, -f[1].imag, f[1].real
+        F_b, F_s, F_c = map(float, fourier_coefficients(*self.ratios))
+        return F_b, F_s, F_c
 
 
 def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterable[float]) -> list[Case]:
@@ -77,14 +99,14 @@ def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterabl
     cases = []
     for n0_bar, b_bar, phi in product(n0_bars, b_bars, phases):
         names = (_named("n0_bar", n0_bar), _named("b_bar", b_bar), _phase(phi))
-        cases.append(Case(hysteresis_loop(n0_bar, b_bar, phi), names))
+        cases.append(Case(hysteresis_loop(n0_bar, b_bar, phi), (n0_bar, b_bar, phi), names))
     return cases
 
 
-def of_contact(values: dict[str, Sequence[float]], phases: Iterable[float]) -> list[Case]:
-    """Every combination of mu, k_u, k_v, n_0, a, b and phase of one contact."""
-    from fcm.contact import hysteresis_loop
-
+def of_contact(
+    values: dict[str, Sequence[float]], phases: Iterable[float], harmonics: Sequence[Harmonic]
+) -> list[Case]:
+    """Every combination of mu, k_u, k_v, n_0, a, b and phase of one contact; all with the same harmonics."""
     cases = []
     for *numbers, phi in product(*values.values(), phases):
         one = dict(zip(values, numbers, strict=True))
@@ -96,11 +118,36 @@ def of_contact(values: dict[str, Sequence[float]], phases: Iterable[float]) -> l
             raise click.UsageError(
                 f"mu n_0 / (k_u a) = {n0_bar:g} and mu k_v b / (k_u a) = {b_bar:g} have to be finite."
             )
-        names = (*(_named(key, value) for key, value in one.items()), _phase(phi))
-        cases.append(
-            Case(hysteresis_loop(n0_bar, b_bar, phi), names, amplitude=one["a"], force=force, facts=one)
+        names = (
+            *(_named(key, value) for key, value in one.items()),
+            _phase(phi),
+            *(h.name() for h in harmonics),
         )
+        facts = {**one, "harmonics": [h._asdict() for h in harmonics]} if harmonics else one
+        loop = _loop(one, (n0_bar, b_bar, phi), harmonics)
+        cases.append(Case(loop, (n0_bar, b_bar, phi), names, amplitude=one["a"], force=force, facts=facts))
     return cases
+
+
+def _loop(
+    one: dict[str, float], ratios: tuple[float, float, float], harmonics: Sequence[Harmonic]
+) -> Loop | PeriodicLoop:
+    """The loop of a contact, dimensionless: in closed form, if there are no harmonics."""
+    import cmath
+
+    from fcm.contact import hysteresis_loop, periodic_loop
+
+    if not harmonics:
+        return hysteresis_loop(*ratios)
+    a, force = one["a"], one["k_u"] * one["a"]
+    # amplitude sin(h theta + phase) is the real part of -i amplitude exp(i phase) exp(i h theta)
+    motion = {name: [0j] * (1 + max(h.order for h in harmonics)) for name in "uv"}
+    motion["u"][1], motion["v"][1] = -1j, cmath.rect(one["b"] / a, ratios[2] - 0.5 * math.pi)
+    for h in harmonics:
+        motion[h.motion][h.order] = cmath.rect(h.amplitude / a, h.phase - 0.5 * math.pi)
+    return periodic_loop(
+        motion["u"], motion["v"], one["mu"], 1.0, one["k_v"] / one["k_u"], one["n_0"] / force
+    )
 
 
 def of_file(
@@ -143,8 +190,16 @@ def _at_point(point: LoopPoint, unit: str) -> Case:
         "frequency": point.frequency, "solution": point.solution, "solutions": point.solutions,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
     }  # fmt: skip
-    loop = hysteresis_loop(point.n0_bar, point.b_bar, point.phi)
-    return Case(loop, names, (several + stable).strip(", "), point.amplitude, point.force, facts)
+    ratios = point.n0_bar, point.b_bar, point.phi
+    return Case(
+        hysteresis_loop(*ratios),
+        ratios,
+        names,
+        (several + stable).strip(", "),
+        point.amplitude,
+        point.force,
+        facts,
+    )
 
 
 def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:

@@ -39,6 +39,14 @@ class Loop:
         """State letter at each angle theta [rad]."""
         return np.array(list(self.sequence))[self._region(np.asarray(theta, dtype=np.float64))]
 
+    def displacement(self, theta: npt.ArrayLike) -> FloatArray:
+        """u / a [-] at each angle theta [rad]."""
+        return np.sin(np.asarray(theta, dtype=np.float64))
+
+    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
+        """The same as `normal_load`: the friction force is at most that."""
+        return self.normal_load(theta)
+
     def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
         """mu n / (k_u a) [-] at each angle theta [rad], equation (1)."""
         angle = np.asarray(theta, dtype=np.float64)

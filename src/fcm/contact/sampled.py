@@ -8,22 +8,25 @@ import numpy as np
 
 from fcm.contact.limits import FloatArray
 from fcm.contact.loop import Loop
+from fcm.contact.periodic.loop import PeriodicLoop
 
 STEPS = 720  # of a whole cycle
 
 
 @dataclass(frozen=True)
 class Part:
-    """One state of the cycle from its beginning to its end; forces divided by k_u a.
+    """One state of the cycle from its beginning to its end.
+
+    Of a `Loop` displacements are divided by a and forces by k_u a; of a `PeriodicLoop` they have units.
 
     Angles run on from where the state begins, in [0, 2 pi), and may pass 2 pi.
     """
 
     state: str  # E stick, P positive slip, N negative slip, S separation
     theta: FloatArray  # (i,) [rad]
-    displacement: FloatArray  # (i,) u / a [-]
-    force: FloatArray  # (i,) f / (k_u a) [-]
-    limit: FloatArray  # (i,) mu n / (k_u a) [-]
+    displacement: FloatArray  # (i,) u
+    force: FloatArray  # (i,) f
+    limit: FloatArray  # (i,) mu n
 
 
 @dataclass(frozen=True)
@@ -32,11 +35,11 @@ class Transition:
 
     states: str  # both letters, the one that ends first
     theta: float  # in [0, 2 pi] [rad]
-    displacement: float  # u / a [-]
-    force: float  # f / (k_u a) [-]
+    displacement: float
+    force: float
 
 
-def parts(loop: Loop, steps: int = STEPS) -> list[Part]:
+def parts(loop: Loop | PeriodicLoop, steps: int = STEPS) -> list[Part]:
     """The states of a cycle in order, sampled.
 
     >>> from fcm.contact.loop import hysteresis_loop
@@ -52,10 +55,10 @@ def parts(loop: Loop, steps: int = STEPS) -> list[Part]:
     ]
 
 
-def _part(loop: Loop, state: str, begin: float, length: float, steps: int) -> Part:
+def _part(loop: Loop | PeriodicLoop, state: str, begin: float, length: float, steps: int) -> Part:
     count = max(int(np.ceil(steps * length / (2.0 * np.pi))), 1)
     theta = begin + np.linspace(0.0, length, count + 1)
-    return Part(state, theta, np.sin(theta), loop.force(theta), loop.normal_load(theta))
+    return Part(state, theta, loop.displacement(theta), loop.force(theta), loop.slip_limit(theta))
 
 
 def shown_degrees(theta: float, from_greatest: bool = False) -> float:
@@ -68,12 +71,12 @@ def shown_degrees(theta: float, from_greatest: bool = False) -> float:
     return degrees % 360.0
 
 
-def transitions(loop: Loop) -> list[Transition]:
+def transitions(loop: Loop | PeriodicLoop) -> list[Transition]:
     """Every transition of a cycle, in the order of the sequence; none where there is one state only."""
-    force = loop.force(loop.angles)
+    displacement, force = loop.displacement(loop.angles), loop.force(loop.angles)
     return [
         Transition(
-            loop.sequence[i - 1] + loop.sequence[i], float(theta), float(np.sin(theta)), float(force[i])
+            loop.sequence[i - 1] + loop.sequence[i], float(theta), float(displacement[i]), float(force[i])
         )
         for i, theta in enumerate(loop.angles)
     ]

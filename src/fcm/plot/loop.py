@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.contact.loop import Loop
+from fcm.contact.periodic.loop import PeriodicLoop
 from fcm.contact.sampled import Part, parts, shown_degrees, transitions
 from fcm.plot.loop_marks import name_marks
 from fcm.plot.read import FloatArray
@@ -39,7 +40,7 @@ _NARROWEST = 11.0  # [degree] a state shorter than this has no letter
 class DrawnLoop:
     """A loop with its title; displacement and force of its axes are multiples of these."""
 
-    loop: Loop
+    loop: Loop | PeriodicLoop
     title: str
     amplitude: float = 1.0  # a
     force: float = 1.0  # k_u a
@@ -194,8 +195,8 @@ def _limit(above: Axes, below: Axes, loops: Sequence[DrawnLoop]) -> None:
 
 def _extent(drawn: DrawnLoop) -> tuple[float, float, float]:
     """Greatest displacement, least and greatest force."""
-    force = np.concatenate([drawn.points(part)[1] for part in parts(drawn.loop)])
-    return drawn.amplitude, float(force.min()), float(force.max())
+    u, f = np.concatenate([drawn.points(part) for part in parts(drawn.loop)], axis=1)
+    return float(np.abs(u).max()), float(f.min()), float(f.max())
 
 
 def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None:

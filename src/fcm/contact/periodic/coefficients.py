@@ -127,7 +127,10 @@ def periodic_gradients(
     """
     motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
     count, contact = motion.unknowns.shape[0], motion.contact
-    forces, jacobian = np.empty((count, contact.equations)), np.empty((count, contact.equations, contact.unknowns))
+    forces, jacobian = (
+        np.empty((count, contact.equations)),
+        np.empty((count, contact.equations, contact.unknowns)),
+    )
     for i in range(count):
         contact.at(motion.unknowns[i], *motion.parameters[i])
         forces[i], jacobian[i] = contact.forces, contact.jacobian
@@ -156,7 +159,9 @@ class _Motion(NamedTuple):
     parameters: FloatArray  # (point, 5): mu, k_u, k_v, n_0, start
 
     @classmethod
-    def of(cls, u: npt.ArrayLike, v: npt.ArrayLike, harmonics: int | None, **numbers: npt.ArrayLike) -> _Motion:
+    def of(
+        cls, u: npt.ArrayLike, v: npt.ArrayLike, harmonics: int | None, **numbers: npt.ArrayLike
+    ) -> _Motion:
         u, v = np.atleast_1d(np.asarray(u, np.complex128)), np.atleast_1d(np.asarray(v, np.complex128))
         if min(u.shape[-1], v.shape[-1]) < 1:
             raise ValueError("u and v have at least one coefficient, their mean")
@@ -177,7 +182,9 @@ class _Motion(NamedTuple):
         outputs = count - 1 if harmonics is None else harmonics
         contact = PeriodicContact(list(range(1, count)), list(range(1, outputs + 1)))
         unknowns = np.concatenate((x[:, 0:3:2], x[:, 4:]), axis=1)
-        return cls(contact, shape, np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1)))
+        return cls(
+            contact, shape, np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1))
+        )
 
 
 def _complex(forces: FloatArray) -> tuple[ComplexArray, ComplexArray]:

@@ -109,7 +109,9 @@ class Crossings:
         d: cython.double = self.motion.at[row + 1, left]
         if self.sign == 0:
             self.note(begin, g, d)
-        if row == LOAD and self.proved(self.motion.step, g, d, self.motion.at[row, right], self.motion.at[row + 1, right]):
+        if row == LOAD and self.proved(
+            self.motion.step, g, d, self.motion.at[row, right], self.motion.at[row + 1, right]
+        ):
             self.open[left] = g < -self.noise and self.motion.at[row, right] < -self.noise
         depth: cython.int = 0
         self.stack[0, 0] = begin + self.motion.step
@@ -224,9 +226,7 @@ class Crossings:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _cubic(
-    g_0: cython.double, d_0: cython.double, g_1: cython.double, d_1: cython.double
-) -> cython.double:
+def _cubic(g_0: cython.double, d_0: cython.double, g_1: cython.double, d_1: cython.double) -> cython.double:
     """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
     c_2: cython.double = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
     c_3: cython.double = d_0 + d_1 - 2.0 * (g_1 - g_0)

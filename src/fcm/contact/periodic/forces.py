@@ -228,7 +228,10 @@ class PeriodicContact:
                 c, s = factor * self.integrals.cos_sum[which, d], factor * self.integrals.sin_sum[which, d]
             else:
                 c, s = factor * self.integrals.cos_sum[which, -d], -factor * self.integrals.sin_sum[which, -d]
-            cos_p, sin_p = factor * self.integrals.cos_sum[which, p], factor * self.integrals.sin_sum[which, p]
+            cos_p, sin_p = (
+                factor * self.integrals.cos_sum[which, p],
+                factor * self.integrals.sin_sum[which, p],
+            )
             self.jacobian[row, column] = c + cos_p
             self.jacobian[row, column + 1] = s - sin_p
             if rows > 1:
@@ -296,8 +299,16 @@ class PeriodicContact:
         for i in range(self.outputs):
             h = self.output[i]
             row = 2 + 4 * i
-            re = (self.integrals.power_sin[1, h] - self.integrals.power_sin[0, h]) * self.integrals.reciprocal[h] / PI
-            im = (self.integrals.power_cos[1, h] - self.integrals.power_cos[0, h]) * self.integrals.reciprocal[h] / PI
+            re = (
+                (self.integrals.power_sin[1, h] - self.integrals.power_sin[0, h])
+                * self.integrals.reciprocal[h]
+                / PI
+            )
+            im = (
+                (self.integrals.power_cos[1, h] - self.integrals.power_cos[0, h])
+                * self.integrals.reciprocal[h]
+                / PI
+            )
             for j in range(1, self.unknowns):
                 self.jacobian[row, j] -= re * self.memory[j]
                 self.jacobian[row + 1, j] -= im * self.memory[j]

@@ -82,9 +82,7 @@ class Integrals:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def piece(
-        self, p: cython.int, begin: cython.int, end: cython.int, length: cython.double
-    ) -> cython.void:
+    def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: cython.double) -> cython.void:
         """Add a piece in which the contact is closed to the sums of its sets."""
         m: cython.int
         state: cython.int = self.cycle.state[p]

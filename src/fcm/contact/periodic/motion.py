@@ -34,7 +34,9 @@ UNKNOWN = cython.declare(cython.int, 3)
 
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothing
-FAINT = cython.declare(cython.double, 1e-150)  # motion that is smaller than its mean by that counts as nothing
+FAINT = cython.declare(
+    cython.double, 1e-150
+)  # motion that is smaller than its mean by that counts as nothing
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
 NODES_PER_HARMONIC = cython.declare(cython.int, 4)
