@@ -37,7 +37,7 @@ SWEEP = (
 frequency = [1.1, 1.4]
 max_step = 0.5
 [sweep]
-"contact.shroud.n_0" = { from = 3, to = 9, count = 20 }
+"contact.shroud.n_0" = { from = 3, to = 9, count = 12 }
 """
 )
 ONE = HEAD + "[response]\nfrequency = [0.8, 1.6]\nmax_step = 0.2\n"
