@@ -383,6 +383,53 @@ def test_verbose_shows_where_a_curve_was_lost(program):
     assert "Traceback" not in quiet.err and "in broken" in loud.err and "Traceback" in loud.err
 
 
+AT = ("respond", "sweep.toml", "--method", "exact", "--at", "1.15:1.3:12", "-o", "a.nc")
+VISITED = """
+import fcm.simulate.visit as visit, time
+real = visit.Visitor._go
+def go(self, omega, sweep):
+    with open("visits", "a") as file:
+        file.write(f"{sweep} {omega} {self.scene.parameters}\\n")
+    time.sleep(0.02)
+    real(self, omega, sweep)
+visit.Visitor._go = go
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_of_exact_runs_every_finished_point_is_kept(program, number):
+    """Of two curves at twelve frequencies, interrupted three times; a former result stays what it was."""
+    program.write("sweep.toml", SWEEP.replace("count = 12", "count = 2"))
+    assert program(*AT[:-1], "whole.nc", "--jobs", "1", before=VISITED).returncode == 0
+    visits = program.folder / "visits"
+    every = visits.read_text().splitlines()
+    visits.unlink()
+    (program.folder / "a.nc").write_text("former")
+    size = 0
+    for _ in range(3):
+        run = program.start(*AT, "--resume", "--jobs", "1", before=VISITED)
+        program.until(lambda size=size: program.kept(more_than=size + 6000))
+        end(run, number)
+        assert "Traceback" not in run.err and (program.folder / "a.nc").read_text() == "former"
+        size = (program.folder / "a.nc.unfinished").stat().st_size
+    assert program(*AT, "--resume", "--jobs", "1", before=VISITED).returncode == 0
+    again = visits.read_text().splitlines()
+    assert (
+        set(again) == set(every) and len(again) <= len(every) + 3
+    )  # only those in the middle of which it was
+    assert variables(program.folder / "a.nc") == variables(program.folder / "whole.nc")
+
+
+def test_points_of_workers_are_kept_as_well(program):
+    program.write("sweep.toml", SWEEP.replace("count = 12", "count = 2"))
+    assert program(*AT[:-1], "whole.nc", "--jobs", "1").returncode == 0
+    run = program.start(*AT, "--jobs", "2")
+    program.until(lambda: program.kept(more_than=8000))
+    end(run, signal.SIGKILL)
+    assert program(*AT, "--resume", "--jobs", "2").returncode == 0
+    assert variables(program.folder / "a.nc") == variables(program.folder / "whole.nc")
+
+
 # places to compute
 
 

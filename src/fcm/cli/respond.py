@@ -137,7 +137,8 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
     count = len(scene.each_curve())
     messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
     if at is None and scene.has_range and (points := least_points(scene)) > MANY_POINTS:
-        messages.info(f"at least {points} points: {count} curve{'s' * (count > 1)} in steps of {scene.max_step:g} at most")
+        curves = f"{count} curve{'s' * (count > 1)}"
+        messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
 
 
 def _loaded(

@@ -22,16 +22,22 @@ class CurveSweep:
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 
     def curves(
-        self, compute: Compute, batches: Sequence[Group], mark: bytes, progress: Progress | None
+        self,
+        compute: Compute,
+        batches: Sequence[Group],
+        mark: bytes,
+        progress: Progress | None,
+        states: tuple[type, ...] = (),
     ) -> list[Curve]:
         """The curves of all batches in order; those that could not be had say why.
 
         mark : digest of everything besides the scenes that decides the results.
+        states : what compute saves consists of these.
         """
         kept = Results()
         if self.checkpoint is not None:
             whole = fingerprint(mark, [anonymous(batch) for batch in batches])
-            kept = self.checkpoint.results(whole, KINDS, lambda i, found: fit(batches, i, found))
+            kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
         outcome = sweep(compute, batches, place_for(self.jobs if len(batches) > 1 else 1), kept, progress)
         curves: list[Curve] = []
         for number, batch in enumerate(batches):

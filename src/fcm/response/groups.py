@@ -10,10 +10,9 @@ import numpy as np
 
 from fcm.response.jumps import Jump
 from fcm.response.law import Coefficients
-from fcm.response.path import Progress
 from fcm.response.result import DEFECT, Curve, Orbits
 from fcm.response.trace import trace_group
-from fcm.run import Lost
+from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
@@ -28,9 +27,9 @@ class Work:
     method: str
     table: Coefficients | None
 
-    def __call__(self, group: Group, progress: Progress) -> list[Curve]:
+    def __call__(self, group: Group, report: Report) -> list[Curve]:
         whole = replace(group[0], curves=tuple(group))
-        return trace_group(whole, self.method, self.table, progress).curves
+        return trace_group(whole, self.method, self.table, report).curves
 
 
 def anonymous(scenes: Group) -> list[Scene]:

@@ -9,7 +9,7 @@ from fcm.run.fingerprint import fingerprint
 from fcm.run.places import Elsewhere, Here, Place, Threads
 from fcm.run.processes import Processes
 from fcm.run.sweep import Outcome, place_for, sweep
-from fcm.run.work import Compute, Interrupted, Lost, Progress
+from fcm.run.work import Compute, Interrupted, Lost, Progress, Report
 
 __all__ = [
     "Checkpoint",
@@ -23,6 +23,7 @@ __all__ = [
     "Place",
     "Processes",
     "Progress",
+    "Report",
     "Results",
     "Threads",
     "fingerprint",

@@ -29,6 +29,8 @@ TITLE = b"fcm unfinished 2, process "
 LENGTH = 64  # bytes before the first record
 MOST_ASIDE = 1000
 
+_STATE = -1  # and less are the numbers of records with states of batch 0 and more
+
 Fits = Callable[[int, Any], bool]  # whether results can be those of a batch
 
 
@@ -37,14 +39,18 @@ class CheckpointError(Exception):
 
 
 class Results:
-    """Results of batches that are finished, by their number; kept nowhere."""
+    """Results of batches that are finished, and states of others, by their number; kept nowhere."""
 
     def __init__(self) -> None:
         self.finished: dict[int, list[Any]] = {}
+        self.states: dict[int, list[Any]] = {}  # of an earlier run, in the order in which they were saved
 
     def add(self, number: int, results: list[Any]) -> None:
         """A batch is finished."""
         self.finished[number] = results
+
+    def save(self, number: int, state: Any) -> None:
+        """A batch has come so far."""
 
 
 class Checkpoint:
@@ -86,18 +92,21 @@ class Checkpoint:
         """
         found, others = _Kept(self, mark), 0
         for record in whole(self._file, os.fstat(self._file).st_size, LENGTH):
-            results = unpacked(record.payload, kinds) if record.fingerprint == mark else None
-            if results is not None and fits(record.number, results):
-                found.finished[record.number] = results
-            elif record.fingerprint != mark:
+            if record.fingerprint != mark:
                 others += 1
-        if others and not found.finished and not self.used:
+                continue
+            results = unpacked(record.payload, kinds)
+            if record.number < 0 and results is not None:
+                found.states.setdefault(_STATE - record.number, []).append(results)
+            elif results is not None and fits(record.number, results):
+                found.finished[record.number] = results
+        if others and not (found.finished or found.states) and not self.used:
             self._empty("it is of another scene, other options or another state of fcm")
             self._sign()
         self.used = True
         return found
 
-    def append(self, mark: bytes, number: int, results: list[Any]) -> None:
+    def append(self, mark: bytes, number: int, results: Any) -> None:
         """Keep what is finished; if that fails, say so once and go on."""
         if self.failed:
             return
@@ -165,6 +174,9 @@ class _Kept(Results):
     def add(self, number: int, results: list[Any]) -> None:
         super().add(number, results)
         self.checkpoint.append(self.mark, number, results)
+
+    def save(self, number: int, state: Any) -> None:
+        self.checkpoint.append(self.mark, _STATE - number, state)
 
 
 def unfinished(output: Path) -> Path:

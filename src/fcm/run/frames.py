@@ -6,7 +6,7 @@ import struct
 from typing import BinaryIO
 
 WORK, BATCH, STOP = b"w", b"b", b"s"  # to a worker
-PROGRESS, RESULT = b"p", b"r"  # from it
+PROGRESS, STATE, RESULT = b"p", b"t", b"r"  # from it
 SHARE = struct.Struct("<d")
 _HEAD = struct.Struct("<cq")
 

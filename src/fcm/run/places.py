@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from typing import Protocol
 
-from fcm.run.work import Attempt, Batch, Compute, Progress, attempt
+from fcm.run.work import Attempt, Batch, Compute, Report, attempt
 
 
 class Died(Exception):  # noqa: N818
@@ -19,8 +19,8 @@ class Place(Protocol):
 
     width: int  # batches that are given to it at a time
 
-    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
-        """Begin to compute a batch; progress is called now and then, from whatever thread."""
+    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
+        """Begin to compute a batch; the report is called now and then, from whatever thread."""
 
     def stop(self) -> None:
         """Ask everybody to stop; their futures then have the part that is finished."""
@@ -37,9 +37,9 @@ class Here:
     def __init__(self, compute: Compute) -> None:
         self.compute = compute
 
-    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
+    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
         future: Future[Attempt] = Future()
-        future.set_result(attempt(self.compute, batch, progress))
+        future.set_result(attempt(self.compute, batch, report))
         return future
 
     def stop(self) -> None:
@@ -56,8 +56,8 @@ class Threads:
         self.compute, self.width = compute, count
         self._executor, self._stopped = ThreadPoolExecutor(count), threading.Event()
 
-    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
-        return self._executor.submit(attempt, self.compute, batch, until(self._stopped, progress))
+    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
+        return self._executor.submit(attempt, self.compute, batch, until(self._stopped, report))
 
     def stop(self) -> None:
         self._stopped.set()
@@ -76,8 +76,8 @@ class Elsewhere:
         self.compute, self.executor = compute, executor
         self._futures: list[Future[Attempt]] = []
 
-    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
-        future = self.executor.submit(attempt, self.compute, batch, _nobody)
+    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
+        future = self.executor.submit(attempt, self.compute, batch, Report(_nobody, report.saved))
         self._futures.append(future)
         return future
 
@@ -89,15 +89,15 @@ class Elsewhere:
         self.stop()
 
 
-def until(stopped: threading.Event, progress: Progress) -> Progress:
-    """The progress of work that is interrupted once the event is set."""
+def until(stopped: threading.Event, report: Report) -> Report:
+    """The report of work that is interrupted once the event is set."""
 
     def show(fraction: float, text: str) -> None:
         if stopped.is_set():
             raise KeyboardInterrupt
-        progress(fraction, text)
+        report(fraction, text)
 
-    return show
+    return Report(show, report.saved, report.save)
 
 
 def _nobody(_fraction: float, _text: str) -> None:

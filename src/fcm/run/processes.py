@@ -17,9 +17,9 @@ from contextlib import suppress
 from typing import BinaryIO, cast
 
 from fcm import signals
-from fcm.run.frames import BATCH, PROGRESS, SHARE, STOP, WORK, receive, send
+from fcm.run.frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.places import Died
-from fcm.run.work import Attempt, Batch, Compute, Progress
+from fcm.run.work import Attempt, Batch, Compute, Report
 from fcm.threads import one_each
 
 
@@ -34,8 +34,8 @@ class Processes:
         self._lock, self._closed = threading.Lock(), False
         self._threads = ThreadPoolExecutor(count, initializer=_take_no_signal)
 
-    def submit(self, batch: Batch, progress: Progress) -> Future[Attempt]:
-        return self._threads.submit(self._compute, batch, progress)
+    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
+        return self._threads.submit(self._compute, batch, report)
 
     def stop(self) -> None:
         with self._lock:
@@ -53,11 +53,11 @@ class Processes:
             for worker in workers:
                 worker.release()
 
-    def _compute(self, batch: Batch, progress: Progress) -> Attempt:
+    def _compute(self, batch: Batch, report: Report) -> Attempt:
         """In a thread of this process: have one batch computed by a worker."""
         worker = self._taken()
         try:
-            done = worker.compute(batch, progress)
+            done = worker.compute(batch, report)
         finally:
             with self._lock:
                 self._busy.discard(worker)
@@ -95,15 +95,18 @@ class _Worker:
         with self._sending, suppress(OSError, ValueError):  # that it is gone is seen when it is listened to
             send(cast("BinaryIO", self.process.stdin), kind, data)
 
-    def compute(self, batch: Batch, progress: Progress) -> Attempt | None:
+    def compute(self, batch: Batch, report: Report) -> Attempt | None:
         """The results of a batch; None if the process has ended."""
-        self.send(BATCH, pickle.dumps(batch, protocol=5))
+        self.send(BATCH, pickle.dumps((batch, report.saved), protocol=5))
         while (frame := receive(cast("BinaryIO", self.process.stdout))) is not None:
             kind, data = frame
-            if kind != PROGRESS:
+            if kind == PROGRESS:
+                report(SHARE.unpack(data)[0], "")
+            elif kind == STATE:
+                report.save(pickle.loads(data))
+            else:
                 done: Attempt = pickle.loads(data)
                 return done
-            progress(SHARE.unpack(data)[0], "")
         return None
 
     def end(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,7 +12,7 @@ from fcm.run.checkpoint import Results
 from fcm.run.places import Died, Factory, Here, Place, Threads
 from fcm.run.processes import Processes
 from fcm.run.progress import Bar
-from fcm.run.work import Attempt, Batch, Compute, Lost, Progress
+from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
 
 POLL = 0.1  # [s] between two looks at the progress of others
 GRACE = 0.8  # [s] in which those who are asked to stop may hand over what they have
@@ -52,9 +52,9 @@ def sweep(
     Parameters
     ----------
     compute
-        Computes a batch: one result for each item. It calls its progress now and then, from which an
-        interruption is raised; it may answer with `Interrupted` and a part of its results. For processes it
-        and its results are pickled.
+        Computes a batch: one result for each item. It calls its report now and then, from which an
+        interruption is raised; it may answer with `Interrupted` and a part of its results, and save what it
+        can go on from. For processes all of these are pickled.
     batches
         Their results do not depend on where and in which order they are computed.
     at
@@ -84,6 +84,7 @@ class _Sweep:
         self.outcome = Outcome(dict(kept.finished))
         self.bar = Bar([len(batch) for batch in batches], kept.finished, progress)
         self.waiting: dict[Future[Attempt], int] = {}
+        self.states: deque[tuple[int, Any]] = deque()  # not kept yet
 
     def run(self) -> Outcome:
         left = [number for number in range(len(self.batches)) if number not in self.outcome.results]
@@ -124,11 +125,24 @@ class _Sweep:
         while todo or self.waiting:
             while todo and len(self.waiting) < place.width:
                 number = todo.popleft()
-                self.waiting[place.submit(self.batches[number], self.bar.of(number, draw))] = number
+                saved, save = self.kept.states.get(number, ()), self._saver(number, draw)
+                report = Report(self.bar.of(number, draw), saved, save)
+                self.waiting[place.submit(self.batches[number], report)] = number
             done, _ = wait(self.waiting, POLL, FIRST_COMPLETED)
+            self._keep_states()
             for future in done:
                 yield self.waiting.pop(future), _result(future)
             self.bar.draw()
+
+    def _saver(self, number: int, at_once: bool) -> Callable[[Any], None]:
+        """What keeps a state of a batch; other threads leave it to this one."""
+        if at_once:
+            return lambda state: self.kept.save(number, state)
+        return lambda state: self.states.append((number, state))
+
+    def _keep_states(self) -> None:
+        while self.states:
+            self.kept.save(*self.states.popleft())
 
     def _finish(self, number: int, results: list[Any]) -> None:
         self.outcome.results[number] = results
@@ -140,6 +154,7 @@ class _Sweep:
         """Ask everybody for what they have; whoever has no answer at once has none."""
         place.stop()
         done, _ = wait(self.waiting, GRACE)
+        self._keep_states()
         for future in done:
             number, found = self.waiting[future], _result(future)
             if found is not None and not found.interrupted:

@@ -9,7 +9,31 @@ from typing import Any
 
 Progress = Callable[[float, str], None]  # finished fraction and a text
 Batch = Sequence[Any]
-Compute = Callable[[Batch, Progress], list[Any]]  # one result for each item of a batch
+
+
+class Report:
+    """What a computation says while it runs: how far it is, and from what it could go on.
+
+    ``saved`` are the states that the same computation has saved before it was interrupted, in order: it goes
+    on from them, to the same result, or leaves them be.
+    """
+
+    def __init__(
+        self, show: Progress, saved: Sequence[Any] = (), save: Callable[[Any], None] | None = None
+    ) -> None:
+        self.show, self.saved, self._save = show, saved, save
+
+    def __call__(self, fraction: float, text: str) -> None:
+        """So much is finished; an interruption is raised from here."""
+        self.show(fraction, text)
+
+    def save(self, state: Any) -> None:
+        """Keep a state, in addition to those before."""
+        if self._save is not None:
+            self._save(state)
+
+
+Compute = Callable[[Batch, Report], list[Any]]  # one result for each item of a batch
 
 
 class Interrupted(KeyboardInterrupt):
@@ -36,10 +60,10 @@ class Attempt:
     interrupted: bool = False  # the results are then a part, or none
 
 
-def attempt(compute: Compute, batch: Batch, progress: Progress) -> Attempt:
+def attempt(compute: Compute, batch: Batch, report: Report) -> Attempt:
     """Compute a batch; if that fails each of its items alone, and those that fail then are lost."""
     try:
-        return Attempt(compute(batch, progress))
+        return Attempt(compute(batch, report))
     except Interrupted as stopped:
         return Attempt(stopped.results, interrupted=True)
     except KeyboardInterrupt:
@@ -49,7 +73,7 @@ def attempt(compute: Compute, batch: Batch, progress: Progress) -> Attempt:
             return Attempt([_lost(error)])
     alone: list[Any] = []
     for item in batch:
-        one = attempt(compute, (item,), progress)
+        one = attempt(compute, (item,), Report(report.show))
         if one.interrupted:
             return Attempt([], interrupted=True)
         alone += one.results

@@ -14,9 +14,9 @@ import time
 from queue import SimpleQueue
 from typing import BinaryIO
 
-from fcm.run.frames import BATCH, PROGRESS, RESULT, SHARE, STOP, WORK, receive, send
+from fcm.run.frames import BATCH, PROGRESS, RESULT, SHARE, STATE, STOP, WORK, receive, send
 from fcm.run.places import until
-from fcm.run.work import Lost, attempt
+from fcm.run.work import Lost, Report, attempt
 
 SELDOM = 0.1  # [s] between two words of progress
 
@@ -33,9 +33,14 @@ def main() -> None:
         compute = pickle.loads(work)
     except Exception as error:
         compute = _Unknown(f"what is to be computed is not known in a process of its own: {error}")
-    progress = until(stopped, _Said(results))
+    show = _Said(results)
+
+    def save(state: object) -> None:
+        _sent(results, STATE, pickle.dumps(state, protocol=5))
+
     while True:
-        done = attempt(compute, pickle.loads(tasks.get()), progress)
+        batch, saved = pickle.loads(tasks.get())
+        done = attempt(compute, batch, until(stopped, Report(show, saved, save)))
         _sent(results, RESULT, pickle.dumps(done, protocol=5))
 
 

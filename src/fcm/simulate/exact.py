@@ -16,12 +16,12 @@ from fcm.response.groups import Group
 from fcm.response.path import Progress
 from fcm.response.result import INTERRUPTED, Curve, Response
 from fcm.response.trace import ResponseError
-from fcm.run import Checkpoint, Interrupted, fingerprint
+from fcm.run import Checkpoint, Interrupted, Report, fingerprint
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
 from fcm.simulate.explore import Explorer
 from fcm.simulate.orbit_curve import traced_curve, visited_curve
-from fcm.simulate.visit import Visitor
+from fcm.simulate.visit import STATES, Visitor
 from fcm.units import UNIT
 
 METHOD = "exact"
@@ -71,7 +71,7 @@ def trace_exact(
     with checkpoint_of(keep, resume) as checkpoint:
         sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint)
         mark = fingerprint(METHOD, frequencies)
-        curves = sweep.curves(ExactWork(frequencies), [(one,) for one in scenes], mark, progress)
+        curves = sweep.curves(ExactWork(frequencies), [(one,) for one in scenes], mark, progress, STATES)
         contacts = tuple(contact.name for contact in scenes[0].contacts)
         response = Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
@@ -101,12 +101,12 @@ class ExactWork:
 
     at: tuple[float, ...] | None  # [rad/s]
 
-    def __call__(self, group: Group, progress: Progress) -> list[Curve]:
-        return [self._curve(scene, progress) for scene in group]
+    def __call__(self, group: Group, report: Report) -> list[Curve]:
+        return [self._curve(scene, report) for scene in group]
 
-    def _curve(self, scene: Scene, progress: Progress) -> Curve:
+    def _curve(self, scene: Scene, report: Report) -> Curve:
         begin = time.perf_counter()
-        curve = _traced(scene, progress) if self.at is None else _visited(scene, self.at, progress)
+        curve = _traced(scene, report) if self.at is None else _visited(scene, self.at, report)
         curve = replace(curve, seconds=time.perf_counter() - begin)
         if curve.reason.startswith(STOPPED):
             raise Interrupted([curve])
@@ -125,10 +125,10 @@ def _traced(scene: Scene, progress: Progress | None) -> Curve:
     return curve
 
 
-def _visited(scene: Scene, at: tuple[float, ...], progress: Progress | None) -> Curve:
+def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:
     visitor, reason = Visitor(replace(scene, frequency_range=(0.0, at[-1]))), ""
     try:
-        visitor.run(at, progress)
+        visitor.run(at, report)
     except KeyboardInterrupt:
         reason = STOPPED + (shown(scene, visitor.points[-1].frequency) if visitor.points else "the start")
     except SimulationError as error:

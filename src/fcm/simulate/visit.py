@@ -8,19 +8,24 @@ steady again: so it jumps where a slow sweep of the structure itself does, and t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
 from fcm.motion.errors import CycleError, SimulationError
+from fcm.motion.measure import Measure
 from fcm.motion.run import cycles_from
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.periodic import Orbit, shoot
 from fcm.orbit.subharmonic import repeating
 from fcm.response.jumps import Jump
+from fcm.run import Report
 from fcm.scene.model import Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
-from fcm.simulate.branch import Progress, first_point, shown
+from fcm.simulate.branch import first_point, shown
 from fcm.simulate.explore import solution_at
 from fcm.simulate.sample import Sample, repeated, sampled
 
@@ -33,6 +38,22 @@ BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simula
 SETTLED = 0.1  # distance of a simulated state from the periodic solution to which it belongs
 MOST_NAMED = 5
 JUMP = 0.01  # relative change of an amplitude that is one
+
+
+@dataclass(frozen=True)
+class Visit:
+    """What there was at one frequency, and what the next one goes on from."""
+
+    number: int  # in the order of the sweeps, from 0
+    sample: Sample | None  # the motion, if it was steady
+    state: State
+    went_on: bool  # whether the sample is a periodic solution that is continued
+    jumps: tuple[Jump, ...]  # on the way to it
+    restless: tuple[str, ...]  # all until then
+    refused: tuple[tuple[str, str], ...]
+
+
+STATES = (Visit, Sample, State, Measure)  # what is saved consists of these
 
 
 class Visitor:
@@ -49,16 +70,43 @@ class Visitor:
         self._state = State.rest(scene)  # the motion, where there is none
         self._sample: Sample | None = None  # what is steady now
 
-    def run(self, frequencies: Sequence[float], progress: Progress | None = None) -> None:
-        """Visit increasing frequencies [rad/s] upwards, then downwards."""
+    def run(self, frequencies: Sequence[float], report: Report | None = None) -> None:
+        """Visit increasing frequencies [rad/s] upwards, then downwards; every visit is saved."""
         ways = (("up", omega) for omega in frequencies), (("down", omega) for omega in reversed(frequencies))
-        for count, (sweep, omega) in enumerate(pair for way in ways for pair in way):
+        visits = [pair for way in ways for pair in way]
+        report = report or Report(lambda _fraction, _text: None)
+        done = self._go_on(report.saved, visits)
+        for number, (sweep, omega) in enumerate(visits[done:], done):
+            jumps = len(self.jumps)
             self._go(omega, sweep)
-            if self._sample is not None:
-                self.points.append(self._sample)
-                self.sweep.append(sweep)
-            if progress is not None:
-                progress((count + 1) / (2 * len(frequencies)), f"{sweep}, {shown(self.scene, omega)}")
+            self._note(sweep)
+            known = tuple(self.restless), tuple(self.refused.items())
+            went_on = self._here is not None
+            new = tuple(self.jumps[jumps:])
+            report.save(Visit(number, self._sample, self._state, went_on, new, *known))
+            report((number + 1) / len(visits), f"{sweep}, {shown(self.scene, omega)}")
+
+    def _note(self, sweep: str) -> None:
+        """The motion at a frequency that was visited, if it is steady."""
+        if self._sample is not None:
+            self.points.append(self._sample)
+            self.sweep.append(sweep)
+
+    def _go_on(self, saved: Sequence[Any], visits: Sequence[tuple[str, float]]) -> int:
+        """Be where an interrupted run was; the number of visits that it has made."""
+        by_number = {visit.number: visit for visit in saved if isinstance(visit, Visit)}
+        made = [by_number[number] for number in takewhile(by_number.__contains__, range(len(visits)))]
+        for visit, (sweep, _) in zip(made, visits, strict=False):
+            self._sample, self._state = visit.sample, visit.state
+            self.jumps += visit.jumps
+            self.restless, self.refused = dict.fromkeys(visit.restless), dict(visit.refused)
+            self._note(sweep)
+        if made and made[-1].went_on and self._sample is not None:
+            here = self._sample
+            shot = self.equations.shot(here.z)
+            assert shot is not None  # for there was one, by the same numbers
+            self._here = Point(here.z, here.scale, here.tangent, here.orientation, shot)
+        return len(made)
 
     @property
     def reason(self) -> str:
