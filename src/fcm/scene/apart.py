@@ -26,6 +26,7 @@ from fcm.scene.mat_tags import check_tags
 SPARE = 500_000_000  # bytes of memory for a reader itself
 COPIES = 3  # of the arrays, while they are read, converted and written
 REFUSED = 3  # exit code of the child when it says why
+NAMES = ".names"  # under which the names of all variables of a .mat file are given
 SHORTEST_ENTRY = 2  # bytes of a number in a MatrixMarket file, with the space behind it
 
 _CODE = "import sys; from fcm.scene.apart import child; child(sys.argv[1:])"
@@ -84,9 +85,10 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
             wanted = [name for name, _, kind in whosmat(path) if kind in numbers or "int" in kind]
             check_tags(content, wanted, largest)
         found = loadmat(path, variable_names=list(wanted))
+        names = np.array([name for name, *_ in whosmat(path)], dtype=str)
     except NotImplementedError:
         raise DataFileError(f"{quoted(path.name)} is of MATLAB's version 7.3; save it with -v7") from None
-    return {name: found[name] for name in wanted if name in found}
+    return {name: found[name] for name in wanted if name in found} | {NAMES: names}
 
 
 def _mtx(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:

@@ -33,6 +33,12 @@ def read_npz(path: Path, wanted: Collection[str] | None, files: Files) -> Arrays
         return found
 
 
+def names_in_npz(path: Path) -> list[str]:
+    """The names of all arrays of an archive."""
+    with zipfile.ZipFile(path) as archive:
+        return [name.removesuffix(".npy") for name in archive.namelist()]
+
+
 def _array(stream: IO[bytes], size: int) -> npt.NDArray[Any]:
     """An array whose header agrees with the number of bytes that there are."""
     version = np.lib.format.read_magic(stream)

@@ -37,7 +37,7 @@ class Files:
             raise
         except Exception as error:  # whatever a damaged file does to its reader, the file is at fault
             reason = str(error).partition("\n")[0] or type(error).__name__
-            raise DataFileError(f"{_shown(path)} cannot be read: {reason[:200]}") from None
+            raise DataFileError(f"{_shown(path)} cannot be read: {reason[:500]}") from None
 
     def check_size(self, path: Path, size: int) -> None:
         """Refuse a file that is too large when it is unpacked."""

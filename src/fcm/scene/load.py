@@ -140,6 +140,7 @@ def _parts(
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
     else:
         parts, notes = without_rounding(parts, ends, unit)
+        notes = [*modal["notes"], *notes]
     if top.mistakes.count:
         return parts, (), []
     asked = response is not None and "output" in response.data

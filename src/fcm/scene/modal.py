@@ -9,20 +9,20 @@ import numpy as np
 
 from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
-from fcm.scene.modal_file import read_modal_file
+from fcm.scene.modal_file import note_of_scale, read_modal_file
 from fcm.scene.model import FloatArray, Modal
 from fcm.scene.names import Names, checked_names
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
 
-KEYS = ("dofs", "mass", "frequency", "damping", "shapes")
+KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation")
 UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
 
 
 def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
     """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
     section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
-    section = _with_file(section, files, unit) if section else None
+    section, notes = _with_file(section, files, unit) if section else (None, [])
     if section is None:
         return dict.fromkeys(KEYS)
     section.only(*KEYS, "file")
@@ -37,6 +37,8 @@ def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
         "frequency": frequency,
         "damping": _per_mode(section, "damping", modes),
         "shapes": _shapes(section, dofs, modes),
+        "participation": _participation(section, modes),
+        "notes": notes,
     }
 
 
@@ -49,23 +51,26 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     return Modal(dofs=tuple(draft["dofs"]), added=draft.get("added", 0), **arrays)
 
 
-def _with_file(section: Section, files: Files, unit: str) -> Section | None:
+def _with_file(section: Section, files: Files, unit: str) -> tuple[Section | None, list[str]]:
     """The section with what its file holds; a key given inline takes precedence."""
     if "file" not in section.data:
-        return section
+        return section, []
     name = section.text("file")
     if not name:
         if section.data["file"] == "":
             section.wrong("file", "is empty; name a file of modes")
-        return None
+        return None, []
     try:
         found = read_modal_file(name, files)
     except DataFileError as error:
         section.wrong("file", str(error))
-        return None
+        return None, []
+    notes = found.pop("notes")
     if "angular_frequency" in found:
         found["frequency"] = found.pop("angular_frequency") / UNITS[unit]
-    return Section({**found, **section.data}, section.path, section.mistakes)
+    if "mass" not in found and "mass" not in section.data and "shapes" in found:
+        notes += note_of_scale(name, found["shapes"])
+    return Section({**found, **section.data}, section.path, section.mistakes), notes
 
 
 def _dofs(section: Section) -> Names | None:
@@ -86,6 +91,13 @@ def _per_mode(
     if vector is not None and modes is not None:
         _same_count(section, key, vector, modes)
     return vector
+
+
+def _participation(section: Section, modes: int | None) -> FloatArray | None:
+    """Phi^T M d of each mode for the direction d in which the base moves, if it is given."""
+    if "participation" not in section.data:
+        return None
+    return _per_mode(section, "participation", modes)
 
 
 def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None) -> FloatArray | None:

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from fcm.scene.apart import read_apart
-from fcm.scene.archive import read_npz
+from fcm.scene.apart import NAMES, read_apart
+from fcm.scene.archive import names_in_npz, read_npz
 from fcm.scene.errors import kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.uff import read_uff
 
-ARRAYS = ("mass", "frequency", "damping", "shapes")
-KEYS = ("dofs", *ARRAYS)
+KEYS = {  # of a file, and names that other programs give the same
+    "dofs": ("dof", "dof_names"),
+    "mass": ("modal_mass", "modal_masses", "masses", "generalized_mass", "generalised_mass"),
+    "frequency": ("frequencies", "freq", "natural_frequency", "natural_frequencies"),
+    "angular_frequency": ("omega", "angular_frequencies"),
+    "damping": ("zeta", "damping_ratio", "damping_ratios", "modal_damping"),
+    "shapes": ("phi", "modes", "mode_shapes", "shape"),
+    "participation": (),
+}
+WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
+LARGEST_VALUE = 1e-6  # relative: how near to 1 the largest value of a shape is that was scaled to it
 
 
 def read_modal_file(name: str, files: Files) -> dict[str, Any]:
-    """What a file of modes holds of dofs, mass, frequency, damping and shapes.
+    """What a file of modes holds of dofs, mass, frequency, damping and shapes, and "notes" on it.
 
     A universal file is always in Hz: it has angular_frequency [rad/s] in place of frequency.
     """
@@ -26,12 +36,51 @@ def read_modal_file(name: str, files: Files) -> dict[str, Any]:
         raise DataFileError(f"{quoted(name)} cannot be read: a file of modes is .npz, .mat, .uff, .unv")
     with files.opened(name) as path:
         if ending == ".npz":
-            found: dict[str, Any] = read_npz(path, KEYS, files)
+            found: dict[str, Any] = dict(read_npz(path, WANTED, files))
+            others = names_in_npz(path)
         elif ending == ".mat":
-            found = {key: _without_matrix(key, value) for key, value in read_apart(path, KEYS, files).items()}
+            found = dict(read_apart(path, WANTED, files))
+            others = found.pop(NAMES, np.array([])).tolist()
         else:
-            found = read_uff(path)
-        return {key: _plain(key, value) for key, value in found.items()}
+            found, others = read_uff(path), []
+        notes = found.pop("notes", [])
+        found = _by_keys(found, others, name, notes)
+        if ending == ".mat":
+            found = {key: _without_matrix(key, value) for key, value in found.items()}
+        return {key: _plain(key, value) for key, value in found.items()} | {"notes": notes}
+
+
+def note_of_scale(name: str, shapes: Any) -> list[str]:
+    """What is to be said of shapes without modal masses: whether they can be mass-normalised.
+
+    >>> note_of_scale("m.uff", np.array([[0.9, 0.5]]))
+    ['modal: m.uff gives no modal masses: the shapes are taken as mass-normalised']
+    """
+    text = f"modal: {name} gives no modal masses: the shapes are taken as mass-normalised"
+    several = np.ndim(shapes) == 2 and min(np.shape(shapes)) > 1
+    if several and (np.abs(np.abs(shapes).max(axis=1) - 1.0) < LARGEST_VALUE).all():
+        return [f"{text}, but all are scaled to a largest value of 1, so they are not; give modal.mass"]
+    return [text] if name.lower().endswith((".uff", ".unv")) else []
+
+
+def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: list[str]) -> dict[str, Any]:
+    """The arrays by the keys of a scene, those under another name too, which is said."""
+    arrays = {}
+    for key, aliases in KEYS.items():
+        names = [one for one in (key, *aliases) if one in found]
+        if len(names) > 1:
+            raise DataFileError(f"{quoted(name)} has {quoted(names[0])} and {quoted(names[1])}; keep one")
+        if names:
+            arrays[key] = found[names[0]]
+        if names and names[0] != key:
+            notes.append(f"modal: {quoted(names[0])} of {name} is taken as {key}")
+    unknown = [one for one in others if "mass" in one.casefold() and one not in WANTED]
+    if unknown:
+        may_be = f"{quoted(name)} has {quoted(unknown[0])}, which may be the modal mass"
+        raise DataFileError(f"{may_be}: name it mass, or leave it out")
+    if "frequency" in arrays and "angular_frequency" in arrays:
+        raise DataFileError(f"{quoted(name)} has frequency and angular_frequency; keep one")
+    return arrays
 
 
 def _without_matrix(key: str, array: Any) -> Any:

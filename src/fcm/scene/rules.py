@@ -83,6 +83,7 @@ RULES = {
     "frequency": NOT_NEGATIVE,
     "damping": NOT_NEGATIVE,
     "shapes": ANY,
+    "participation": ANY,
     "tangential": ANY,
     "normal": ANY,
     "mu": NOT_NEGATIVE,

@@ -1,23 +1,44 @@
-"""Normal modes from a universal file (.uff, .unv): its datasets 55, "data at nodes".
+"""Normal modes from a universal file (.uff, .unv): its datasets 55 and 2414, data at nodes.
 
-Each dataset holds one mode: five lines of text, definition (6I10), integers (8I10), reals (6E13.5: frequency
-[Hz], modal mass, viscous and hysteretic damping), then for each node its number (I10) and values (6E13.5).
-Source: SDRC I-DEAS Test Data Universal File Format, dataset 55, as published by the University of Cincinnati.
+Each dataset holds one mode: lines of text, the definition (6I10), integers, reals, then for each node its
+number and values. Where they stand is all that the two differ in.
+Source: SDRC I-DEAS Test Data Universal File Format, datasets 55 and 2414, as published by the University of
+Cincinnati.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import ceil, pi
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from fcm.scene.uff_contents import contents, units
+
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
-NORMAL_MODE, REAL = 2, 2
+NORMAL_MODE, AT_NODES = 2, 1
+MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each is a mode's shape
+REAL, COMPLEX = (2, 4), (5, 6)  # data types: of single and of double precision
 PER_LINE = 6  # reals on a line
+COLLINEAR = 1e-4  # of a shape: what may be left when it is turned to be real
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+
+
+class _Layout(NamedTuple):
+    """Lines of a dataset, counted from 0."""
+
+    definition: int
+    reals: int | None  # where they begin; None after as many lines as the integers take
+    nodes: int  # where the nodes begin, if the reals have their place
+    frequency: int  # among the reals; then modal mass, viscous and hysteretic damping at these places
+    rest: tuple[int, int, int]
+
+
+_LAYOUTS = {"55": _Layout(5, None, 0, 0, (1, 2, 3)), "2414": _Layout(8, 11, 13, 1, (3, 4, 5))}
 
 
 @dataclass(frozen=True)
@@ -25,7 +46,7 @@ class _Mode:
     hertz: float
     mass: float
     damping: float
-    values: dict[str, float]  # at each degree of freedom
+    values: dict[str, complex]  # at each degree of freedom
 
 
 def read_uff(path: Path) -> dict[str, Any]:
@@ -33,78 +54,113 @@ def read_uff(path: Path) -> dict[str, Any]:
 
     A modal mass or a damping that is zero in every mode was not given, and is left out.
     """
-    blocks = [block for block in _datasets(path) if _is_normal_mode(block)]
+    datasets = list(_datasets(path))
+    blocks = [(kind, block) for kind, block in datasets if _is_normal_mode(kind, block)]
     if not blocks:
-        raise ValueError("it has no normal mode (dataset 55, analysis type 2, real)")
-    modes = [_intact(block, number) for number, block in enumerate(blocks, 1)]
+        raise ValueError(f"it has no normal mode; {contents(datasets)}")
+    modes = [_intact(kind, block, number) for number, (kind, block) in enumerate(blocks, 1)]
     dofs = list(dict.fromkeys(dof for mode in modes for dof in mode.values))
     found: dict[str, Any] = {
         "dofs": dofs,
         "angular_frequency": 2 * pi * np.array([mode.hertz for mode in modes]),
-        "shapes": np.array([[mode.values.get(dof, 0.0) for dof in dofs] for mode in modes]),
+        "shapes": np.array([_real(mode, dofs, number) for number, mode in enumerate(modes, 1)]),
+        "notes": units(datasets),
     }
     given = {"mass": [mode.mass for mode in modes], "damping": [mode.damping for mode in modes]}
     return found | {key: np.array(values) for key, values in given.items() if any(values)}
 
 
-def _datasets(path: Path) -> Iterator[list[str]]:
-    """The lines of each dataset 55, between its marks -1, without its number."""
+def _datasets(path: Path) -> Iterator[tuple[str, list[str]]]:
+    """The number and the lines of each dataset, between its marks -1."""
     block: list[str] | None = None
     for line in path.read_text("latin-1").split("\n"):
         if line.strip() != "-1":
             if block is not None:
                 block.append(line.rstrip("\r"))
             continue
-        if block is not None and block[:1] and block[0].strip() == "55":
-            yield block[1:]
+        if block:
+            yield block[0].strip(), block[1:]
         block = [] if block is None else None
 
 
-def _is_normal_mode(block: Sequence[str]) -> bool:
-    definition = _integers(block[5]) if len(block) > 7 else []
-    return len(definition) == 6 and definition[1] == NORMAL_MODE and definition[4] == REAL
+def _is_normal_mode(kind: str, block: Sequence[str]) -> bool:
+    """Whether a dataset is a normal mode: real, or complex by its numbers only."""
+    layout = _LAYOUTS.get(kind)
+    if layout is None or len(block) <= layout.definition + 2:
+        return False
+    if kind == "2414" and _integers(block[2])[:1] != [AT_NODES]:
+        return False
+    definition = _integers(block[layout.definition])
+    if len(definition) != 6:
+        return False
+    _, analysis, _, result, data, _ = definition
+    return analysis == NORMAL_MODE and result in MOTIONS and data in REAL + COMPLEX
 
 
-def _intact(block: Sequence[str], number: int) -> _Mode:
+def _intact(kind: str, block: Sequence[str], number: int) -> _Mode:
     try:
-        return _mode(block)
+        return _mode(_LAYOUTS[kind], block)
     except (IndexError, ValueError) as error:
         raise ValueError(f"its normal mode {number} is damaged: {error}") from None
 
 
-def _mode(block: Sequence[str]) -> _Mode:
-    per_node = _integers(block[5])[5]
+def _mode(layout: _Layout, block: Sequence[str]) -> _Mode:
+    *_, data, per_node = _integers(block[layout.definition])
     if per_node not in DIRECTIONS:
         raise ValueError(f"it has {per_node} values at a node; those read are 1, 3 and 6")
-    counts = _integers(block[6])
-    start = 7 + ceil(counts[1] / PER_LINE)
-    reals = _reals(block[7:start])
-    hertz, mass, viscous, hysteretic = (*reals, 0.0, 0.0, 0.0)[:4]
-    return _Mode(hertz, mass, viscous + hysteretic / 2, _values(block[start:], per_node))
+    if layout.reals is None:
+        at = layout.definition + 1
+        begin, nodes = at + 1, at + 1 + ceil(_integers(block[at])[1] / PER_LINE)
+    else:
+        begin, nodes = layout.reals, layout.nodes
+    reals = [*_reals(block[begin:nodes]), *[0.0] * PER_LINE]
+    mass, viscous, hysteretic = (reals[place] for place in layout.rest)
+    values = _values(block[nodes:], per_node, data in COMPLEX)
+    return _Mode(reals[layout.frequency], mass, viscous + hysteretic / 2, values)
 
 
-def _values(lines: Sequence[str], per_node: int) -> dict[str, float]:
+def _values(lines: Sequence[str], per_node: int, pairs: bool) -> dict[str, complex]:
     """The mode's value at each degree of freedom."""
-    values: dict[str, float] = {}
-    size = 1 + ceil(per_node / PER_LINE)
+    values: dict[str, complex] = {}
+    count = per_node * (2 if pairs else 1)
     filled = [line for line in lines if line.strip()]
-    for start in range(0, len(filled), size):
+    start = 0
+    while start < len(filled):
         node = _integers(filled[start])[0]
-        numbers = _reals(filled[start + 1 : start + size])
+        numbers: list[float] = []
+        start += 1
+        while len(numbers) < count and start < len(filled):
+            numbers += _reals(filled[start : start + 1])
+            start += 1
+        parts = (
+            zip(numbers[::2], numbers[1::2], strict=True) if pairs else ((value, 0.0) for value in numbers)
+        )
         names = (f"{node}{direction}" for direction in DIRECTIONS[per_node])
-        values |= zip(names, numbers, strict=True)
+        values |= zip(names, (complex(*part) for part in parts), strict=True)
     return values
 
 
+def _real(mode: _Mode, dofs: list[str], number: int) -> list[float]:
+    """The shape as real numbers; a complex one of which all values have one phase is turned to be real."""
+    shape = np.array([mode.values.get(dof, 0.0) for dof in dofs])
+    if shape.imag.any():
+        turned = shape * np.exp(-0.5j * np.angle((shape * shape).sum()))
+        if np.linalg.norm(turned.imag) > COLLINEAR * np.linalg.norm(turned):
+            raise ValueError(f"its normal mode {number} is complex; a real one is needed")
+        shape = turned
+    return shape.real.tolist()  # type: ignore[no-any-return]
+
+
 def _integers(line: str) -> list[int]:
-    return [int(field) for field in _fields(line, 10)]
+    fields = (line[start : start + 10].strip() for start in range(0, len(line), 10))
+    return [int(field) for field in fields if field]
 
 
 def _reals(lines: Sequence[str]) -> list[float]:
-    """Numbers of 13 columns; a FORTRAN exponent may be a D."""
-    return [float(field.upper().replace("D", "E")) for line in lines for field in _fields(line, 13)]
-
-
-def _fields(line: str, width: int) -> list[str]:
-    fields = (line[start : start + width].strip() for start in range(0, len(line), width))
-    return [field for field in fields if field]
+    """Numbers beside each other, with or without space between; a FORTRAN exponent may be a D."""
+    found = []
+    for line in lines:
+        if _NUMBER.sub("", line).strip():
+            raise ValueError(f"{line.strip()[:40]!r} is no line of numbers")
+        found += [float(text.upper().replace("D", "E")) for text in _NUMBER.findall(line)]
+    return found

@@ -1,0 +1,193 @@
+"""Universal files as programs write them; those from pyuff's test data (ladisk/pyuff, MIT) are named so."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+from fcm.scene import SceneError, scene_from_dict
+
+# From pyuff's test data: uff55_translation.uff, its first two modes.
+TRANSLATION = """\
+    -1
+    55
+NONE
+NONE
+NONE
+NONE
+NONE
+         1         2         2         8         2         3
+         2         4         1         1
+  1.00000e+01  0.00000e+00  0.00000e+00  0.00000e+00
+         1
+ -1.46518e+00 -1.46518e+00 -1.46518e+00
+         2
+  1.50162e-01  1.50162e-01  1.50162e-01
+    -1
+    -1
+    55
+NONE
+NONE
+NONE
+NONE
+NONE
+         1         2         2         8         2         3
+         2         4         1         2
+  1.20000e+01  0.00000e+00  0.00000e+00  0.00000e+00
+         1
+  1.82904e+00  1.82904e+00  1.82904e+00
+         2
+ -3.98226e-02 -3.98226e-02 -3.98226e-02
+    -1
+"""
+
+# The head of a mode of pyuff's NX_simulation_output.uff (Simcenter), with values of our own.
+NX = """\
+    -1
+   164
+         5mm (milli-newton)            2
+  1.00000000000000000D+03  1.00000000000000000D+03  1.00000000000000000D+00
+  2.73149999999999977D+02
+    -1
+    -1
+  2414
+         1
+Mode shape record 1
+         1
+NONE
+NONE
+NONE
+NONE
+NONE
+         1         2         2         8         5         3
+         0         0         1         0         0         1         0         0
+         0         0
+  0.00000E+00  2.33832E+04  0.00000E+00  {mass}  2.00000E-02  1.00000E-02
+  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+      3992
+  {values}
+    -1
+"""
+
+# The head of a mode of pyuff's 2411_and_2414.uff (PERMAS), with values of our own.
+PERMAS = """\
+    -1
+  2414
+         1
+STEP_1
+         1
+Project:    tulay_01
+Component:  DFLT_COMP       Situation:  STEP_1
+12-Jul-21   09:16:13        Coordinate System:  component
+Result File written by Permas Version 18.00.405     on Linux-x86_64-3.1
+Mode shapes                             Column 1
+         1         2         3         8         2         6
+         0         0         1         0         0         1         0         0
+         0         0
+  0.00000E+00  9.56363E-01  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00
+         1
+ -4.37263E-18 -8.53725E-18 -7.08571E-01 -4.18149E-02  1.00000E+00 -0.00000E+00
+         2
+ -1.53426E-01-8.00098E-02 -6.58571E-01 -4.26430E-02  9.99891E-01 -0.00000E+00
+    -1
+"""
+
+
+def read(folder, text, dof, **modal):
+    (folder / "m.uff").write_text(text)
+    data = {"modal": {"file": "m.uff", "damping": 0.01} | modal, "frequency_unit": "Hz"}
+    response = {"response": {"frequency": [0.5, 1.5]}}
+    return scene_from_dict(data | {"force": [{"dof": dof, "amplitude": 1.0}]} | response, "test.toml", folder)
+
+
+def refused(folder, text):
+    with pytest.raises(SceneError) as caught:
+        read(folder, text, "1x")
+    return str(caught.value)
+
+
+def nx(values, mass="1.50000E+00"):
+    return NX.format(mass=mass, values=values)
+
+
+def test_dataset_55_without_modal_masses(tmp_path):
+    scene = read(tmp_path, TRANSLATION, "1x")
+    assert scene.modal.dofs == ("1x", "1y", "1z", "2x", "2y", "2z")
+    assert scene.modal.frequency == pytest.approx([20 * pi, 24 * pi])
+    assert scene.modal.shapes[:, 3].tolist() == [0.150162, -0.0398226]
+    assert scene.notes == ("modal: m.uff gives no modal masses: the shapes are taken as mass-normalised",)
+    assert read(tmp_path, TRANSLATION, "1x", mass=[1.0, 1.0]).notes == ()
+
+
+def test_dataset_2414_of_simcenter(tmp_path):
+    """Complex by its numbers, real by its values; with modal mass, damping and units."""
+    values = "1.00000E+00  0.00000E+00 -2.50000E-01  0.00000E+00  3.00000E+00  0.00000E+00"
+    scene = read(tmp_path, nx(values), "3992x", damping=0.025)
+    assert scene.modal.dofs == ("3992x", "3992y", "3992z")
+    assert scene.modal.frequency == pytest.approx([2 * pi * 23383.2])
+    assert scene.modal.mass.tolist() == [1.5] and scene.modal.shapes.tolist() == [[1, -0.25, 3]]
+    assert any('the units of the file are "mm (milli-newton)"' in note for note in scene.notes)
+
+
+def test_a_shape_of_one_phase_is_turned_to_be_real(tmp_path):
+    values = "6.00000E-01  8.00000E-01 -1.20000E+00 -1.60000E+00  3.00000E-01  4.00000E-01"
+    shape = read(tmp_path, nx(values), "3992x").modal.shapes[0]
+    assert np.abs(shape) == pytest.approx([1.0, 2.0, 0.5]) and shape[0] * shape[1] < 0 < shape[0] * shape[2]
+
+
+def test_a_shape_of_several_phases_is_refused(tmp_path):
+    values = "1.00000E+00  0.00000E+00  0.00000E+00  1.00000E+00  3.00000E+00  0.00000E+00"
+    assert "its normal mode 1 is complex; a real one is needed" in refused(tmp_path, nx(values))
+
+
+def test_dataset_2414_of_permas(tmp_path):
+    """Six values a node, numbers without a space between them, no modal mass."""
+    scene = read(tmp_path, PERMAS, "2x")
+    assert len(scene.modal.dofs) == 12 and scene.modal.dofs[:2] == ("1x", "1y")
+    assert scene.modal.shapes[0, scene.modal.dofs.index("2y")] == -0.0800098
+    assert any("gives no modal masses" in note for note in scene.notes)
+
+
+def test_damping_viscous_and_half_of_the_hysteretic(tmp_path):
+    text = nx("1.0 0.0 0.0 0.0 0.0 0.0")
+    (tmp_path / "m.uff").write_text(text)
+    data = {"modal": {"file": "m.uff"}, "force": [{"dof": "3992x", "amplitude": 1.0}]}
+    scene = scene_from_dict(data | {"response": {"frequency": [0.5, 1.5]}}, "test.toml", tmp_path)
+    assert scene.modal.damping == pytest.approx([0.025])
+
+
+def block(number, *lines):
+    return "\n".join(["    -1", f"{number:>6}", *lines, "    -1", ""])
+
+
+def changed(text, old, new):
+    """A text with integers in columns of ten changed."""
+    columns = ["".join(f"{word:>10}" for word in words.split()).lstrip() for words in (old, new)]
+    assert columns[0] in text
+    return text.replace(*columns)
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("", "it has no normal mode; it holds no dataset at all"),
+        (
+            block("58", *["NONE"] * 5, "    4         0    0         0 NONE", "1 2") * 4,
+            "it has no normal mode; it holds 58 ×4: frequency response functions",
+        ),
+        (block("58b", *["NONE"] * 5, "    1         0", "1 2"), "58b ×1: time responses"),
+        (block("151", "x") + block("82", "x") * 3, "it holds 151 ×1: header; 82 ×3: trace lines"),
+        (block("999", "x"), "999 ×1: of another kind"),
+        (changed(TRANSLATION, "1 2 2 8", "1 3 2 8"), "55 ×2: complex modes"),
+        (changed(PERMAS, "3 8 2 6", "3 2 2 6"), "normal modes, stress"),
+        (PERMAS.replace("STEP_1\n         1\n", "STEP_1\n         2\n"), "displacement, not at nodes"),
+        (changed(PERMAS, "1 2 3 8", "1 1 1 5"), "2414 ×1: static, temperature"),
+        (TRANSLATION.replace("1.82904e+00", "1.82x04e+00", 1), "its normal mode 2 is damaged"),
+        (changed(PERMAS, "8 2 6", "8 2 7"), "it has 7 values at a node"),
+    ],
+)  # fmt: skip
+def test_files_without_modes_say_what_they_hold(tmp_path, text, words):
+    assert words in refused(tmp_path, text)
