@@ -65,3 +65,10 @@ def _try(path: Path) -> None:
     probe = partial_of(target)
     os.close(os.open(probe, os.O_CREAT | os.O_WRONLY))
     probe.unlink()
+
+
+largest_file_option = click.option(
+    "--largest-file", type=click.FloatRange(min=0.0, min_open=True), default=1000.0, show_default=True,
+    metavar="MB", help="Largest file of modes or matrices that is read, unpacked.",
+    callback=lambda _ctx, _param, megabytes: round(megabytes * 1e6),
+)  # fmt: skip

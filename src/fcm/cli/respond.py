@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import exact, schedule
-from fcm.cli.files import check_different, output_option
+from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
@@ -64,10 +64,7 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     metavar="X", help="Greatest relative change of the response by what is left out.",
 )  # fmt: skip
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
-@click.option(
-    "--largest-file", type=click.FloatRange(min=0.0, min_open=True), default=1000.0, show_default=True,
-    metavar="MB", help="Largest file of modes or matrices that is read, unpacked.",
-)  # fmt: skip
+@largest_file_option
 @click.option(
     "--compare",
     is_flag=True,
@@ -89,7 +86,7 @@ def respond(
     resume: bool,
     tolerance: float,
     keep_all: bool,
-    largest_file: float,
+    largest_file: int,
     compare: bool,
 ) -> None:
     """Trace the response curves of SCENE, a TOML file or the name of a bundled scene.
@@ -142,11 +139,11 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
 
 
 def _loaded(
-    messages: Messages, scene: str, max_step: float | None, history_csv: Path | None, largest_file: float
+    messages: Messages, scene: str, max_step: float | None, history_csv: Path | None, largest_file: int
 ) -> Scene:
     from fcm.scene import load_scene
 
-    loaded = load_scene(scene, largest_file=round(largest_file * 1e6)).in_use()
+    loaded = load_scene(scene, largest_file=largest_file).in_use()
     for note in loaded.notes:
         messages.info(note)
     schedule.check_options(loaded, history_csv)

@@ -111,5 +111,8 @@ def _galerkin(system: System, basis: FloatArray) -> Modes:
     basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
     mass, turn = scipy.linalg.eigh(basis.T @ (system.M @ basis))
     heavy = mass > INDEPENDENT * mass.max(initial=0.0)
-    shapes = basis @ turn[:, heavy] / np.sqrt(mass[heavy])
+    # in descending order of mass: in ascending order of frequency
+    shapes = (basis @ turn[:, heavy] / np.sqrt(mass[heavy]))[
+        :, ::-1
+    ]
     return Modes(np.einsum("ij,ij->j", shapes, system.K @ shapes), shapes)

@@ -1,0 +1,67 @@
+"""``fcm plot modes SCENE``: the modes of a scene and what moves them, before anything is solved."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import click
+
+from fcm.cli.files import largest_file_option
+from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.report import aligned, number
+
+_MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line
+
+
+@click.command()
+@click.argument("scene", metavar="SCENE")
+@click.option("--json", "to_json", is_flag=True, help="Print JSON instead of a table.")
+@largest_file_option
+@pass_messages
+def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> None:
+    """List the modes of SCENE: frequency, damping, mass, and participation at contacts and forces.
+
+    The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
+    stand for the flexibility of those left out are marked "flexibility".
+    """
+    from fcm.scene import load_scene
+    from fcm.scene.listing import listing
+
+    found = listing(load_scene(scene, largest_file=largest_file))
+    click.echo(json.dumps(found, indent=2, allow_nan=False) if to_json else as_table(found))
+    if not to_json:
+        messages.info(f"shapes: {found['normalisation']}")
+        for note in found["notes"]:
+            messages.info(note)
+    for warning in found["warnings"]:
+        messages.warning(warning)
+
+
+def as_table(found: dict[str, Any]) -> str:
+    """One line for each mode."""
+    directions = list(found["modes"][0]["participation"])[:_MOST_DIRECTIONS]
+    header = ["mode", f"at {found['frequency_unit']}", "damping", "mass", *map(_short, directions), ""]
+    rows = [header]
+    for mode in found["modes"]:
+        shares = (mode["participation"][name] for name in directions)
+        rows.append(
+            [
+                str(mode["mode"]),
+                number(mode["frequency"]),
+                f"{mode['damping']:.4g}",
+                f"{mode['mass']:.4g}",
+                *("-" if share is None else f"{100 * share:.2f} %" for share in shares),
+                "" if mode["kind"] == "mode" else mode["kind"],
+            ]
+        )
+    return aligned(rows, left=1)
+
+
+def _short(direction: str) -> str:
+    """A key path without what says itself.
+
+    >>> _short("contact.shroud.tangential"), _short("force.71x")
+    ('shroud.tangential', 'force.71x')
+    """
+    return direction.removeprefix("contact.")

@@ -1,0 +1,111 @@
+"""What a scene's structure is before anything is solved: its modes, what moves them, and what is amiss."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.model import FloatArray, Force, Scene
+
+ROUNDING = 1e-12  # relative: a displacement this small is none
+SPARSE_ABOVE = 2.0  # times the range's end: modes ought to reach there, or their flexibility be kept
+UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}
+
+
+def listing(scene: Scene) -> dict[str, Any]:
+    """Modes with frequency, damping, mass and participation; how they are normalised; notes and warnings.
+
+    The participation of a mode in a direction (of a contact or a force) is its share of the static
+    flexibility along it, phi^2 / (m omega^2) by the sum over all modes; None where rigid-body modes make
+    that infinite. `displacement` is phi / sqrt(m), the motion of the mode of mass 1.
+    """
+    modal, directions = scene.modal, _directions(scene)
+    motion = {name: modal.shapes @ direction / np.sqrt(modal.mass) for name, direction in directions.items()}
+    shares = {name: _shares(modal.frequency, along) for name, along in motion.items()}
+    own = modal.frequency.size - modal.added
+    modes = [
+        {
+            "mode": i + 1,
+            "kind": "flexibility" if i >= own else "mode" if modal.frequency[i] else "rigid body",
+            "frequency": float(modal.frequency[i] / UNIT[scene.frequency_unit]),
+            "damping": float(modal.damping[i]),
+            "mass": float(modal.mass[i]),
+            "participation": {name: None if share is None else share[i] for name, share in shares.items()},
+            "displacement": {name: float(along[i]) for name, along in motion.items()},
+        }
+        for i in range(modal.frequency.size)
+    ]
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "frequency_unit": scene.frequency_unit,
+        "modes": modes,
+        "normalisation": _normalisation(scene),
+        "notes": list(scene.notes),
+        "warnings": _warnings(scene, directions, motion),
+    }
+
+
+def _directions(scene: Scene) -> dict[str, FloatArray]:
+    """Directions of contacts and forces by their key paths."""
+    found = {}
+    for contact in scene.contacts:
+        found[f"contact.{contact.name}.tangential"] = contact.tangential
+        found[f"contact.{contact.name}.normal"] = contact.normal
+    for number, force in enumerate(scene.forces):
+        found[f"force.{_name(scene, force) or number}"] = force.direction
+    return found
+
+
+def _name(scene: Scene, force: Force) -> str:
+    """The degree of freedom of a force on one, if no other force is on it."""
+    at = np.flatnonzero(force.direction)
+    alone = sum(np.array_equal(force.direction, one.direction) for one in scene.forces) == 1
+    return scene.modal.dofs[at[0]] if at.size == 1 and alone else ""
+
+
+def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
+    """Share of each mode in the static flexibility of a direction."""
+    if (frequency == 0.0)[np.abs(along) > ROUNDING * np.abs(along).max(initial=0.0)].any():
+        return None
+    flexibility = np.divide(along, frequency, out=np.zeros_like(along), where=frequency > 0.0) ** 2
+    total = float(flexibility.sum())
+    return [float(one) / total if total else 0.0 for one in flexibility]
+
+
+def _normalisation(scene: Scene) -> str:
+    mass = scene.modal.mass
+    if (mass == 1.0).all():
+        return "mass-normalised: every modal mass is 1"
+    largest = np.abs(scene.modal.shapes).max(axis=1)
+    scale = "largest value 1; " if np.allclose(largest, 1.0, rtol=1e-6, atol=0.0) else ""
+    return f"{scale}modal masses from {mass.min():.6g} to {mass.max():.6g}"
+
+
+def _warnings(scene: Scene, directions: dict[str, FloatArray], motion: dict[str, FloatArray]) -> list[str]:
+    said = []
+    for name, direction in directions.items():
+        size = (np.abs(scene.modal.shapes) @ np.abs(direction)) / np.sqrt(scene.modal.mass)
+        if (np.abs(motion[name]) <= ROUNDING * size).all():
+            said.append(f"{name}: no mode moves along it")
+    if scene.has_range:
+        said += _of_range(scene)
+    return said
+
+
+def _of_range(scene: Scene) -> list[str]:
+    """Warnings that concern the range of frequencies."""
+    said, modal, unit = [], scene.modal, scene.frequency_unit
+    low, high = scene.frequency_range
+    inside = (modal.frequency > low) & (modal.frequency < high)
+    if not inside.any():
+        said.append("no mode without contacts is within the range")
+    undamped = np.flatnonzero(inside & (modal.damping == 0.0)) + 1
+    if undamped.size:
+        said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
+    highest = modal.frequency.max()
+    if not modal.added and highest < SPARSE_ABOVE * high and modal.frequency.size > 1 and scene.contacts:
+        where = f"{highest / UNIT[unit]:.6g} {unit}"
+        said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
+    return said

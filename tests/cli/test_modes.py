@@ -1,0 +1,94 @@
+"""``fcm plot modes``: the modes of a scene, listed before anything is solved."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from fcm.cli import main
+
+SCENE = """
+frequency_unit = "Hz"
+[modal]
+dofs = ["u", "v", "w"]
+mass = [2.0, 3.0, 1.0]
+frequency = [1.0, 4.0, 5.0]
+damping = [0.01, 0.0, 0.02]
+shapes = [[1.0, 0.5, 0.0], [0.2, 1.0, 0.0], [0.0, 1.0, 0.0]]
+[[contact]]
+name = "shroud"
+tangential = "u"
+normal = "w"
+mu = 0.3
+k_u = 1
+k_v = 1
+n_0 = 1
+[[force]]
+dof = "v"
+amplitude = 1
+[response]
+frequency = [2, 4.5]
+"""
+
+
+@pytest.fixture
+def listed(tmp_path):
+    def run(text, *options):
+        (tmp_path / "scene.toml").write_text(text)
+        return CliRunner().invoke(main, ["plot", "modes", str(tmp_path / "scene.toml"), *options])
+
+    return run
+
+
+def test_participation_is_the_share_of_the_static_flexibility(listed):
+    found = json.loads(listed(SCENE, "--json").stdout)
+    flexibility = np.array([0.25 / (2.0 * 1.0), 1.0 / (3.0 * 16.0), 1.0 / 25.0])  # along v, of each mode
+    shares = [mode["participation"]["force.v"] for mode in found["modes"]]
+    assert shares == pytest.approx(flexibility / flexibility.sum())
+    assert [mode["frequency"] for mode in found["modes"]] == pytest.approx([1.0, 4.0, 5.0])
+    assert [mode["displacement"]["contact.shroud.tangential"] for mode in found["modes"]] == pytest.approx(
+        [1 / np.sqrt(2), 0.2 / np.sqrt(3), 0.0]
+    )
+    assert found["normalisation"] == "largest value 1; modal masses from 1 to 3"
+
+
+def test_what_is_amiss_is_said_before_anything_is_solved(listed):
+    warnings = json.loads(listed(SCENE, "--json").stdout)["warnings"]
+    assert "contact.shroud.normal: no mode moves along it" in warnings
+    assert "within the range, without damping: mode 2" in warnings
+    assert any("the highest mode is at 5" in warning for warning in warnings)
+
+
+def test_a_line_for_each_mode(listed):
+    result = listed(SCENE.replace("frequency = [1.0,", "frequency = [0.0,"))
+    header, *lines = result.stdout.splitlines()
+    assert header.split()[:4] == ["mode", "at", "Hz", "damping"] and len(lines) == 3
+    assert lines[0].endswith("rigid body") and lines[0].split()[4] == "-"
+    assert "warning: contact.shroud.normal: no mode moves along it" in result.stderr
+
+
+def test_modes_that_stand_for_flexibility_are_marked(listed):
+    modal = SCENE[SCENE.index("[modal]") : SCENE.index("[[contact]]")]
+    spring = np.diag([2.0] * 40) - np.eye(40, k=1) - np.eye(40, k=-1)
+    structure = f"""
+[structure]
+dofs = {json.dumps([f"{i}x" for i in range(37)] + ["u", "v", "w"])}
+stiffness = {(1e4 * spring).tolist()}
+mass = {[1.0] * 40}
+damping = 0.01
+modes = 3
+"""
+    found = json.loads(listed(SCENE.replace(modal, structure), "--json").stdout)
+    kinds = [mode["kind"] for mode in found["modes"]]
+    assert kinds[:3] == ["mode"] * 3 and set(kinds[3:]) == {"flexibility"}
+    for name in ("contact.shroud.tangential", "contact.shroud.normal", "force.v"):
+        assert sum(mode["participation"][name] for mode in found["modes"]) == pytest.approx(1.0)
+    assert found["notes"][0].startswith("structure: 3 modes of 40 degrees of freedom are kept")
+
+
+def test_a_scene_with_mistakes_is_refused(listed):
+    result = listed(SCENE.replace('dof = "v"', 'dof = "x"'))
+    assert result.exit_code == 2 and 'unknown degree of freedom "x"' in result.stderr
