@@ -9,10 +9,10 @@ from cython.cimports.libc.math import fabs
 from fcm.scene.model import FloatArray
 
 if cython.compiled:
-    from cython.cimports.fcm.motion.flow import summed
+    from cython.cimports.fcm.motion.series import summed
     from cython.cimports.fcm.motion.steps import Steps
 else:
-    from fcm.motion.flow import summed
+    from fcm.motion.series import summed
     from fcm.motion.steps import Steps
 
 NODES = 8  # integrate exactly polynomials of degree 15

@@ -7,13 +7,14 @@ times +-k_u and n are, S while -n is.
 
 from __future__ import annotations
 
+from math import factorial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.flow import BLOCK, LEADING, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
+from fcm.motion.pool import BLOCK, LEADING, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
@@ -40,21 +41,22 @@ def made(system: System, states: Codes) -> Flow:
     """The flow of a combination, with steps that resolve the frequency of the system as well."""
     matrix = _matrix(system, states)
     step = _step(system, matrix)
-    terms = _series(matrix * step)
+    change = matrix.T * step
     rows, owner, goal = _exits(system, states)
-    powers = [terms[::-1].sum(axis=0)]
+    powers = [_exponential(change)]
     for _ in range(POWERS - 1):
         powers.append(powers[-1] @ powers[-1])
-    looks = rows @ terms[[0, 1, 4]] * np.array([1.0, 1.0, 24.0])[:, None, None]  # (3, exit, linear)
-    table = [looks.reshape(3 * len(owner), matrix.shape[0])]
+    leading = [rows.T]
+    for j in range(1, LEADING):
+        leading.append(change @ leading[-1] / j)
+    table = [np.hstack((leading[0], leading[1], 24.0 * leading[4]))]
     for _ in range(BLOCK):
-        table.append(table[-1] @ powers[0])
+        table.append(powers[0] @ table[-1])
     return Flow(
-        states.copy(), step, rows, owner, goal,
-        np.array(powers).transpose(0, 2, 1),
-        np.abs(rows @ terms[:LEADING]),
-        np.abs(terms[:3]).sum(axis=0).T,
-        np.concatenate(table).T,
+        states.copy(), step, rows, owner, goal, np.array(powers),
+        np.abs(leading).transpose(0, 2, 1),
+        np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
+        np.hstack(table),
     )  # fmt: skip
 
 
@@ -100,13 +102,16 @@ def _step(system: System, a: FloatArray) -> float:
     return float(1.0 / (rate * 2.0 ** max(np.ceil(np.log2(system.omega / rate)), 0.0)))
 
 
-def _series(a: FloatArray) -> FloatArray:
-    """a**j / j! for j = 0 ... ORDER."""
-    terms = np.empty((ORDER + 1, *a.shape))
-    terms[0] = np.eye(a.shape[0])
-    for j in range(1, ORDER + 1):
-        terms[j] = terms[j - 1] @ a / j
-    return terms
+def _exponential(a: FloatArray) -> FloatArray:
+    """The sum of a**j / j! for j = 0 ... ORDER, in blocks of four powers (Paterson and Stockmeyer)."""
+    powers = [np.eye(a.shape[0]), a, a @ a]
+    powers.append(powers[2] @ a)
+    fourth, total = powers[2] @ powers[2], np.zeros_like(a)
+    for first in range(ORDER - 3, -1, -4):
+        total = total @ fourth
+        for i in (3, 2, 1, 0):
+            total += powers[i] / factorial(first + i)
+    return total
 
 
 def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:

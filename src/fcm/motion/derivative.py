@@ -16,21 +16,23 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.motion.flow import ORDER
+from fcm.motion.pool import ORDER
 
 if cython.compiled:
-    from cython.cimports.fcm.motion.flow import Flows, summed
+    from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.segments import Segments
+    from cython.cimports.fcm.motion.series import summed
 else:
-    from fcm.motion.flow import Flows, summed
+    from fcm.motion.flow import Flows
     from fcm.motion.segments import Segments
+    from fcm.motion.series import summed
 
 GRAZING = cython.declare(
     cython.double, 1e-12
 )  # an exit passed this slowly, relative to its terms, is touched
 DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
 _ORDER = cython.declare(cython.int, 19)
-_POWERS = cython.declare(cython.int, 8)
+_POWERS = cython.declare(cython.int, 6)
 _OPEN = cython.declare(cython.int, 0)
 _POSITIVE = cython.declare(cython.int, 2)
 _NEGATIVE = cython.declare(cython.int, 3)

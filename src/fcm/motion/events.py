@@ -15,7 +15,7 @@ from cython.cimports.libc.math import fabs, ldexp
 
 from fcm.scene.model import FloatArray
 
-N = 19  # degree, ORDER of fcm.motion.flow
+N = 19  # degree, ORDER of fcm.motion.pool
 DEEPEST = 50  # halvings
 _N = cython.declare(cython.int, 19)
 _DEEPEST = cython.declare(cython.int, 50)

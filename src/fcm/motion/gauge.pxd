@@ -2,7 +2,9 @@ from fcm.motion.steps cimport Steps
 
 cdef class Gauge:
     cdef readonly Steps steps
-    cdef readonly double[:, ::1] row
+    cdef double[::1] _entry
+    cdef Py_ssize_t[::1] _column, _first
+    cdef bint _integrals
     cdef readonly double[::1] mean, sine, cosine, greatest, least
     cdef readonly double[:, ::1] place
     cdef double[::1] _powers, _real, _imag, _weights, _nodes
@@ -14,6 +16,7 @@ cdef class Gauge:
     cdef void _extremes(self, Py_ssize_t r) noexcept nogil
     cdef double _dot(self, Py_ssize_t r, double[:, ::1] y, Py_ssize_t k) noexcept nogil
     cdef void _turn(self, Py_ssize_t r, double low, double high) noexcept nogil
-    cdef void _note(self, Py_ssize_t r, double x) noexcept nogil
+    cdef void _reach_end(self) noexcept nogil
+    cdef void _note(self, Py_ssize_t r, double x, double value) noexcept nogil
     cdef double _root(self, int order, double low, double high) noexcept nogil
     cdef double _value(self, int order, double x) noexcept nogil

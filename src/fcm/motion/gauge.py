@@ -11,7 +11,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
-from fcm.motion.flow import ORDER
+from fcm.motion.pool import ORDER
 from fcm.scene.model import FloatArray
 
 if cython.compiled:
@@ -35,10 +35,12 @@ class Gauge:
     (row, 4) where they are: segment and position of the greatest, and of the least.
     """
 
-    def __init__(self, steps: Steps, rows: FloatArray) -> None:
-        self.steps = steps
-        self.row = np.ascontiguousarray(rows, dtype=np.float64)
-        count, m = self.row.shape[0], steps.flows.modes
+    def __init__(self, steps: Steps, rows: FloatArray, integrals: bool = True) -> None:
+        self.steps, self._integrals = steps, integrals
+        count, m = rows.shape[0], steps.flows.modes
+        places = np.nonzero(rows)
+        self._entry, self._column = rows[places], places[1].copy()
+        self._first = np.searchsorted(places[0], np.arange(count + 1))
         self.mean, self.sine, self.cosine = np.zeros(m), np.zeros(m), np.zeros(m)
         self.greatest, self.least = np.full(count, -np.inf), np.full(count, np.inf)
         self.place, self._powers = np.zeros((count, 4)), np.zeros(ORDER + 1)
@@ -63,8 +65,10 @@ class Gauge:
             stopped = self.steps.next()
             if stopped != 1:
                 return stopped
-            self._integrate()
-            for r in range(self.row.shape[0]):
+            if self._integrals:
+                self._integrate()
+            self._reach_end()
+            for r in range(self.greatest.shape[0]):
                 self._extremes(r)
 
     @cython.cfunc
@@ -128,44 +132,64 @@ class Gauge:
         """Of row r with row k of y."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        for i in range(self.steps.flows.linear):
-            total += self.row[r, i] * y[k, i]
+        for i in range(self._first[r], self._first[r + 1]):
+            total += self._entry[i] * y[k, self._column[i]]
         return total
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _extremes(self, r: cython.Py_ssize_t) -> cython.void:
+    def _reach_end(self) -> cython.void:
+        """The state vector at the end of the step, and its first two derivatives by the position."""
+        i: cython.Py_ssize_t
         j: cython.int
-        length: cython.double = self.steps.length
+        x: cython.double = self.steps.length
+        terms: cython.double[:, ::1] = self.steps.terms
+        for i in range(self.steps.flows.linear):
+            self._ends[0, i] = self._ends[1, i] = self._ends[2, i] = 0.0
+        for j in range(_ORDER, -1, -1):
+            for i in range(self.steps.flows.linear):
+                self._ends[2, i] = self._ends[2, i] * x + 2.0 * self._ends[1, i]
+                self._ends[1, i] = self._ends[1, i] * x + self._ends[0, i]
+                self._ends[0, i] = self._ends[0, i] * x + terms[j, i]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _extremes(self, r: cython.Py_ssize_t) -> cython.void:
+        first: cython.double = self._dot(r, self.steps.terms, 1)
+        last: cython.double = self._dot(r, self._ends, 1)
+        bend: cython.double = self._dot(r, self.steps.terms, 2)
+        j: cython.int
+        turn: cython.double
+        self._note(r, 0.0, self._dot(r, self.steps.terms, 0))
+        self._note(r, self.steps.length, self._dot(r, self._ends, 0))
+        turns: cython.bint = first * last < 0.0
+        if not turns and (bend * first >= 0.0 or bend * self._dot(r, self._ends, 2) >= 0.0):
+            return  # nor does the velocity dip through zero
         for j in range(_ORDER + 1):
             self._powers[j] = self._dot(r, self.steps.terms, j)
-        self._note(r, 0.0)
-        self._note(r, length)
-        first: cython.double = self._powers[1]
-        last: cython.double = self._value(1, length)
-        bend: cython.double = 2.0 * self._powers[2]
-        turn: cython.double
-        if first * last < 0.0:
-            self._turn(r, 0.0, length)
-        elif bend * first < 0.0 and bend * self._value(2, length) < 0.0:  # it may dip through zero
-            turn = self._root(2, 0.0, length)
-            if self._value(1, turn) * first < 0.0:
-                self._turn(r, 0.0, turn)
-                self._turn(r, turn, length)
+        if turns:
+            self._turn(r, 0.0, self.steps.length)
+            return
+        turn = self._root(2, 0.0, self.steps.length)
+        if self._value(1, turn) * first < 0.0:
+            self._turn(r, 0.0, turn)
+            self._turn(r, turn, self.steps.length)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _turn(self, r: cython.Py_ssize_t, low: cython.double, high: cython.double) -> cython.void:
-        self._note(r, self._root(1, low, high))
+        """Take the value where the velocity changes its sign."""
+        x: cython.double = self._root(1, low, high)
+        self._note(r, x, self._value(0, x))
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _note(self, r: cython.Py_ssize_t, x: cython.double) -> cython.void:
-        """Take the value at x if it is an extreme so far."""
-        value: cython.double = self._value(0, x)
+    def _note(self, r: cython.Py_ssize_t, x: cython.double, value: cython.double) -> cython.void:
+        """Take a value, at x, if it is an extreme so far."""
         if value > self.greatest[r]:
             self.greatest[r] = value
             self.place[r, 0], self.place[r, 1] = self.steps.at, self.steps.first + x

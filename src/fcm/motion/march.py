@@ -14,17 +14,19 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.motion.events import workspace
-from fcm.motion.flow import BLOCK, ORDER
+from fcm.motion.pool import BLOCK, ORDER
 from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.events import first_descent
-    from cython.cimports.fcm.motion.flow import Flows, summed
+    from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.segments import Segments
+    from cython.cimports.fcm.motion.series import summed
 else:
     from fcm.motion.events import first_descent
-    from fcm.motion.flow import Flows, summed
+    from fcm.motion.flow import Flows
     from fcm.motion.segments import Segments
+    from fcm.motion.series import summed
 
 DONE, MISSING, FULL, UNDECIDED, PAUSED, LONG = range(6)  # why the march has stopped
 ROUNDING = cython.declare(cython.double, 3e-14)  # of a state after a step, relative to its terms

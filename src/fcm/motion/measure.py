@@ -52,7 +52,7 @@ class Extreme(NamedTuple):
 
 def least(system: System, segments: Segments, rows: FloatArray) -> list[Extreme]:
     """Of each of rows @ y, y without the angle of the forces: rows (row, d - 2)."""
-    found = _gauged(system, segments, rows)
+    found = _gauged(system, segments, rows, integrals=False)
     places = np.asarray(found.place)[:, 2:]
     return [
         Extreme(value, int(place[0]), place[1])
@@ -60,8 +60,8 @@ def least(system: System, segments: Segments, rows: FloatArray) -> list[Extreme]
     ]
 
 
-def _gauged(system: System, segments: Segments, rows: FloatArray) -> Gauge:
+def _gauged(system: System, segments: Segments, rows: FloatArray, integrals: bool = True) -> Gauge:
     steps = system.steps(segments)
-    gauge = Gauge(steps, rows)
+    gauge = Gauge(steps, rows, integrals)
     system.run(gauge, steps)
     return gauge

@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.motion.combination import Codes
 from fcm.motion.errors import SimulationError
-from fcm.motion.flow import NEGATIVE, OPEN, POSITIVE, STICK
+from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.system import System, has_friction
 from fcm.scene.model import FloatArray, Scene
 

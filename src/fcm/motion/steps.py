@@ -5,14 +5,16 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from fcm.motion.flow import ORDER
+from fcm.motion.pool import ORDER
 
 if cython.compiled:
-    from cython.cimports.fcm.motion.flow import Flows, summed
+    from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.segments import Segments
+    from cython.cimports.fcm.motion.series import summed
 else:
-    from fcm.motion.flow import Flows, summed
+    from fcm.motion.flow import Flows
     from fcm.motion.segments import Segments
+    from fcm.motion.series import summed
 
 MISSING = -1
 

@@ -16,8 +16,6 @@ from fcm.motion.steps import Steps
 from fcm.scene.model import Contact, FloatArray, Scene
 
 LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
-MOST_BYTES = 2**29  # of the flows that are kept,
-FEWEST = 8  # but so many are, whatever their size
 _SHARED = (
     "tangential", "normal", "preload", "mu", "k_u", "stiffness", "per_unit", "sine", "cosine",
     "flows", "_march", "_derivative",
@@ -95,14 +93,7 @@ class System:
 
     def make(self, states: Codes) -> int:
         """Put the flow of a combination of states into the pool; returns its place."""
-        if self.flows.count > FEWEST and self.flows.bytes() > MOST_BYTES:
-            self.flows.clear()
         return int(self.flows.add(*made(self, states)))
-
-    def slot(self, states: Codes) -> int:
-        """The place in the pool of a combination of states."""
-        found = int(self.tuned().slot(states))
-        return found if found >= 0 else self.make(states)
 
     def steps(self, segments: Segments) -> Steps:
         """The steps of segments at this frequency."""

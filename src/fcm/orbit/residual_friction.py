@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.flow import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.measure import Extreme, least
+from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.segments import Segments
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import derivative_at
@@ -53,29 +53,42 @@ def always_stuck(system: System, segments: Segments) -> list[int]:
 
 def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choice]:
     """The choices for all contacts that stick all through the segments; wanted are their w, (contact,)."""
-    return [_choice(system, segments, j, float(wanted[j])) for j in always_stuck(system, segments)]
+    y = np.asarray(segments.y)[0]
+    gaps = {j: _gap(system, y, j, float(wanted[j])) for j in always_stuck(system, segments)}
+    away = [j for j, gap in gaps.items() if gap != 0.0]
+    rooms = _rooms(system, segments, away) if away else {}
+    return [
+        _choice(system, segments, j, gap, *rooms[j]) if gap else Choice(j, 0.0, _row(system, j), 0.0, False)
+        for j, gap in gaps.items()
+    ]
 
 
-def _choice(system: System, segments: Segments, j: int, wanted: float) -> Choice:
+def _row(system: System, j: int) -> FloatArray:
+    """The derivative by x of what is to be added to the friction force."""
+    row = np.zeros(system.unknowns)
+    row[system.q], row[system.f.start + j] = system.k_u[j] * system.tangential[j], -1.0
+    return row
+
+
+def _gap(system: System, y: FloatArray, j: int, wanted: float) -> float:
+    return float(_row(system, j) @ y[: system.unknowns]) - float(system.k_u[j]) * wanted
+
+
+def _choice(system: System, segments: Segments, j: int, gap: float, above: Extreme, below: Extreme) -> Choice:
     """The force for the w that is wanted, or the nearest to it that keeps |f| <= mu n for all of the period.
 
-    It keeps a little away from the limit, so that rounding does not decide between stick and slip.
+    It keeps a little away from the limit, so that rounding does not decide between stick and slip. Above and
+    below are the least of mu n - f and of mu n + f.
     """
-    contact, y, force = system.contacts[j], np.asarray(segments.y)[0], system.f.start + j
-    row = np.zeros(system.unknowns)
-    row[system.q], row[force] = contact.k_u * system.tangential[j], -1.0
-    gap = float(row @ y[: system.unknowns]) - contact.k_u * wanted
-    if gap == 0.0:
-        return Choice(j, 0.0, row, 0.0, False)
-    margin, sign = _margin(system, y, j), 1.0 if gap > 0.0 else -1.0
-    rooms = _rooms(system, segments, j, sign)
-    room, other = rooms[0].value, rooms[1].value
+    margin, sign = _margin(system, np.asarray(segments.y)[0], j), 1.0 if gap > 0.0 else -1.0
+    ahead, behind = (above, below) if gap > 0.0 else (below, above)
+    room, other = ahead.value, behind.value
     if abs(gap) <= room - margin:
-        return Choice(j, gap, row, 0.0, False)
-    there, rate = _room_derivative(system, segments, j, sign, rooms[0])
+        return Choice(j, gap, _row(system, j), 0.0, False)
+    there, rate = _room_derivative(system, segments, j, sign, ahead)
     if room + other > 2.0 * margin:
         return Choice(j, sign * (room - margin), sign * there, sign * rate, True)
-    elsewhere, other_rate = _room_derivative(system, segments, j, -sign, rooms[1])
+    elsewhere, other_rate = _room_derivative(system, segments, j, -sign, behind)
     return Choice(
         j, 0.5 * sign * (room - other), 0.5 * sign * (there - elsewhere),
         0.5 * sign * (rate - other_rate), True,
@@ -110,9 +123,11 @@ def _limit(system: System, j: int, sign: float) -> FloatArray:
     return row
 
 
-def _rooms(system: System, segments: Segments, j: int, sign: float) -> list[Extreme]:
-    """The least of mu n - sign f and of mu n + sign f over the segments."""
-    return least(system, segments, np.array([_limit(system, j, sign), _limit(system, j, -sign)]))
+def _rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
+    """Of each contact the least of mu n - f and of mu n + f over the segments."""
+    rows = [_limit(system, j, sign) for j in contacts for sign in (1.0, -1.0)]
+    found = least(system, segments, np.array(rows))
+    return {j: (found[2 * i], found[2 * i + 1]) for i, j in enumerate(contacts)}
 
 
 def _room_derivative(

@@ -1,0 +1,18 @@
+cdef class Pool:
+    cdef readonly Py_ssize_t modes, contacts, linear, size, count, clock
+    cdef readonly double omega
+    cdef readonly double[::1] stiffness, damping, mu, k_u, k_v, n_0
+    cdef readonly double[:, ::1] drive, tangential, normal, push_u, push_v
+    cdef readonly signed char[::1] rough
+    cdef readonly signed char[:, ::1] states
+    cdef readonly double[::1] step
+    cdef readonly Py_ssize_t[::1] exits
+    cdef readonly Py_ssize_t[:, ::1] owner
+    cdef readonly signed char[:, ::1] goal
+    cdef readonly double[:, :, ::1] row, table, table_forced, sizes, sizes_forced
+    cdef readonly double[:, :, :, ::1] power, forced, rounding, rounding_forced
+    cdef readonly double[:, :, ::1] turn
+    cdef readonly double[::1] made_for
+    cdef dict _pool
+    cdef readonly Py_ssize_t[::1] used
+    cdef Py_ssize_t find(self, signed char[:, ::1] states, Py_ssize_t k) noexcept nogil

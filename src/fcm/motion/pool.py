@@ -1,0 +1,127 @@
+"""The pool of flows of a scene: the arrays of all combinations of contact states that have been met."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+from fcm.scene.model import FloatArray
+
+ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
+POWERS = 6  # of exp(A h): 1, 2, 4 ... 32 steps
+BLOCK = 16  # steps that are looked at together: a power of two
+LEADING = 8  # derivatives of an exit that may tell which combination follows
+WATCHED = 3  # g, g' h and g'''' h**4 of each exit
+OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
+FEWEST, MOST_BYTES = 8, 2**29  # flows that are kept at least, and the memory that they otherwise have
+
+
+@cython.cclass
+class Pool:
+    """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
+
+    Parameters
+    ----------
+    modal : tuple of arrays
+        Squares of the modes' frequencies, 2 zeta omega_0, and the forces of sin and cos by mass (2, mode).
+    ports : tuple of arrays (contact, mode)
+        Shapes of u and of v, and the same divided by the modal masses.
+    law : array (5, contact)
+        mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
+    """
+
+    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
+        self.stiffness, self.damping, self.drive = (np.ascontiguousarray(x, dtype=np.float64) for x in modal)
+        self.tangential, self.normal, self.push_u, self.push_v = (
+            np.ascontiguousarray(x, dtype=np.float64) for x in ports
+        )
+        self.mu, self.k_u, self.k_v, self.n_0 = (np.ascontiguousarray(x, dtype=np.float64) for x in law[:4])
+        self.rough = np.ascontiguousarray(law[4], dtype=np.int8)
+        self.modes, self.contacts = self.stiffness.shape[0], self.mu.shape[0]
+        self.linear = 2 * self.modes + 2 * self.contacts + 1
+        self.size = self.linear + 2
+        self.omega = 0.0
+        self.count, self.clock = 0, 0
+        self._pool: dict[str, Any] = {}
+        self._make_room(4)
+
+    def at(self, omega: float) -> None:
+        """Set the frequency [rad/s]."""
+        self.omega = omega
+
+    def bytes(self) -> int:
+        """Memory of the pool."""
+        return sum(made.nbytes for made in self._pool.values())
+
+    def add(
+        self,
+        states: Any,
+        step: float,
+        rows: FloatArray,
+        owner: list[int],
+        goal: list[int],
+        powers: FloatArray,
+        rounding: FloatArray,
+        sizes: FloatArray,
+        table: FloatArray,
+    ) -> int:
+        """Put a flow into the pool: see `fcm.motion.combination`; returns its place."""
+        k, exits, made = self._place(), len(owner), self._pool
+        made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
+        made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
+        made["power"][k], made["sizes"][k], made["rounding"][k, :, :exits] = powers, sizes, rounding
+        made["table"][k, :, : table.shape[1]], made["used"][k] = table, self.clock
+        return k
+
+    def _place(self) -> int:
+        """A place for one more."""
+        capacity = self.step.shape[0]
+        if self.count == capacity and (capacity < FEWEST or 2 * self.bytes() <= MOST_BYTES):
+            self._make_room(2 * capacity)
+            capacity *= 2
+        if self.count == capacity:
+            return int(np.argmin(np.asarray(self.used)))
+        self.count += 1
+        return int(self.count - 1)
+
+    def _make_room(self, capacity: int) -> None:
+        n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
+        wide = (BLOCK + 1) * WATCHED * e
+        shapes = {
+            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (),
+            "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
+            "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
+            "rounding": (LEADING, e, n), "rounding_forced": (LEADING, e, 2),
+        }  # fmt: skip
+        kinds = {"states": np.int8, "goal": np.int8, "exits": np.intp, "owner": np.intp, "used": np.intp}
+        old, made = self._pool, {}
+        for name, shape in shapes.items():
+            made[name] = np.zeros((capacity, *shape), kinds.get(name, np.float64))
+            if self.count:
+                made[name][: self.count] = old[name][: self.count]
+        self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
+        self.owner, self.goal, self.row = made["owner"], made["goal"], made["row"]
+        self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
+        self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
+        self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
+        self.rounding, self.rounding_forced = made["rounding"], made["rounding_forced"]
+        self._pool = made
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
+        """The flow of the states in row k whose steps resolve the frequency too, -1 if there is none."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for i in range(self.count):
+            if self.omega * self.step[i] > 1.0 + 1e-12:
+                continue
+            j = 0
+            while j < self.contacts and self.states[i, j] == states[k, j]:
+                j += 1
+            if j == self.contacts:
+                return i
+        return -1
