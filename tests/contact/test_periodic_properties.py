@@ -108,7 +108,7 @@ def test_with_one_harmonic_it_is_the_loop():
 
 
 def test_slip_motion_is_held_while_sticking():
-    for case, loop in loops():
+    for _, loop in loops():
         assert loop.slip_motion.shape == (max(len(loop.angles), 1),)
         assert np.array_equal(np.isnan(loop.slip_motion), [state != "E" for state in loop.sequence])
 
@@ -167,7 +167,8 @@ found = []
 for i in range(len(data["u"])):
     arguments = [data[name][i] for name in ("u", "v", "mu", "k_u", "k_v", "n_0")]
     G, loop = fcm.periodic_gradients(*arguments), fcm.periodic_loop(*arguments)
-    found.append(np.concatenate([np.ravel(x) for x in G] + [[loop.dissipation, loop.greatest_force, len(loop.sequence)]]))
+    numbers = [loop.dissipation, loop.greatest_force, len(loop.sequence)]
+    found.append(np.concatenate([np.ravel(x) for x in G] + [numbers]))
 np.save(sys.argv[2], found)
 """
 

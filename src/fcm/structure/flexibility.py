@@ -112,7 +112,5 @@ def _galerkin(system: System, basis: FloatArray) -> Modes:
     mass, turn = scipy.linalg.eigh(basis.T @ (system.M @ basis))
     heavy = mass > INDEPENDENT * mass.max(initial=0.0)
     # in descending order of mass: in ascending order of frequency
-    shapes = (basis @ turn[:, heavy] / np.sqrt(mass[heavy]))[
-        :, ::-1
-    ]
+    shapes = (basis @ turn[:, heavy] / np.sqrt(mass[heavy]))[:, ::-1]
     return Modes(np.einsum("ij,ij->j", shapes, system.K @ shapes), shapes)

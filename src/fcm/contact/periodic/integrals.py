@@ -14,10 +14,10 @@ from cython.cimports.libc.math import sin
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
-    from cython.cimports.fcm.contact.periodic.motion import FORCE, REACH, Motion
+    from cython.cimports.fcm.contact.periodic.motion import FORCE, REACH
 else:
     from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
-    from fcm.contact.periodic.motion import FORCE, REACH, Motion
+    from fcm.contact.periodic.motion import FORCE, REACH
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)

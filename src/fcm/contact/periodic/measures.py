@@ -33,7 +33,6 @@ if cython.compiled:
         REACH,
         UPPER,
         UPPER_RATE,
-        Motion,
     )
 else:
     from fcm.contact.periodic.crossings import Crossings
@@ -57,7 +56,6 @@ else:
         REACH,
         UPPER,
         UPPER_RATE,
-        Motion,
     )
 
 LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and BOTTOM
