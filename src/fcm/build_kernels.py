@@ -15,7 +15,7 @@ import os
 from pathlib import Path
 
 from Cython.Build import cythonize
-from setuptools import setup
+from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 DIRECTIVES = {
@@ -28,13 +28,16 @@ DIRECTIVES = {
 # One rounding for each operation as it is written: the sequence of a contact hangs on signs.
 FLAGS = ["-O3", "-g0", "-ffp-contract=off"]
 ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # from 3.11 on
+ARRAYS = "fcm.kernel_arrays"  # what Cython adds for arrays, once for all kernels
 
 
 class Kernels(build_ext):
     """The step of setuptools that compiles; in place, for developers, a failure is an error."""
 
     def finalize_options(self) -> None:
-        for kernel in self.distribution.ext_modules:
+        kernels = self.distribution.ext_modules
+        kernels.append(Extension(ARRAYS, ["src/fcm/kernel_arrays.c"]))
+        for kernel in kernels:
             kernel.py_limited_api = True
             kernel.define_macros, kernel.extra_compile_args = [ANY_PYTHON], FLAGS
         super().finalize_options()
@@ -43,22 +46,23 @@ class Kernels(build_ext):
     def build_extensions(self) -> None:
         for kernel in self.extensions:
             kernel.optional = self.editable_mode or not self.inplace
-            self._discard_if_old(kernel.name, kernel.sources[0])
+            self._discard_if_old(kernel)
         translated = cythonize(  # type: ignore[no-untyped-call]
             self.extensions,
             nthreads=self.parallel,
             build_dir=self.build_temp,
             compiler_directives=DIRECTIVES,
+            shared_utility_qualified_name=ARRAYS,
             force=self.force,
         )
         for kernel, in_C in zip(self.extensions, translated, strict=True):
             kernel.sources = in_C.sources
         super().build_extensions()
 
-    def _discard_if_old(self, name: str, source: str) -> None:
+    def _discard_if_old(self, kernel: Extension) -> None:
         """What is out of date goes first: should it not be made anew, the source must take its place."""
-        made = Path(self.get_ext_fullpath(name))
-        if made.exists() and made.stat().st_mtime < Path(source).stat().st_mtime:
+        made, source = Path(self.get_ext_fullpath(kernel.name)), Path(kernel.sources[0])
+        if made.exists() and source.exists() and made.stat().st_mtime < source.stat().st_mtime:
             made.unlink()
 
 
