@@ -117,9 +117,9 @@ def near(case, miss):
 
 
 def scale_of(case, friction):
-    """What errors are compared with: the friction force; of loads that vary far more, they carry the rounding.
+    """What errors are compared with: the friction force.
 
-    Where there is hardly any friction, of the motion.
+    They carry the rounding of a load that varies far more, and without friction that of the motion.
     """
     motion, load = (float(np.abs(x[1:]).sum()) for x in (case.k_u * case.u, case.mu * case.k_v * case.v))
     return max(friction, 1e-4 * load, 1e-9 * motion, 1e-300)

@@ -1,4 +1,4 @@
-"""Forces of any periodic motion: against a march, on every boundary, and with one harmonic the closed form."""
+"""Forces of any periodic motion: against a march, on every boundary; with one harmonic the closed form."""
 
 import numpy as np
 import pytest
@@ -74,7 +74,7 @@ def test_light_loads_keep_their_digits():
 
 
 def test_a_contact_that_never_slips_rests_where_it_started():
-    """F = k_u (u - rest), held by the limits: clip(u_mean - start, ell_2 - n0, n0 - ell_1) for a pure sine."""
+    """F = k_u (u - rest), held by the limits: of a pure sine clip(u_mean - start, ell_2 - n0, n0 - ell_1)."""
     n0, b, phi = 2.5, 0.5, 0.8
     v = [0.0, b * (np.sin(phi) - 1j * np.cos(phi))]
     ell_1, ell_2 = (np.sqrt(1.0 + b * b + s * 2.0 * b * np.cos(phi)) for s in (-1.0, 1.0))
@@ -146,7 +146,7 @@ def test_motions_without_coefficients_are_refused():
 
 @pytest.mark.parametrize("size", [1e-150, 1e-75, 1e75, 1e150])
 def test_huge_and_tiny_numbers(size):
-    """Lengths, forces and stiffness in other units; the last of them as far as their product fits a double."""
+    """Lengths, forces and stiffness in other units."""
     for case in random_cases(20, 11, most=5):
         f, n = case.forces()
         longer = periodic_forces(case.u * size, case.v * size, case.mu, case.k_u, case.k_v, case.n_0 * size)
@@ -168,10 +168,10 @@ def test_a_light_motion_beside_a_huge_load_and_the_reverse():
 
 
 def test_the_march_knows_the_closed_form():
-    """The reference of these tests, against the closed form of one harmonic; both know nothing of the kernel."""
+    """The reference of these tests, against the closed form of one harmonic."""
     for n0, b, phi in zip(*points("linear", 60), strict=True):
         u, v = [0.0, -1j], [0.0, b * (np.sin(phi) - 1j * np.cos(phi))]
-        f, n, _, _ = periodic_march.forces(u, v, 1.0, 1.0, 1.0, n0, 1)
+        f, _, _, _ = periodic_march.forces(u, v, 1.0, 1.0, 1.0, n0, 1)
         F = fourier_coefficients(n0, b, phi)
         assert [float(f[0].real), -float(f[1].imag), float(f[1].real)] == pytest.approx(F, abs=4e-15)
 

@@ -1,4 +1,4 @@
-"""Derivatives of the forces of any periodic motion: differences in extended precision, and Euler's theorem."""
+"""Derivatives of the forces of any periodic motion: differences in extended precision, Euler's theorem."""
 
 import numpy as np
 import pytest
@@ -73,7 +73,7 @@ def test_differences(seed):
 
 
 def check_homogeneous(case):
-    """Twice the motion and the preload, twice the forces: F = dF/du u + dF/dv (v + n_0 / k_v), at kinks as well."""
+    """Twice the motion and preload, twice the forces: F = dF/du u + dF/dv (v + n_0 / k_v), also at kinks."""
     G = periodic_gradients(*case.arguments())
     if case.k_v == 0.0:
         return

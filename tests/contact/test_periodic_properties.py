@@ -1,4 +1,4 @@
-"""What holds for every periodic motion: bounds, signs, symmetries, units; the loop and what it says of the cycle."""
+"""What holds for every periodic motion: bounds, signs, symmetries; the loop and what it says of the cycle."""
 
 import shutil
 import subprocess

@@ -1,1 +1,1 @@
-"""Kernels: the forces of a contact over any periodic motion, exactly; from the motion's polynomials upwards."""
+"""The forces of a contact over any periodic motion, exactly: kernels, and what Python calls."""

@@ -20,3 +20,6 @@ cdef class Crossings:
     cdef bint proved(self, double length, double g_0, double d_0, double g_1, double d_1) noexcept nogil
     cdef void note(self, double theta, double value, double slope) noexcept nogil
     cdef double root(self, int row, double level, double low, double g_low, double d_low, double high, double g_high, double d_high) noexcept nogil
+
+cdef double _cubic(double g_0, double d_0, double g_1, double d_1) noexcept nogil
+cdef double _last_root(double c_0, double c_1, double c_2) noexcept nogil

@@ -1,4 +1,4 @@
-"""Where a row of a contact's motion changes sign, none missed.
+"""Kernel: where a row of a contact's motion changes sign, none missed.
 
 Between two nodes a row is its cubic Hermite interpolant within bound * step**4 / 384, its slope that of the
 interpolant within bound * step**3 sqrt(3) / 216, with the bound of the fourth derivative. So the Bernstein
@@ -34,22 +34,18 @@ class Crossings:
         self.kind = np.empty(self.capacity, dtype=np.intc)
         self.open = np.zeros(self.motion.nodes, dtype=np.intc)
         self.stack = np.empty((DEEPEST + 2, 3))
-        self.count = 0
+        self.count = self.row = self.rising = self.falling = self.sign = 0
+        self.curvature = self.fourth = self.noise = 0.0
+        self.last = self.last_value = self.last_slope = 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def begin(self) -> cython.void:
+    def begin(self) -> None:
         """Forget the crossings of another motion."""
         j: cython.int
         self.count = 0
         for j in range(self.motion.nodes):
             self.open[j] = 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> cython.void:
+    def search(self, row: cython.int, rising: cython.int, falling: cython.int) -> None:
         """Append the crossings of LOAD or of a rate, as kinds `rising` and `falling`; -1 leaves one kind out.
 
         The search of LOAD, which has to come first, finds the intervals that are open, which others skip.
@@ -62,13 +58,10 @@ class Crossings:
         for j in range(start, start + self.motion.nodes):
             self.interval(j)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def bounds(self) -> cython.void:
-        """Of the second and fourth derivative of the row, and what its value may err by, at a rounded angle."""
+    def bounds(self) -> None:
+        """Of the second and fourth derivative, and what the value may err by, at a rounded angle."""
         k: cython.int
-        amplitude: cython.double
+        amplitude: float
         order: cython.int = 0 if self.row == LOAD else 1
         if self.row <= LOAD_RATE:
             self.noise = self.motion.load_bound[order] + self.motion.load_bound[order + 1]
@@ -82,9 +75,6 @@ class Crossings:
             self.curvature += amplitude
             self.fourth += amplitude * self.motion.order[k] * self.motion.order[k]
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def definite_node(self) -> cython.int:
         """The last node at which the sign is certain, before the turn of nodes: -nodes to 0."""
         j: cython.int
@@ -93,10 +83,7 @@ class Crossings:
                 return -1 - j
         return 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def interval(self, j: cython.int) -> cython.void:
+    def interval(self, j: cython.int) -> None:
         """Walk from node j to the next, halving where nothing is proved."""
         left: cython.int = j if j >= 0 else j + self.motion.nodes
         right: cython.int = left + 1 if left + 1 < self.motion.nodes else 0
@@ -104,9 +91,9 @@ class Crossings:
         if row != LOAD and self.open[left]:
             self.sign = 0
             return
-        begin: cython.double = self.motion.first + j * self.motion.step
-        g: cython.double = self.motion.at[row, left]
-        d: cython.double = self.motion.at[row + 1, left]
+        begin: float = self.motion.first + j * self.motion.step
+        g: float = self.motion.at[row, left]
+        d: float = self.motion.at[row + 1, left]
         if self.sign == 0:
             self.note(begin, g, d)
         if row == LOAD and self.proved(
@@ -118,8 +105,8 @@ class Crossings:
         self.stack[0, 1] = self.motion.at[row, right]
         self.stack[0, 2] = self.motion.at[row + 1, right]
         while depth >= 0:
-            end: cython.double = self.stack[depth, 0]
-            length: cython.double = end - begin
+            end: float = self.stack[depth, 0]
+            length: float = end - begin
             if (
                 depth == DEEPEST
                 or length < SHORTEST
@@ -130,37 +117,31 @@ class Crossings:
                 depth -= 1
             else:
                 depth += 1
-                middle: cython.double = begin + 0.5 * length
+                middle: float = begin + 0.5 * length
                 value, slope = self.motion.evaluate(row, middle)
                 self.stack[depth, 0], self.stack[depth, 1], self.stack[depth, 2] = middle, value, slope
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def proved(
         self,
-        length: cython.double,
-        g_0: cython.double,
-        d_0: cython.double,
-        g_1: cython.double,
-        d_1: cython.double,
-    ) -> cython.bint:
+        length: float,
+        g_0: float,
+        d_0: float,
+        g_1: float,
+        d_1: float,
+    ) -> bool:
         """Whether the row has no zero inside, or is monotone, or is nothing but rounding."""
-        error: cython.double = self.fourth * length * length * length
-        b_1: cython.double = g_0 + length * d_0 / 3.0
-        b_2: cython.double = g_1 - length * d_1 / 3.0
-        low: cython.double = min(g_0, b_1, b_2, g_1) - VALUE_ERROR * error * length
-        high: cython.double = max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length
+        error: float = self.fourth * length * length * length
+        b_1: float = g_0 + length * d_0 / 3.0
+        b_2: float = g_1 - length * d_1 / 3.0
+        low: float = min(g_0, b_1, b_2, g_1) - VALUE_ERROR * error * length
+        high: float = max(g_0, b_1, b_2, g_1) + VALUE_ERROR * error * length
         if low > 0.0 or high < 0.0 or (low >= -self.noise and high <= self.noise):
             return True
-        middle: cython.double = 3.0 * (b_2 - b_1) / length
+        middle: float = 3.0 * (b_2 - b_1) / length
         error *= SLOPE_ERROR
         return min(d_0, middle, d_1) > error or max(d_0, middle, d_1) < -error
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def note(self, theta: cython.double, value: cython.double, slope: cython.double) -> cython.void:
+    def note(self, theta: float, value: float, slope: float) -> None:
         """The next point of the walk; if its sign is certain and another, there was a crossing."""
         if fabs(value) <= self.noise:
             return
@@ -174,34 +155,31 @@ class Crossings:
             self.count += 1
         self.sign, self.last, self.last_value, self.last_slope = sign, theta, value, slope
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def root(
         self,
         row: cython.int,
-        level: cython.double,
-        low: cython.double,
-        g_low: cython.double,
-        d_low: cython.double,
-        high: cython.double,
-        g_high: cython.double,
-        d_high: cython.double,
-    ) -> cython.double:
+        level: float,
+        low: float,
+        g_low: float,
+        d_low: float,
+        high: float,
+        g_high: float,
+        d_high: float,
+    ) -> float:
         """Where a row takes a value, between angles where it is on different sides of it: Newton, bracketed.
 
         Parameters
         ----------
         g_low, g_high
-            Row minus level at both ends; the second is not zero. Where the first is, the row turns in between.
+            Row minus level at both ends; not zero, but the first where the row turns in between.
         """
-        up: cython.bint = g_high > 0.0
-        length: cython.double = high - low
+        up: bool = g_high > 0.0
+        length: float = high - low
         # near an end where it turns, the sign of the row is that of a rounding error
-        floor: cython.double = 0.0
+        floor: float = 0.0
         if g_low == 0.0:
             floor = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
-        x: cython.double = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
+        x: float = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
         i: cython.int
         for i in range(100):  # noqa: B007
             value, slope = self.motion.evaluate(row, x)
@@ -212,7 +190,7 @@ class Crossings:
                 high = x
             else:
                 low = x
-            step: cython.double = -value / slope if (slope > 0.0) == up and slope != 0.0 else high - low
+            step: float = -value / slope if (slope > 0.0) == up and slope != 0.0 else high - low
             if not low < x + step < high:
                 step = 0.5 * (low + high) - x
             elif self.curvature * step * step <= EPSILON * fabs(slope):
@@ -223,37 +201,31 @@ class Crossings:
         return x
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def _cubic(g_0: cython.double, d_0: cython.double, g_1: cython.double, d_1: cython.double) -> cython.double:
+def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
     """About where in [0, 1] the cubic of given values and slopes at 0 and 1 vanishes, beside 0 itself."""
-    c_2: cython.double = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
-    c_3: cython.double = d_0 + d_1 - 2.0 * (g_1 - g_0)
+    c_2: float = 3.0 * (g_1 - g_0) - 2.0 * d_0 - d_1
+    c_3: float = d_0 + d_1 - 2.0 * (g_1 - g_0)
     if g_0 == 0.0:
         return _last_root(d_0, c_2, c_3)
-    t: cython.double = g_0 / (g_0 - g_1) if (g_0 > 0.0) != (g_1 > 0.0) else 0.5
+    t: float = g_0 / (g_0 - g_1) if (g_0 > 0.0) != (g_1 > 0.0) else 0.5
     i: cython.int
     for i in range(3):  # noqa: B007
-        value: cython.double = g_0 + t * (d_0 + t * (c_2 + t * c_3))
-        slope: cython.double = d_0 + t * (2.0 * c_2 + t * 3.0 * c_3)
+        value: float = g_0 + t * (d_0 + t * (c_2 + t * c_3))
+        slope: float = d_0 + t * (2.0 * c_2 + t * 3.0 * c_3)
         if slope == 0.0 or not 0.0 < t - value / slope < 1.0:
             return t
         t -= value / slope
     return t
 
 
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def _last_root(c_0: cython.double, c_1: cython.double, c_2: cython.double) -> cython.double:
+def _last_root(c_0: float, c_1: float, c_2: float) -> float:
     """The greatest root of a quadratic in [0.01, 1], else the middle."""
-    root: cython.double = c_1 * c_1 - 4.0 * c_0 * c_2
+    root: float = c_1 * c_1 - 4.0 * c_0 * c_2
     if root < 0.0:
         return 0.5
     root = -0.5 * (c_1 + sqrt(root) if c_1 >= 0.0 else c_1 - sqrt(root))
-    one: cython.double = c_0 / root if root != 0.0 else 0.0
-    other: cython.double = root / c_2 if c_2 != 0.0 else 0.0
+    one: float = c_0 / root if root != 0.0 else 0.0
+    other: float = root / c_2 if c_2 != 0.0 else 0.0
     one = one if one <= 1.0 else 0.0
     other = other if other <= 1.0 else 0.0
     return max(one, other) if max(one, other) >= 0.01 else 0.5

@@ -1,18 +1,14 @@
-from fcm.contact.periodic.motion cimport Motion
 from fcm.contact.periodic.crossings cimport Crossings
+from fcm.contact.periodic.events cimport Events
 
-cdef int CLOSES, OPENS, TOP, BOTTOM, SLIPS
 cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
 cdef double TWO_PI
 
-cdef class Cycle:
-    cdef readonly Motion motion
+cdef class Cycle(Events):
     cdef readonly Crossings crossings
-    cdef readonly int pieces, events
+    cdef readonly int pieces
     cdef readonly double overlap
-    cdef readonly double[::1] event_cos, event_sin, event_angle, lower, upper, moved
-    cdef readonly double[::1] lower_rate, upper_rate, load_rate, motion_rate, margin
-    cdef readonly int[::1] state, event, cause, event_kind
+    cdef readonly int[::1] state, event, cause
     cdef readonly double[::1] begin, rest
     cdef int[::1] order
     cdef int slipping, span, span_cause
@@ -20,7 +16,6 @@ cdef class Cycle:
     cdef int solve(self, int behaviour, double start) noexcept nogil
     cdef bint far_inside(self, double start) noexcept nogil
     cdef void sort_cuts(self) noexcept nogil
-    cdef int place(self, double theta, int kind) noexcept nogil
     cdef void add(self, int state, int event, double theta, double rest, int cause) noexcept nogil
     cdef int never_open(self, double start) noexcept nogil
     cdef void march(self, int first, int kind) noexcept nogil

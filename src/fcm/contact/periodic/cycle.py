@@ -1,4 +1,4 @@
-"""One steady cycle of a contact under any periodic motion: its states, when each begins, where the slider rests.
+"""Kernel: one steady cycle of a contact under any periodic motion, its states and where the slider rests.
 
 The slider w is held between the limits of `motion`; it moves only when one of them pushes it, and follows u
 while the contact is open. The cycle is cut where the contact closes and opens, at the maxima of the lower
@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import cos, fabs, sin
+from cython.cimports.libc.math import fabs
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.crossings import Crossings
+    from cython.cimports.fcm.contact.periodic.events import BOTTOM, CLOSES, OPENS, SLIPS, TOP, Events
     from cython.cimports.fcm.contact.periodic.motion import (
         CLOSED,
-        FORCE,
         LOAD,
         LOWER,
         LOWER_RATE,
@@ -36,9 +36,9 @@ if cython.compiled:
     )
 else:
     from fcm.contact.periodic.crossings import Crossings
+    from fcm.contact.periodic.events import BOTTOM, CLOSES, OPENS, SLIPS, TOP, Events
     from fcm.contact.periodic.motion import (
         CLOSED,
-        FORCE,
         LOAD,
         LOWER,
         LOWER_RATE,
@@ -51,12 +51,6 @@ else:
         Motion,
     )
 
-CLOSES = cython.declare(cython.int, 0)  # kinds of cuts
-OPENS = cython.declare(cython.int, 1)
-TOP = cython.declare(cython.int, 2)
-BOTTOM = cython.declare(cython.int, 3)
-SLIPS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
-
 STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest
 POSITIVE = cython.declare(cython.int, 1)
 NEGATIVE = cython.declare(cython.int, -1)
@@ -68,30 +62,23 @@ TWO_PI = cython.declare(cython.double, 6.283185307179586)
 
 
 @cython.cclass
-class Cycle:
+class Cycle(Events):
     """The pieces of a cycle in order, up to `pieces`, and the events at which they begin."""
 
     def __init__(self, motion: Motion) -> None:
-        self.motion = motion
-        self.crossings = Crossings(motion)
-        size = 2 * self.crossings.capacity + 4
-        self.event_cos, self.event_sin = np.zeros(size), np.zeros(size)
-        self.event_angle = np.zeros(size)
-        self.lower, self.upper, self.moved = np.zeros(size), np.zeros(size), np.zeros(size)
-        self.lower_rate, self.upper_rate = np.zeros(size), np.zeros(size)
-        self.load_rate, self.motion_rate = np.zeros(size), np.zeros(size)
-        self.event_kind, self.margin = np.zeros(size, dtype=np.intc), np.zeros(size)
+        crossings = Crossings(motion)
+        size = 2 * crossings.capacity + 4
+        Events.__init__(self, motion, size)
+        self.crossings = crossings
         self.order = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.state, self.event = np.zeros(size, dtype=np.intc), np.zeros(size, dtype=np.intc)
         self.cause = np.zeros(size, dtype=np.intc)
         self.begin, self.rest = np.zeros(size), np.zeros(size)
-        self.pieces = self.events = 0
+        self.pieces = self.slipping = self.span = self.span_cause = 0
+        self.overlap = self.span_begin = self.w = 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def solve(self, behaviour: cython.int, start: cython.double) -> cython.int:
-        """The cycle of a loaded motion whose slider started at `start`, from the mean of u: OPEN, STUCK, MIXED.
+    def solve(self, behaviour: cython.int, start: float) -> cython.int:
+        """The cycle of a loaded motion, OPEN, STUCK or MIXED; its slider began at `start` from the mean of u.
 
         Of a contact that never slips there is one piece, a stick, whose cause is 0 unless a limit holds it.
         """
@@ -126,17 +113,12 @@ class Cycle:
         self.march(first, CLOSES)
         return MIXED
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def far_inside(self, start: cython.double) -> cython.bint:
+    def far_inside(self, start: float) -> bool:
         """Whether the slider stays between the limits whatever the phases of the harmonics."""
-        return self.motion.mean[REACH] >= self.motion.limit_bound[0] + fabs(start)
+        spare: float = self.motion.mean[REACH] - self.motion.limit_bound[0] - fabs(start)
+        return spare >= 0.0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def sort_cuts(self) -> cython.void:
+    def sort_cuts(self) -> None:
         """`order`: the cuts by their angles, each reduced to the turn that begins at the first node."""
         i: cython.int
         j: cython.int
@@ -151,54 +133,14 @@ class Cycle:
                 j -= 1
             self.order[j] = i
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def place(self, theta: cython.double, kind: cython.int) -> cython.int:
-        """A new event at an angle: its limits and their rates."""
-        c_1: cython.double = cos(theta)
-        s_1: cython.double = sin(theta)
-        c: cython.double = c_1
-        s: cython.double = s_1
-        turned: cython.double
-        u: cython.double = 0.0
-        u_1: cython.double = 0.0
-        y: cython.double = 0.0
-        y_1: cython.double = 0.0
-        h: cython.int = 1
-        k: cython.int
-        e: cython.int = self.events
-        for k in range(self.motion.count):
-            while h < self.motion.number[k]:
-                turned = c * c_1 - s * s_1
-                s = s * c_1 + c * s_1
-                c = turned
-                h += 1
-            u += self.motion.re[FORCE, k] * c - self.motion.im[FORCE, k] * s
-            y += self.motion.re[REACH, k] * c - self.motion.im[REACH, k] * s
-            u_1 -= self.motion.order[k] * (self.motion.re[FORCE, k] * s + self.motion.im[FORCE, k] * c)
-            y_1 -= self.motion.order[k] * (self.motion.re[LOAD, k] * s + self.motion.im[LOAD, k] * c)
-        y = max(y + self.motion.mean[REACH], 0.0)
-        self.event_kind[e], self.margin[e] = kind, 0.0
-        self.event_angle[e], self.event_cos[e], self.event_sin[e] = theta, c_1, s_1
-        self.moved[e], self.lower[e], self.upper[e] = u, u - y, u + y
-        self.motion_rate[e], self.load_rate[e] = u_1, y_1
-        self.lower_rate[e] = u_1 - self.motion.ratio * y_1
-        self.upper_rate[e] = u_1 + self.motion.ratio * y_1
-        self.events += 1
-        return e
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def add(
         self,
         state: cython.int,
         event: cython.int,
-        theta: cython.double,
-        rest: cython.double,
+        theta: float,
+        rest: float,
         cause: cython.int,
-    ) -> cython.void:
+    ) -> None:
         """The next piece, unless it goes on with the last."""
         i: cython.int = self.pieces
         if i > 0 and self.state[i - 1] == state:
@@ -207,10 +149,7 @@ class Cycle:
         self.rest[i], self.cause[i] = rest, cause
         self.pieces += 1
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def never_open(self, start: cython.double) -> cython.int:
+    def never_open(self, start: float) -> cython.int:
         """Without separation: from the greatest top on, if it is above the least bottom."""
         i: cython.int
         e: cython.int
@@ -239,21 +178,18 @@ class Cycle:
         self.march(first, TOP)
         return MIXED
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def march(self, first: cython.int, kind: cython.int) -> cython.void:
+    def march(self, first: cython.int, kind: cython.int) -> None:
         """Span after span, from the cut at which w is known."""
         count: cython.int = self.crossings.count
-        turn: cython.double = 0.0
+        turn: float = 0.0
         i: cython.int
         at: cython.int = first
-        theta: cython.double = self.crossings.angle[self.order[first]]
-        opened: cython.bint = False
+        theta: float = self.crossings.angle[self.order[first]]
+        opened: bool = False
         self.slipping, self.span_cause = 0, POSITIVE
         self.span = first if kind == TOP else self.place(theta, kind)
         self.span_begin, self.w = theta, self.lower[self.span]
-        never_opens: cython.bint = kind == TOP  # then all cuts have been placed, in their order
+        never_opens: bool = kind == TOP  # then all cuts have been placed, in their order
         if kind == CLOSES:
             self.close()
         for i in range(count if never_opens else count - 1):  # noqa: B007
@@ -273,10 +209,7 @@ class Cycle:
                 opened = True
                 self.add(SEPARATION, self.span, theta, 0.0, 0)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def close(self) -> cython.void:
+    def close(self) -> None:
         """(20) to (22): what follows the separation."""
         self.w, self.span_cause, self.slipping = self.moved[self.span], SEPARATION, 0
         if self.pushes(POSITIVE):
@@ -284,25 +217,20 @@ class Cycle:
         elif self.pushes(NEGATIVE):
             self.slipping = NEGATIVE
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def pushes(self, side: cython.int) -> cython.bint:
-        """Whether a limit that has met the slider goes on to push it; where that is rounding, the span decides."""
+    def pushes(self, side: cython.int) -> bool:
+        """Whether a limit that has met the slider goes on to push it, beyond rounding."""
         if side == 0:
             return False
-        rate: cython.double = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
-        return rate > self.crossings.noise
+        rate: float = self.lower_rate[self.span] if side > 0 else -self.upper_rate[self.span]
+        rounding: float = self.crossings.noise
+        return rate > rounding
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def advance(self, end: cython.int, theta: cython.double, kind: cython.int) -> cython.void:
+    def advance(self, end: cython.int, theta: float, kind: cython.int) -> None:
         """One span, to a cut at which the contact is closed or opens."""
         if kind == OPENS:
             self.lower[end] = self.upper[end] = self.moved[end]
         self.margin[end] = self.w - self.upper[end] if kind == BOTTOM else self.lower[end] - self.w
-        w: cython.double = max(self.lower[end], min(self.w, self.upper[end]))
+        w: float = max(self.lower[end], min(self.w, self.upper[end]))
         side: cython.int = POSITIVE if w > self.w else NEGATIVE if w < self.w else 0
         if side == 0 or side != self.slipping:
             self.add(STICK, self.span, self.span_begin, self.w, self.span_cause)
@@ -313,36 +241,32 @@ class Cycle:
         self.w, self.span, self.span_begin = w, end, theta
         self.slipping = side if kind != (TOP if side > 0 else BOTTOM) and self.pushes(side) else 0
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def slip(self, side: cython.int, end: cython.int, theta: cython.double) -> cython.void:
+    def slip(self, side: cython.int, end: cython.int, theta: float) -> None:
         """The slip that ends a span."""
-        begin: cython.double
+        begin: float
         if side == self.slipping:
             self.add(side, self.span, self.span_begin, 0.0, 0)
         else:
             begin = self.slip_begin(side, end, theta)
             self.add(side, self.place(begin, SLIPS), begin, 0.0, 0)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def slip_begin(self, side: cython.int, end: cython.int, theta: cython.double) -> cython.double:
+    def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
         """Where the limit that pushes meets the resting slider; before, it may first have receded."""
         row: cython.int = LOWER if side > 0 else UPPER
-        g: cython.double = (self.lower[end] if side > 0 else self.upper[end]) - self.w
-        d: cython.double = self.lower_rate[end] if side > 0 else self.upper_rate[end]
+        g: float = (self.lower[end] if side > 0 else self.upper[end]) - self.w
+        d: float = self.lower_rate[end] if side > 0 else self.upper_rate[end]
         j: cython.int = self.motion.node_before(theta)
         node: cython.int = j % self.motion.nodes
-        low: cython.double = self.motion.first + j * self.motion.step
-        value: cython.double
-        slope: cython.double
+        low: float = self.motion.first + j * self.motion.step
+        value: float
+        slope: float
+        begin: float
         while low > self.span_begin:
             value, slope = self.motion.at[row, node] - self.w, self.motion.at[row + 1, node]
             if low < theta:
                 if value * side < 0.0:
-                    return self.crossings.root(row, self.w, low, value, slope, theta, g, d)
+                    begin = self.crossings.root(row, self.w, low, value, slope, theta, g, d)
+                    return begin
                 if value != 0.0:
                     theta, g, d = low, value, slope
             j -= 1
@@ -352,4 +276,5 @@ class Cycle:
         slope = self.lower_rate[self.span] if side > 0 else self.upper_rate[self.span]
         if value * side > -self.crossings.noise:
             value = 0.0  # the limit lets go of the slider here, and comes back
-        return self.crossings.root(row, self.w, self.span_begin, value, slope, theta, g, d)
+        begin = self.crossings.root(row, self.w, self.span_begin, value, slope, theta, g, d)
+        return begin

@@ -1,4 +1,4 @@
-"""Integrals over the pieces of a steady cycle, of exp(-i m theta) and of the forces times that.
+"""Kernel: integrals over the pieces of a steady cycle, of exp(-i m theta) and of the forces times that.
 
 Over each piece the forces are trigonometric polynomials, so all that is needed are the integrals of
 exp(-i m theta) over the pieces in which the contact sticks, slips (with the sign of the force) and is closed.
@@ -47,10 +47,7 @@ class Integrals:
         self.points, self.weights = 0.5 * (1.0 + nodes), 0.5 * weights
         self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def integrate(self) -> cython.void:
+    def integrate(self) -> None:
         """Sum the integrals of exp(-i m theta) over the pieces, and the forces of short sticks."""
         m: cython.int
         p: cython.int
@@ -64,7 +61,7 @@ class Integrals:
         self.powers(0, self.cycle.event_cos[e], self.cycle.event_sin[e])
         begin: cython.int = 0
         end: cython.int = 1
-        length: cython.double
+        length: float
         for p in range(last + 1):
             if p < last:
                 e = self.cycle.event[p + 1]
@@ -79,18 +76,15 @@ class Integrals:
                 self.piece(p, begin, end, max(length, 0.0))
             begin, end = end, begin
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: cython.double) -> cython.void:
+    def piece(self, p: cython.int, begin: cython.int, end: cython.int, length: float) -> None:
         """Add a piece in which the contact is closed to the sums of its sets."""
         m: cython.int
         state: cython.int = self.cycle.state[p]
-        w: cython.double = self.cycle.rest[p]
-        sign: cython.double = 0.0
-        long: cython.double = 0.0
-        c: cython.double = length
-        s: cython.double = 0.0
+        w: float = self.cycle.rest[p]
+        sign: float = 0.0
+        long: float = 0.0
+        c: float = length
+        s: float = 0.0
         if state == STICK:
             if length * self.highest > SHORT:
                 long = 1.0
@@ -98,7 +92,7 @@ class Integrals:
                 self.short_stick(p, begin, length)
         else:
             sign = 1.0 if state == POSITIVE else -1.0
-        stick: cython.double = 1.0 if state == STICK else 0.0
+        stick: float = 1.0 if state == STICK else 0.0
         for m in range(self.highest + 1):
             if m > 0:
                 c = (self.power_sin[end, m] - self.power_sin[begin, m]) * self.reciprocal[m]
@@ -115,44 +109,38 @@ class Integrals:
                 self.total_re[m] -= long * w * c
                 self.total_im[m] += long * w * s
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def powers(self, into: cython.int, c_1: cython.double, s_1: cython.double) -> cython.void:
+    def powers(self, into: cython.int, c_1: float, s_1: float) -> None:
         """cos(m theta) and sin(m theta) of all m."""
         m: cython.int
-        c: cython.double = 1.0
-        s: cython.double = 0.0
-        turned: cython.double
+        c: float = 1.0
+        s: float = 0.0
+        turned: float
         for m in range(1, self.highest + 1):
             turned = c * c_1 - s * s_1
             s = s * c_1 + c * s_1
             c = turned
             self.power_cos[into, m], self.power_sin[into, m] = c, s
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def short_stick(self, p: cython.int, begin: cython.int, length: cython.double) -> cython.void:
+    def short_stick(self, p: cython.int, begin: cython.int, length: float) -> None:
         """Add the integrals of f exp(-i h theta), f from what it was when the stick began."""
         e: cython.int = self.cycle.event[p]
         i: cython.int
         k: cython.int
         m: cython.int
         h: cython.int
-        a: cython.double
-        b: cython.double
-        reach: cython.double = 0.5 * (self.cycle.upper[e] - self.cycle.lower[e])
-        start: cython.double = 0.0
+        a: float
+        b: float
+        reach: float = 0.5 * (self.cycle.upper[e] - self.cycle.lower[e])
+        start: float = 0.0
         if self.cycle.cause[p] != SEPARATION:
             start = self.cycle.cause[p] * reach
         for m in range(self.most + 1):
             self.stick_re[m] = self.stick_im[m] = 0.0
         for i in range(POINTS):
-            y: cython.double = self.points[i] * length
-            half: cython.double = sin(0.5 * y)
-            f: cython.double = start
-            limit: cython.double = reach
+            y: float = self.points[i] * length
+            half: float = sin(0.5 * y)
+            f: float = start
+            limit: float = reach
             self.grow(-2.0 * half * half, sin(y))
             for k in range(self.motion.count):
                 h = self.motion.number[k]
@@ -171,35 +159,29 @@ class Integrals:
             self.total_re[m] += self.stick_re[m] * a + self.stick_im[m] * b
             self.total_im[m] += self.stick_im[m] * a - self.stick_re[m] * b
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def grow(self, re: cython.double, im: cython.double) -> cython.void:
+    def grow(self, re: float, im: float) -> None:
         """exp(i m y) - 1 of all m from that of 1, each to full relative accuracy."""
         m: cython.int
-        a: cython.double = 0.0
-        b: cython.double = 0.0
-        next_a: cython.double
+        a: float = 0.0
+        b: float = 0.0
+        next_a: float
         for m in range(1, self.highest + 1):
             next_a = a + re + (a * re - b * im)
             b = b + im + (a * im + b * re)
             a = next_a
             self.grow_re[m], self.grow_im[m] = a, b
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def product(self, h: cython.int, which: cython.int, row: cython.int) -> cython.void:
+    def product(self, h: cython.int, which: cython.int, row: cython.int) -> None:
         """Add to the totals of h the integral of a row times exp(-i h theta) over a set of pieces."""
         k: cython.int
         d: cython.int
         p: cython.int
-        a: cython.double
-        b: cython.double
-        c: cython.double
-        s: cython.double
-        re: cython.double = self.motion.mean[row] * self.cos_sum[which, h]
-        im: cython.double = -self.motion.mean[row] * self.sin_sum[which, h]
+        a: float
+        b: float
+        c: float
+        s: float
+        re: float = self.motion.mean[row] * self.cos_sum[which, h]
+        im: float = -self.motion.mean[row] * self.sin_sum[which, h]
         for k in range(self.motion.count):
             d, p = h - self.motion.number[k], h + self.motion.number[k]
             a, b = 0.5 * self.motion.re[row, k], 0.5 * self.motion.im[row, k]

@@ -1,4 +1,4 @@
-"""The hysteresis loop of a contact over any periodic motion: its states, when each begins, force at any angle."""
+"""The hysteresis loop of a contact over any periodic motion: its states, transitions and forces."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def periodic_loop(
     Returns
     -------
     PeriodicLoop
-        With `sequence`, `angles`, `force(theta)`, `normal_load(theta)`, `displacement(theta)`, `states(theta)`.
+        With `sequence`, `angles`, and at any angle `force`, `normal_load`, `displacement`, `states`.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def periodic_loop(
     contact, x, parameters = one_motion(u, v, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
     if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
         raise ValueError("all coefficients and parameters must be finite numbers")
-    contact.at(x, *parameters, False)
+    contact.at(x, *parameters)
     measures = Measures(contact.cycle)
     measures.take(k_u)
     length = contact.motion.scale / k_u if k_u > 0.0 else 0.0

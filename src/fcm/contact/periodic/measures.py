@@ -1,8 +1,9 @@
-"""What a cycle says besides its forces: extremes, energy, and how far it is from another regime.
+"""Kernel: what a cycle says besides its forces: extremes, energy, and how far it is from another regime.
 
 A regime of a contact is the sequence of its events. It changes where the load comes to vanish for an instant
-or no longer does (an extreme of the load passes zero), and where a limit comes to push the slider at one of its
-extremes or no longer does. Each such number is signed and smooth while the events before it stay what they are.
+or no longer does (an extreme of the load passes zero), and where a limit comes to push the slider at one of
+its extremes or no longer does (`margin` of its event). Each such number is signed, and smooth while the
+events before it stay what they are.
 """
 
 from __future__ import annotations
@@ -14,15 +15,14 @@ from cython.cimports.libc.math import fabs
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.crossings import Crossings
     from cython.cimports.fcm.contact.periodic.cycle import (
-        BOTTOM,
         NEGATIVE,
         POSITIVE,
         SEPARATION,
         STICK,
-        TOP,
         TWO_PI,
         Cycle,
     )
+    from cython.cimports.fcm.contact.periodic.events import BOTTOM, TOP
     from cython.cimports.fcm.contact.periodic.motion import (
         FORCE,
         FORCE_RATE,
@@ -37,15 +37,14 @@ if cython.compiled:
 else:
     from fcm.contact.periodic.crossings import Crossings
     from fcm.contact.periodic.cycle import (
-        BOTTOM,
         NEGATIVE,
         POSITIVE,
         SEPARATION,
         STICK,
-        TOP,
         TWO_PI,
         Cycle,
     )
+    from fcm.contact.periodic.events import BOTTOM, TOP
     from fcm.contact.periodic.motion import (
         FORCE,
         FORCE_RATE,
@@ -72,8 +71,8 @@ class Measures:
     Attributes
     ----------
     least_load, greatest_load
-        Extremes of n_0 + k_v v [force]: the first is positive where the contact never opens, the second negative
-        where it never closes.
+        Extremes of n_0 + k_v v [force]: the first is positive where the contact never opens, the second
+        negative where it never closes.
     overlap
         Greatest lower limit less least upper limit of k_u w [force]: negative where the contact never slips,
         equation (25); of a contact that opens it is positive.
@@ -92,16 +91,16 @@ class Measures:
         self.crossings = Crossings(cycle.motion)
         self.value = np.zeros(self.crossings.capacity)
         nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+        self.least_load = self.greatest_load = self.overlap = self.greatest_friction = 0.0
+        self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0
+        self.signature = 0
         self.points, self.weights = 0.5 * (1.0 + nodes), 0.5 * weights
 
-    def take(self, k_u: cython.double) -> None:
+    def take(self, k_u: float) -> None:
         """`measure`, called from Python."""
         self.measure(k_u)
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def measure(self, k_u: cython.double) -> cython.void:
+    def measure(self, k_u: float) -> None:
         """All attributes, of the cycle as it is."""
         self.motion.sample()
         self.friction()
@@ -109,18 +108,15 @@ class Measures:
         self.slips(k_u)
         self.sign()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def extremes(self) -> cython.void:
+    def extremes(self) -> None:
         """Of the load and of both limits, as if the contact never opened."""
         i: cython.int
         kind: cython.int
-        value: cython.double
-        low: cython.double = self.motion.at[LOAD, 0]
-        high: cython.double = low
-        top: cython.double = self.motion.at[LOWER, 0]
-        bottom: cython.double = self.motion.at[UPPER, 0]
+        value: float
+        low: float = self.motion.at[LOAD, 0]
+        high: float = low
+        top: float = self.motion.at[LOWER, 0]
+        bottom: float = self.motion.at[UPPER, 0]
         self.crossings.begin()
         self.crossings.search(LOAD_RATE, LEAST_LOAD, GREATEST_LOAD)
         self.crossings.search(LOWER_RATE, -1, TOP)
@@ -140,17 +136,14 @@ class Measures:
         self.least_load, self.greatest_load = low * self.motion.load_scale, high * self.motion.load_scale
         self.overlap = (top - bottom) * self.motion.scale
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def friction(self) -> cython.void:
+    def friction(self) -> None:
         """Greatest friction force: at an event, or where the load or the motion has an extreme."""
         p: cython.int
         i: cython.int
         self.crossings.begin()
         self.crossings.search(LOAD_RATE, LEAST_LOAD, GREATEST_LOAD)
         self.crossings.search(FORCE_RATE, TURN, TURN)
-        most: cython.double = 0.0
+        most: float = 0.0
         for p in range(self.cycle.pieces):
             if self.cycle.pieces > 1:
                 most = max(most, fabs(self.force(p, self.cycle.begin[p])))
@@ -160,13 +153,10 @@ class Measures:
             most = fabs(self.force(0, 0.0))
         self.greatest_friction = most * self.motion.scale
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def piece(self, theta: cython.double) -> cython.int:
+    def piece(self, theta: float) -> cython.int:
         """The piece that holds an angle."""
         p: cython.int = 0
-        begin: cython.double = self.cycle.begin[0]
+        begin: float = self.cycle.begin[0]
         while theta < begin:
             theta += TWO_PI
         while theta >= begin + TWO_PI:
@@ -175,13 +165,10 @@ class Measures:
             p += 1
         return p
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def force(self, p: cython.int, theta: cython.double) -> cython.double:
+    def force(self, p: cython.int, theta: float) -> float:
         """Friction force in a piece."""
         state: cython.int = self.cycle.state[p]
-        value: cython.double = 0.0
+        value: float = 0.0
         if state == STICK:
             value, _ = self.motion.evaluate(FORCE, theta)
             value -= self.cycle.rest[p]
@@ -190,16 +177,13 @@ class Measures:
             value *= state
         return value
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def slips(self, k_u: cython.double) -> cython.void:
+    def slips(self, k_u: float) -> None:
         """Energy and path of all slips: sums of what cannot be negative."""
         p: cython.int
         last: cython.int = self.cycle.pieces - 1
-        energy: cython.double = 0.0
-        path: cython.double = 0.0
-        end: cython.double
+        energy: float = 0.0
+        path: float = 0.0
+        end: float
         for p in range(last + 1):
             if self.cycle.state[p] == POSITIVE or self.cycle.state[p] == NEGATIVE:
                 end = self.cycle.begin[p + 1] if p < last else self.cycle.begin[0] + TWO_PI
@@ -207,22 +191,19 @@ class Measures:
                 energy += self.piece_energy
                 path += self.piece_path
         # forces times ways of forces: the stiffness turns these into lengths; without it there is no friction
-        length: cython.double = self.motion.scale / k_u if k_u > 0.0 else 0.0
+        length: float = self.motion.scale / k_u if k_u > 0.0 else 0.0
         self.dissipation, self.slip_path = energy * self.motion.scale * length, path * length
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def slip(self, p: cython.int, length: cython.double) -> cython.void:
+    def slip(self, p: cython.int, length: float) -> None:
         """Gauss's rule over one slip, in parts of two radians of the highest product."""
         i: cython.int
         j: cython.int
         row: cython.int = LOWER if self.cycle.state[p] > 0 else UPPER
         parts: cython.int = cython.cast(cython.int, length * max(self.motion.highest, 1)) + 1
-        step: cython.double = length / parts
-        theta: cython.double
-        rate: cython.double
-        load: cython.double
+        step: float = length / parts
+        theta: float
+        rate: float
+        load: float
         self.piece_energy = self.piece_path = 0.0
         for i in range(parts):
             for j in range(POINTS):
@@ -233,10 +214,7 @@ class Measures:
                 self.piece_energy += rate * max(load, 0.0)
                 self.piece_path += rate
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def sign(self) -> cython.void:
+    def sign(self) -> None:
         """The states, from the first of the least number that they make, as one number."""
         i: cython.int
         p: cython.int

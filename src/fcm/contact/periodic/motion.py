@@ -1,6 +1,6 @@
-"""A contact's periodic motion as trigonometric polynomials: its load, its two limits, and their slopes.
+"""Kernel: a contact's periodic motion as trigonometric polynomials: its load and its two limits.
 
-Compiled where there is a C compiler. With forces instead of displacements, everything divided by the greatest
+With forces instead of displacements, everything divided by the greatest
 amplitude, the limits between which the slider k_u w is held are
 
     lower(theta) = k_u u - mu n,   upper(theta) = k_u u + mu n,   n = n_0 + k_v v where that is positive.
@@ -52,7 +52,7 @@ class Motion:
         self.highest = max(harmonics, default=0)
         self.number = numbers
         self.order = numbers.astype(np.float64)
-        self.nodes = NODES_PER_HARMONIC * max(self.highest, 1) + 2
+        self.nodes = NODES_PER_HARMONIC * max(self.highest, 1) + 1
         self.step = 2.0 * np.pi / self.nodes
         self.first = FIRST_NODE * self.step
         angle = np.outer(self.first + self.step * np.arange(self.nodes), np.arange(self.highest + 1))
@@ -61,27 +61,25 @@ class Motion:
         self.re = np.zeros((ROWS, max(self.count, 1)))
         self.im = np.zeros((ROWS, max(self.count, 1)))
         self.mean = np.zeros(ROWS)
+        self.scale = self.load_scale = self.ratio = self.preload = 0.0
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
         self.at = np.zeros((REACH, self.nodes))
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def load(
         self,
         x: cython.double[::1],
         first: cython.Py_ssize_t,
-        mu: cython.double,
-        k_u: cython.double,
-        k_v: cython.double,
-        n_0: cython.double,
+        mu: float,
+        k_u: float,
+        k_v: float,
+        n_0: float,
     ) -> cython.int:
         """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
         k: cython.int
         i: cython.Py_ssize_t = first + 2
-        motion: cython.double = 0.0
-        variation: cython.double = 0.0
-        for k in range(self.count):
+        motion: float = 0.0
+        variation: float = 0.0
+        for k in range(self.count):  # noqa: B007
             motion = max(motion, fabs(x[i]), fabs(x[i + 1]))
             variation = max(variation, fabs(x[i + 2]), fabs(x[i + 3]))
             # max passes over what is not a number
@@ -102,17 +100,12 @@ class Motion:
         self.bound()
         return self.behaviour()
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def fill(
-        self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: cython.double, k_v: cython.double
-    ) -> cython.void:
+    def fill(self, x: cython.double[::1], first: cython.Py_ssize_t, k_u: float, k_v: float) -> None:
         """The coefficients of all rows."""
         k: cython.int
         i: cython.Py_ssize_t = first
         row: cython.int
-        order: cython.double
+        order: float
         for k in range(self.count):
             order = self.order[k]
             self.re[FORCE, k] = k_u * x[i] / self.scale
@@ -130,23 +123,17 @@ class Motion:
                 self.im[row + 1, k] = order * self.re[row, k]
             i += 4
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def behaviour(self) -> cython.int:
         """What the mean load and the sum of the amplitudes of its variation say."""
         k: cython.int
-        total: cython.double = 0.0
+        total: float = 0.0
         for k in range(self.count):
             total += hypot(self.re[LOAD, k], self.im[LOAD, k])
         if self.mean[LOAD] <= -total:
             return OPEN
         return CLOSED if self.mean[LOAD] >= total else MIXED
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def bound(self) -> cython.void:
+    def bound(self) -> None:
         """`load_bound` and `limit_bound`: no value of the derivative of an order is greater.
 
         They are sums of order**power times the amplitude; of a limit those of the motion and the load, so
@@ -154,8 +141,8 @@ class Motion:
         """
         k: cython.int
         p: cython.int
-        load: cython.double
-        limit: cython.double
+        load: float
+        limit: float
         for p in range(POWERS):
             self.load_bound[p] = self.limit_bound[p] = 0.0
         for k in range(self.count):
@@ -167,25 +154,22 @@ class Motion:
                 load *= self.order[k]
                 limit *= self.order[k]
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def sample(self) -> cython.void:
+    def sample(self) -> None:
         """Load and limits with their derivatives at all nodes."""
         j: cython.int
         k: cython.int
-        c: cython.double
-        s: cython.double
-        order: cython.double
-        real: cython.double
-        imag: cython.double
+        c: float
+        s: float
+        order: float
+        real: float
+        imag: float
         for j in range(self.nodes):
-            u: cython.double = 0.0
-            u_1: cython.double = 0.0
-            u_2: cython.double = 0.0
-            y: cython.double = 0.0
-            y_1: cython.double = 0.0
-            y_2: cython.double = 0.0
+            u: float = 0.0
+            u_1: float = 0.0
+            u_2: float = 0.0
+            y: float = 0.0
+            y_1: float = 0.0
+            y_2: float = 0.0
             for k in range(self.count):
                 order, c, s = self.order[k], self.node_cos[j, k], self.node_sin[j, k]
                 real = self.re[FORCE, k] * c - self.im[FORCE, k] * s
@@ -205,18 +189,15 @@ class Motion:
             self.at[UPPER, j], self.at[UPPER + 1, j], self.at[UPPER + 2, j] = u + y, u_1 + y_1, u_2 + y_2
             self.at[FORCE, j], self.at[FORCE + 1, j], self.at[FORCE + 2, j] = u, u_1, u_2
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def evaluate(self, row: cython.int, theta: cython.double) -> tuple[cython.double, cython.double]:
+    def evaluate(self, row: cython.int, theta: float) -> tuple[float, float]:
         """Value and slope of a row at an angle."""
-        c_1: cython.double = cos(theta)
-        s_1: cython.double = sin(theta)
-        c: cython.double = c_1
-        s: cython.double = s_1
-        turned: cython.double
-        value: cython.double = self.mean[row]
-        slope: cython.double = 0.0
+        c_1: float = cos(theta)
+        s_1: float = sin(theta)
+        c: float = c_1
+        s: float = s_1
+        turned: float
+        value: float = self.mean[row]
+        slope: float = 0.0
         h: cython.int = 1
         k: cython.int
         for k in range(self.count):
@@ -229,9 +210,6 @@ class Motion:
             slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
         return value, slope
 
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def node_before(self, theta: cython.double) -> cython.int:
+    def node_before(self, theta: float) -> cython.int:
         """Number of the last node at or before an angle; not reduced to one turn."""
         return cython.cast(cython.int, floor((theta - self.first) / self.step))
