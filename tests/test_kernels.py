@@ -36,6 +36,16 @@ def test_a_run_says_once_that_kernels_are_not_compiled(tmp_path):
     assert run("-m", "fcm.cli", "--help") == run("-c", "import fcm") == 0
 
 
+def test_threads_have_motions_of_their_own():
+    rng = np.random.default_rng(1)
+    u, v = rng.standard_normal((2, 8, 200, 5)) + 0j
+    arguments = (0.4, 1.0, 2.0, 1.0)
+    with ThreadPoolExecutor(4) as threads:
+        together = list(threads.map(lambda i: fcm.periodic_forces(u[i], v[i], *arguments), range(8)))
+    for i, both in enumerate(together):
+        assert np.array_equal(both, fcm.periodic_forces(u[i], v[i], *arguments))
+
+
 @pytest.mark.parametrize("law", [fcm.fourier_gradients, fcm.open_table().gradients])
 def test_threads_do_not_disturb_one_another(law):
     points = np.random.default_rng(0).uniform(0.0, 2.0, (8, 3, 2000))

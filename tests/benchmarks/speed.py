@@ -11,12 +11,14 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 import fcm
 from fcm.contact.cycle import __file__ as kernel
+from fcm.contact.periodic.forces import PeriodicContact
 from fcm.response import trace
 from fcm.table.locate import locate
 
@@ -90,6 +92,24 @@ def coefficients() -> None:
     )
 
 
+def periodic(count: int = 2000) -> None:
+    """The kernel alone, in one thread: random motions, of which nearly all slip and most separate."""
+    rng = np.random.default_rng(2)
+    parameters = np.tile([0.6, 1.0, 1.0, 0.5, 0.0], (count, 1))  # mu, k_u, k_v, n_0, start
+    rows: list[Row] = []
+    for highest in (1, 3, 9, 15):
+        harmonics = list(range(1, highest + 1))
+        contact = PeriodicContact(harmonics, harmonics)
+        forces, jacobians = np.empty((count, contact.equations)), np.empty((count, *contact.jacobian.shape))
+        for decay in (1, 2):
+            size = np.concatenate(([0.0, 0.0], np.repeat(np.arange(1.0, highest + 1.0) ** -decay, 4)))
+            x = rng.standard_normal((count, contact.unknowns)) * size
+            for what, room in (("", jacobians[:0]), (", derivatives", jacobians)):
+                call = partial(contact.all, x, parameters, forces, room)
+                rows.append((f"{highest} harmonics as h**-{decay}{what}", call, count))
+    block("forces of any periodic motion, a motion", rows)
+
+
 def repeat(call: Callable[..., object], arguments: tuple[object, ...], times: int) -> None:
     for _ in range(times):
         call(*arguments)
@@ -131,6 +151,7 @@ def main() -> None:
     print(f"fcm {fcm.__version__}, kernels {mode}, Python {sys.version.split()[0]}, numpy {np.__version__}")
     print("processor time; the median of 7 runs in turn, one run of the thousand curves")
     coefficients()
+    periodic()
     curves()
     many_curves()
 

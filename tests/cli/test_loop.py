@@ -7,7 +7,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm import load_scene
+from fcm import load_scene, periodic_forces, periodic_loop
 from fcm.response import trace
 from fcm.response.output import write_netcdf
 
@@ -54,6 +54,37 @@ def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm, undrawn):
     assert (one["n0_bar"], one["b_bar"]) == pytest.approx((0.32, 0.4))
     (ratios,) = loops(fcm("plot", "loop", "--n0-bar", 0.32, "--b-bar", 0.4, "--json"))
     assert ratios["sequence"] == other["sequence"]
+
+
+def test_harmonics_of_the_motion(fcm, tmp_path):
+    """u = a sin(theta) + 0.6 sin(3 theta + 20deg) and so on; the same by the forces of that motion."""
+    scaled = ("--mu", 0.4, "--k-u", 2.0, "--k-v", 1.5, "--n0", 0.6, "--a", 1.5, "--b", 1.2, "--phi", "30deg")
+    harmonics = ("--harmonic", "u", 3, 0.6, "20deg", "--harmonic", "v", 2, 0.3, 0.5)
+    (one,) = loops(fcm("plot", "loop", *scaled, *harmonics, "--json", "-o", "a.svg"))
+    assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
+    assert [tuple(h.values()) for h in one["harmonics"]] == [
+        ("u", 3, 0.6, pytest.approx(np.radians(20.0))), ("v", 2, 0.3, 0.5),
+    ]  # fmt: skip
+    u = -1j * np.array([0.0, 1.5, 0.0, 0.6 * np.exp(1j * np.radians(20.0))])
+    v = -1j * np.array([0.0, 1.2 * np.exp(1j * np.radians(30.0)), 0.3 * np.exp(0.5j)])
+    f, _ = periodic_forces(u, v, 0.4, 2.0, 1.5, 0.6)
+    known = periodic_loop(u, v, 0.4, 2.0, 1.5, 0.6)
+    assert (one["F_b"], one["F_s"], one["F_c"]) == pytest.approx(
+        (f[0].real / 3.0, -f[1].imag / 3.0, f[1].real / 3.0), abs=1e-14
+    )
+    assert one["sequence"] == known.sequence
+    found = one["transitions"]
+    assert [t["degrees"] for t in found] == pytest.approx(np.degrees(known.angles), abs=1e-9)
+    assert [t["force"] for t in found] == pytest.approx(known.force(known.angles) / 3.0, abs=1e-12)
+
+
+def test_a_harmonic_of_no_amplitude_changes_nothing(fcm, undrawn):
+    (plain,) = loops(fcm("plot", "loop", *CONTACT, "--json"))
+    (other,) = loops(fcm("plot", "loop", *CONTACT, "--harmonic", "u", 5, 0, 0, "--json"))
+    assert other["sequence"] == plain["sequence"]
+    for key in ("degrees", "displacement", "force"):
+        first, second = ([t[key] for t in case["transitions"]] for case in (plain, other))
+        assert second == pytest.approx(first, abs=1e-10)
 
 
 def test_the_angle_may_begin_at_the_greatest_displacement(fcm, undrawn):
@@ -107,6 +138,14 @@ def test_the_picture_is_beside_the_file(fcm, folded):
         ((*CONTACT, "--n0-bar", 1), "--n0-bar is of no use beside"),
         ((*CONTACT, "--k-u", 1e-300, "--a", 1e-300), "have to be finite"),
         (("--at", 1), "--at is of no use without a FILE"),
+        (("--harmonic", "u", 3, 1, 0), "--harmonic is of no use without --mu"),
+        ((*CONTACT, "--harmonic", "w", 3, 1, 0), "'w' is not one of 'u', 'v'"),
+        ((*CONTACT, "--harmonic", "u", 1, 1, 0), "1 is not in the range"),
+        ((*CONTACT, "--harmonic", "u", 2, -1, 0), "-1 is no amplitude"),
+        ((*CONTACT, "--harmonic", "u", 2, "nan", 0), "nan is no amplitude"),
+        ((*CONTACT, "--harmonic", "u", 2, 1, "north"), "'north' is no angle"),
+        ((*CONTACT, *2 * ("--harmonic", "v", 2, 1, 0)), "harmonic 2 of v is given twice"),
+        ((*CONTACT, "--harmonic", "u", 2, 1e300, 0, "--a", 1e-30, "--k-u", 1e30), "amplitudes / a"),
         (("--units", "m", "N"), "the axes have no dimension"),
         (("--n0-bar", 1, *(x for phi in range(13) for x in ("--phi", phi))), "13 loops are too many"),
         (("-o", "a.txt"), "has to end in"),
@@ -127,6 +166,7 @@ def test_nonsense_is_said(fcm, tmp_path, args, said):
         (("--curve", 0, "--contact", "blade"), "there is no contact 'blade'; it has shroud"),
         (("--curve", 0, "--at", 1, "--solution", 2), "there are 1 at this frequency"),
         (("--curve", 0, "--phi", 1), "--phi is of no use with a FILE"),
+        (("--curve", 0, "--harmonic", "u", 2, 1, 0), "--harmonic is of no use with a FILE"),
     ],
 )
 def test_what_the_file_has_not_is_said(fcm, folded, args, said):

@@ -1,8 +1,8 @@
 """The contact law of any periodic motion marched through cells, in extended precision; knows of no sequence.
 
 Cells of the cycle are halved until Taylor's series with a bounded rest forbids that in one of them the load
-vanishes or a limit turns, or until they are so short that it does not matter (1e-18 rad of the load, 1e-9 rad
-of a limit, whose extreme is flat). In a cell a slider between two monotone limits can only be clipped to them.
+vanishes or a limit turns, or until they are so short that it does not matter: 1e-18 rad of the load, 1e-9 rad
+of a limit, whose extreme is flat. In a cell a slider between two monotone limits can only be clipped to them.
 It starts unstressed and is marched for three cycles; the force of the last is integrated by Gauss's rule.
 The arithmetic has 64 bits, so the error is some 1e-18 of the greatest terms.
 """

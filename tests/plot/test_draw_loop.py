@@ -30,6 +30,20 @@ def states(axes):
     return [by_colour[to_rgb(line.get_color())] for line in lines]
 
 
+def test_a_loop_of_several_harmonics_is_drawn_in_its_own_units():
+    loop = fcm.periodic_loop([0.2, -2j, 0.0, 1.0], [0.0, 1.5], 0.4, 3.0, 1.0, 0.8)
+    ((above, below),) = panels(drawn([loop]))
+    assert states(above) == list(loop.sequence)
+    assert set(states(below)) == set(loop.sequence)
+    rings = [line for line in above.lines if line.get_marker() == "o"]
+    assert [line.get_xdata()[0] for line in rings] == pytest.approx(loop.displacement(loop.angles))
+    assert [line.get_ydata()[0] for line in rings] == pytest.approx(loop.force(loop.angles), abs=1e-12)
+    theta = np.linspace(0.0, 2.0 * np.pi, 500)
+    (left, right), (low, high) = above.get_xlim(), above.get_ylim()
+    assert left < loop.displacement(theta).min() and loop.displacement(theta).max() < right
+    assert low < loop.force(theta).min() and loop.force(theta).max() < high
+
+
 def test_every_state_is_a_line_of_its_own_and_every_transition_marked():
     for loop, (above, below) in zip(FIGURE_8, panels(drawn(FIGURE_8)), strict=True):
         assert states(above) == list(loop.sequence)

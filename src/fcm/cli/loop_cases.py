@@ -139,15 +139,16 @@ def _loop(
 
     if not harmonics:
         return hysteresis_loop(*ratios)
-    a, force = one["a"], one["k_u"] * one["a"]
-    # amplitude sin(h theta + phase) is the real part of -i amplitude exp(i phase) exp(i h theta)
+    a, k_u = one["a"], one["k_u"]
+    stiffness, preload = one["k_v"] / k_u, one["n_0"] / (k_u * a)
+    first = Harmonic("u", 1, a, 0.0), Harmonic("v", 1, one["b"], ratios[2])
     motion = {name: [0j] * (1 + max(h.order for h in harmonics)) for name in "uv"}
-    motion["u"][1], motion["v"][1] = -1j, cmath.rect(one["b"] / a, ratios[2] - 0.5 * math.pi)
-    for h in harmonics:
+    for h in (*first, *harmonics):
+        if not math.isfinite(h.amplitude / a + stiffness + preload):
+            raise click.UsageError("amplitudes / a, k_v / k_u and n_0 / (k_u a) have to be finite.")
+        # amplitude sin(h theta + phase) is the real part of -i amplitude exp(i phase) exp(i h theta)
         motion[h.motion][h.order] = cmath.rect(h.amplitude / a, h.phase - 0.5 * math.pi)
-    return periodic_loop(
-        motion["u"], motion["v"], one["mu"], 1.0, one["k_v"] / one["k_u"], one["n_0"] / force
-    )
+    return periodic_loop(motion["u"], motion["v"], one["mu"], 1.0, stiffness, preload)
 
 
 def of_file(

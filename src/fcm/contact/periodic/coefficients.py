@@ -87,8 +87,7 @@ def periodic_forces(
     ((0.31831-0.5j), 1.0)
     """
     motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
-    forces = np.empty((motion.unknowns.shape[0], motion.contact.equations))
-    motion.contact.all(motion.unknowns, motion.parameters, forces)
+    forces, _ = motion.evaluate(gradient=False)
     f, n = _complex(forces)
     return f.reshape(*motion.shape, -1), n.reshape(*motion.shape, -1)
 
@@ -127,14 +126,7 @@ def periodic_gradients(
     -0.63662
     """
     motion = _Motion.of(u, v, harmonics, mu=mu, k_u=k_u, k_v=k_v, n_0=n_0, start=start)
-    count, contact = motion.unknowns.shape[0], motion.contact
-    forces, jacobian = (
-        np.empty((count, contact.equations)),
-        np.empty((count, contact.equations, contact.unknowns)),
-    )
-    for i in range(count):
-        contact.at(motion.unknowns[i], *motion.parameters[i])
-        forces[i], jacobian[i] = contact.forces, contact.jacobian
+    forces, jacobian = motion.evaluate(gradient=True)
     by = _by_coefficients(jacobian)
     df, dn = (x.reshape(*motion.shape, *x.shape[1:]) for x in _complex(by))
     f, n = (x.reshape(*motion.shape, -1) for x in _complex(forces))
@@ -186,6 +178,14 @@ class _Motion(NamedTuple):
         return cls(
             contact, shape, np.ascontiguousarray(unknowns), np.ascontiguousarray(np.stack(columns, axis=-1))
         )
+
+    def evaluate(self, gradient: bool) -> tuple[FloatArray, FloatArray]:
+        """Forces (point, equation), and if wanted their derivatives (point, equation, unknown)."""
+        count, contact = self.unknowns.shape[0], self.contact
+        forces = np.empty((count, contact.equations))
+        jacobian = np.empty((count if gradient else 0, contact.equations, contact.unknowns))
+        contact.all(self.unknowns, self.parameters, forces, jacobian)
+        return forces, jacobian
 
 
 def _complex(forces: FloatArray) -> tuple[ComplexArray, ComplexArray]:

@@ -77,19 +77,31 @@ class PeriodicContact:
         return kind
 
     def all(
-        self, x: cython.double[:, ::1], parameters: cython.double[:, ::1], forces: cython.double[:, ::1]
+        self,
+        x: cython.double[:, ::1],
+        parameters: cython.double[:, ::1],
+        forces: cython.double[:, ::1],
+        jacobians: cython.double[:, :, ::1],
     ) -> None:
-        """`forces` (point, equation) of motions (point, unknown); mu, k_u, k_v, n_0, start of each."""
+        """`forces` (point, equation) of motions (point, unknown); mu, k_u, k_v, n_0, start of each.
+
+        And `jacobians` (point, equation, unknown), unless there is no room for them.
+        """
+        gradient: cython.bint = jacobians.shape[0] > 0
         i: cython.Py_ssize_t
         j: cython.int
+        k: cython.int
         with cython.nogil:
             for i in range(x.shape[0]):
                 self.evaluate(
                     x[i], 0, parameters[i, 0], parameters[i, 1], parameters[i, 2], parameters[i, 3],
-                    parameters[i, 4], False,
+                    parameters[i, 4], gradient,
                 )  # fmt: skip
                 for j in range(self.equations):
                     forces[i, j] = self.forces[j]
+                    if gradient:
+                        for k in range(self.unknowns):
+                            jacobians[i, j, k] = self.jacobian[j, k]
 
     def evaluate(
         self,
