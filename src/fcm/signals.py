@@ -39,14 +39,19 @@ class _Program:
         self.before: dict[int, Any] = {}
 
     def interrupted(self, _number: int, _frame: FrameType | None) -> None:
-        if self.phase == _LOADS:
-            os.write(2, f"fcm: {INTERRUPTED}\n".encode())
         if self.phase != _WORKS:
-            os._exit(self.code)
+            self.leave()
         now = time.monotonic()
         if now - self.last >= ONE:
             self.last = now
             self.again(_number, _frame)
+
+    def leave(self) -> None:
+        try:
+            if self.phase == _LOADS:
+                os.write(2, f"fcm: {INTERRUPTED}\n".encode())
+        finally:  # be standard error closed
+            os._exit(self.code)
 
     def again(self, _number: int, _frame: FrameType | None) -> None:
         if self.shields:

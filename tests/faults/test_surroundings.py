@@ -271,6 +271,19 @@ def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
         assert run.returncode in (0, 3) and "Traceback" not in said and "Exception" not in said
 
 
+def test_what_is_told_to_ignore_a_signal_ignores_it(program):
+    """As `nohup` does."""
+    deaf = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)  # noqa: E731
+    run = program.start(
+        "respond", "one.toml", "-o", "a.nc", preexec_fn=deaf, before="print('begun', flush=True)"
+    )
+    assert run.stdout.readline() == "begun\n"
+    for _ in range(5):
+        os.kill(run.pid, signal.SIGHUP)
+        time.sleep(0.05)
+    assert run.wait(timeout=60) == 0 and "a.nc" in program.files
+
+
 NAUGHTY = "\x1b]0;owned\x07\x1b[31m\u202e"
 
 

@@ -22,7 +22,7 @@ from fcm.run import Checkpoint, CheckpointError, Elsewhere, Lost, fingerprint, p
 from fcm.run.fingerprint import program as of_program
 from fcm.run.records import Record, packed
 
-from .conftest import FEW, SWEEP, end, session, variables
+from .conftest import FEW, ONE, SWEEP, end, session, variables
 
 ALONE = FEW.replace("= 2", "= 1")
 SLOW = (
@@ -381,6 +381,28 @@ def test_verbose_shows_where_a_curve_was_lost(program):
     loud = program("respond", "one.toml", "-v", before=lost)
     assert (quiet.returncode, loud.returncode) == (1, 1)
     assert "Traceback" not in quiet.err and "in broken" in loud.err and "Traceback" in loud.err
+
+
+def test_a_schedule_that_is_interrupted_keeps_the_curves(program):
+    """And leaves a former file of both as it was."""
+    program.write("one.toml", ONE + "[[schedule]]\nfrequency = 1.2\ncycles = 50\n")
+    stopped = (
+        ALONE
+        + """
+import sys, fcm.motion.histories
+def stop(*_):
+    raise KeyboardInterrupt
+sys.modules["fcm.motion.histories"].histories = stop
+"""
+    )
+    former = program.folder / "a.csv"
+    former.write_text("former")
+    done = program("respond", "one.toml", "--csv", "a.csv", before=stopped)
+    assert done.returncode == 3 and former.read_text() == "former"
+    assert "kept in a.csv.unfinished: continue with --resume" in done.err
+    nothing = ALONE + "import fcm.response.groups as groups\ngroups.trace_group = None\n"
+    assert program("respond", "one.toml", "--csv", "a.csv", "--resume", before=nothing).returncode == 0
+    assert former.read_text().startswith("curve,") and program.files == ["a.csv", "one.toml", "sweep.toml"]
 
 
 AT = ("respond", "sweep.toml", "--method", "exact", "--at", "1.15:1.3:12", "-o", "a.nc")

@@ -31,16 +31,17 @@ class Outputs:
 
     @contextmanager
     def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
-        """What is finished is kept beside the output as long as that is not written."""
-        if self.output is None:
+        """What is finished is kept beside the first of the files as long as they are not written."""
+        anchor = self.output or self.csv or self.history_csv
+        if anchor is None:
             yield None
             return
         from fcm.files import remove_stale
         from fcm.run import Checkpoint
         from fcm.run.checkpoint import unfinished
 
-        with Checkpoint(unfinished(self.output), resume) as self.checkpoint:
-            remove_stale(self.output.resolve())
+        with Checkpoint(unfinished(anchor), resume) as self.checkpoint:
+            remove_stale(anchor.resolve())
             try:
                 yield self.checkpoint
             except BaseException:

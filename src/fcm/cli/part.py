@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fcm.cli.messages import Messages
+from fcm.run import Progress
 from fcm.table import TableError, open_table
 from fcm.table.build import charts
 from fcm.table.locate import Resolution
@@ -15,7 +16,7 @@ from fcm.table.part import Part, Reach
 REPEATS = 3  # the best of so many times is reported
 
 
-def reached(messages: Messages, scene: str, resolution: Resolution) -> Part:
+def reached(messages: Messages, scene: str, resolution: Resolution, progress: Progress | None = None) -> Part:
     """The nodes that the response of a scene looks up, traced with the closed form.
 
     Raises
@@ -27,7 +28,9 @@ def reached(messages: Messages, scene: str, resolution: Resolution) -> Part:
     from fcm.scene import load_scene
 
     reach = Reach(resolution)
-    response = trace(load_scene(scene), table=reach, progress=messages.progress)
+    response = trace(load_scene(scene), table=reach, progress=progress)
+    if response.interrupted:
+        raise KeyboardInterrupt
     messages.clear()
     part = reach.part()
     if part is None:

@@ -106,7 +106,7 @@ def respond(
     exact.check_options(method, at)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
-    if resume and output is None:
+    if resume and output is None and csv is None and history_csv is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fcm.table.locate import Resolution
 
 DEFAULT_OUTPUT = "table.nc"
+HALF = 0.5  # of the progress bar is for the scene's response, where a part is built for one
 POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the user says
 
 
@@ -112,6 +113,7 @@ def _build(
     to_json: bool,
 ) -> None:
     from fcm.cli.part import reached, saving
+    from fcm.run.progress import part as share
     from fcm.table import build_table
     from fcm.table.nodes import PRESETS
 
@@ -119,9 +121,11 @@ def _build(
     began = time.perf_counter()
     with Interruptible(messages, f"nothing was written, {output} is as it was") as progress:
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
-        part = None if scene is None else reached(messages, scene, resolution)
+        part, begin = None, 0.0
+        if scene is not None:
+            part, begin = reached(messages, scene, resolution, share(progress, 0.0, HALF)), HALF
         made_by += "" if scene is None else f" --for {plain(scene)}"
-        table = build_table(output, resolution, points, progress, made_by, part)
+        table = build_table(output, resolution, points, share(progress, begin, 1.0), made_by, part)
     seconds = time.perf_counter() - began
     size = output.stat().st_size
     result = {

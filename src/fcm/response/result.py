@@ -137,8 +137,10 @@ class Response:
 
     @property
     def interrupted(self) -> bool:
-        """Whether curves are missing, or cut off, because the run was interrupted."""
-        return any(curve.reason.startswith(INTERRUPTED) for curve in self.curves)
+        """Whether curves, or parts of the schedule, are missing because the run was interrupted."""
+        simulated = [] if self.histories is None else self.histories.records
+        reasons = [*(curve.reason for curve in self.curves), *(record.reason for record in simulated)]
+        return any(reason.startswith(INTERRUPTED) for reason in reasons)
 
     @property
     def parameters(self) -> list[dict[str, float]]:
