@@ -108,6 +108,8 @@ def respond(
         raise click.UsageError("--table is of no use with --method closed-form.")
     if resume and output is None and csv is None and history_csv is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
+    from fcm.response.visible import visible
+
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
@@ -122,6 +124,7 @@ def respond(
             response = _without_curves(loaded)
         if loaded.schedule:
             response.histories = schedule.simulated(messages, loaded, response)
+        response = visible(response, loaded)
         response.notes = list(loaded.notes)
         result = outputs.write(response, to_json)
     _close(messages, result, response.defects)
@@ -141,9 +144,11 @@ def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...
 def _loaded(
     messages: Messages, scene: str, max_step: float | None, history_csv: Path | None, largest_file: int
 ) -> Scene:
+    from fcm.response.visible import check_solvable
     from fcm.scene import load_scene
 
     loaded = load_scene(scene, largest_file=largest_file).in_use()
+    check_solvable(loaded)
     for note in loaded.notes:
         messages.info(note)
     schedule.check_options(loaded, history_csv)

@@ -49,15 +49,17 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     [[1.2388, 1.1875]]
     """
     from fcm.response.output import to_dataset
+    from fcm.response.visible import check_solvable, visible
 
     scene = scene.in_use()
+    check_solvable(scene)
     response = _curves(scene, method, at)
     response.notes = list(scene.notes)
     if scene.schedule:
         from fcm.motion import histories
 
         response.histories = histories(scene)
-    return to_dataset(response)
+    return to_dataset(visible(response, scene))
 
 
 def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,11 @@ from fcm.scene.errors import Mistakes, quoted
 
 Address = tuple[str | int, ...]  # of a number, or of a vector whose numbers are all set
 VECTORS = ("mass", "frequency", "damping")  # of the modal table
+NUMBERS = {  # of each kind of table
+    "contact": ("n_0", "gap", "mu", "k_u", "k_v"),
+    "force": ("amplitude", "phase"),
+    "load": ("force",),
+}
 
 
 class Addresses:
@@ -22,12 +28,46 @@ class Addresses:
         self.numbers = dict(_numbers(parts))
         self.arrays = dict(_arrays(parts))
 
-    def find(self, key: str, path: str, mistakes: Mistakes) -> Address | None:
-        """The address of a key path; None after a mistake."""
+    def find(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
+        """The addresses of a key path; none after a mistake."""
+        if "*" in key and key not in self.numbers:
+            return self._matching(key, path, mistakes)
         address = self.numbers.get(key) or self._element(key)
-        if address is None and not self._excused(key, path, mistakes):
+        if address is not None:
+            return (address,)
+        if members := self._members(key):
+            return members
+        if not self._excused(key, path, mistakes):
             mistakes.add(path, "there is no such number in the scene to sweep", key, self.numbers)
-        return address
+        return ()
+
+    def _matching(self, key: str, path: str, mistakes: Mistakes) -> tuple[Address, ...]:
+        """The numbers of all contacts or forces whose names match a key path with a *."""
+        prefix, _, field = key.rpartition(".")
+        labels = {
+            (kind, index): f"{kind}.{draft['name'] or index}"
+            for kind in NUMBERS
+            for index, draft in enumerate(self.parts[kind])
+        }
+        matched = [at for at, label in labels.items() if fnmatchcase(label, prefix)]
+        if not matched:
+            mistakes.add(path, f"nothing in the scene matches {quoted(prefix)}")
+            return ()
+        for kind, index in matched:
+            draft = self.parts[kind][index]
+            if field not in NUMBERS[kind] or field not in draft:
+                other = {"n_0": "gap", "gap": "n_0"}.get(field, "")
+                hint = f"; it is given by {other}" if other in draft else ""
+                mistakes.add(path, f"{quoted(labels[kind, index])} has no {quoted(field)} to sweep{hint}")
+                return ()
+        return tuple((kind, index, field) for kind, index in matched)
+
+    def _members(self, key: str) -> tuple[Address, ...]:
+        """The numbers of all contacts of a group, which one [[contact]] with nodes has made."""
+        prefix, _, field = key.rpartition(".")
+        drafts = enumerate(self.parts["contact"])
+        same = [i for i, draft in drafts if f"contact.{draft.get('group', '')}" == prefix and field in draft]
+        return tuple(("contact", i, field) for i in same if field in NUMBERS["contact"])
 
     def _element(self, key: str) -> Address | None:
         """A number in an array: a dof's weight, or a mode's value at a dof."""
@@ -46,7 +86,9 @@ class Addresses:
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
         else:
-            return key.startswith("modal.") and any(part is None for part in self.parts["modal"].values())
+            return key.startswith("modal.") and any(
+                self.parts["modal"][part] is None for part in (*VECTORS, "dofs", "shapes")
+            )
         return True
 
 
@@ -78,7 +120,9 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
         if values is not None:
             yield f"modal.{key}", ("modal", key)
             yield from ((f"modal.{key}.{index}", ("modal", key, index)) for index in range(len(values)))
-    for kind, keys in (("contact", ("n_0", "gap", "mu", "k_u", "k_v")), ("force", ("amplitude", "phase"))):
+    for draft in parts["base"]:
+        yield from ((f"base.{key}", ("base", 0, key)) for key in ("acceleration", "phase") if key in draft)
+    for kind, keys in NUMBERS.items():
         for prefix, index, draft in _named(parts, kind):
             yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys if key in draft)
 
@@ -88,7 +132,7 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
     shapes = parts["modal"]["shapes"]
     for index in range(0 if shapes is None else len(shapes)):
         yield f"modal.shapes.{index}", ("modal", "shapes", index)
-    for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",))):
+    for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",)), ("load", ("dof",))):
         for prefix, index, _ in _named(parts, kind):
             yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys)
 

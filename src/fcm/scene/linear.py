@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fcm.scene.errors import quoted
+from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
 from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.model import FloatArray
@@ -19,9 +20,9 @@ from fcm.structure.rigid_body import rigid_by_gap
 if TYPE_CHECKING:
     from fcm.scene.structure_table import Matrices
 
+HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
 ALL_REPORTED = 50  # degrees of freedom of which all are in the results, where no others are asked for
 OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everything that is traced
-DIRECTIONS = {"contact": ("tangential", "normal"), "force": ("dof",)}  # keys that are arrays over the dofs
 Parts = dict[str, Any]  # drafts of modal, contact, force, ...
 
 
@@ -46,12 +47,26 @@ def with_modes(
     dofs = parts["modal"]["dofs"]
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
     only = [dofs.place[name] for name in output]
-    loads = np.concatenate((_columns(_directions(parts), len(dofs)), np.eye(len(dofs))[:, swept]), axis=1)
+    over_rows = distributions(parts, matrices.M)
+    pushed = _columns([*_directions(parts), *over_rows.values()], len(dofs))
+    loads = np.concatenate((pushed, np.eye(len(dofs))[:, swept]), axis=1)
     draft, shapes, notes = modal_of_matrices(top, matrices, loads, np.eye(len(dofs))[:, only], ends)
     if draft is None:
         return parts, notes
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
-    return parts | {"modal": draft}, notes
+    columns = {name: shapes.T @ load for name, load in over_rows.items()}
+    return with_displacements(parts | {"modal": draft}, columns), notes
+
+
+def with_base(top: Section, parts: Parts) -> Parts:
+    """The parts of a scene of modes with what its base works on."""
+    if not parts["base"]:
+        return parts
+    participation = parts["modal"]["participation"]
+    if participation is None:
+        top.wrong("base", "needs [structure], or modal.participation: phi^T M d of each mode")
+        return parts
+    return with_displacements(parts, {BASE: participation})
 
 
 def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
@@ -91,18 +106,19 @@ def read_output(section: Section, dofs: Names | None) -> list[str]:
 def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]:
     """The degrees of freedom in results: those of contacts and forces and those asked for, or all of few."""
     dofs: Names = parts["modal"]["dofs"]
-    if not asked and len(dofs) <= ALL_REPORTED:
-        return tuple(dofs)
+    own = [name for name in dofs if not name.startswith(HIDDEN)]
+    if not asked and len(own) <= ALL_REPORTED:
+        return tuple(own)
     used = _columns(_directions(parts), len(dofs)).any(axis=1)
     wanted = {*output, *(dofs[i] for i in np.flatnonzero(used))}
-    return tuple(name for name in dofs if name in wanted)
+    return tuple(name for name in own if name in wanted)
 
 
 def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Parts:
     """The parts without the rows of matrices that nothing is attached to and that are not reported."""
     dofs: Names = parts["modal"]["dofs"]
     needed = {*reported, *_swept(top, dofs)}
-    kept = [i for i, name in enumerate(dofs) if name in needed]
+    kept = [i for i, name in enumerate(dofs) if name in needed or name.startswith(HIDDEN)]
     modal = parts["modal"] | {"dofs": RowNames(dofs[i] for i in kept)}
     parts = parts | {"modal": modal | {"shapes": parts["modal"]["shapes"][:, kept]}}
     for kind, keys in DIRECTIONS.items():
@@ -111,7 +127,8 @@ def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Par
 
 
 def _directions(parts: Mapping[str, Any]) -> list[FloatArray]:
-    return [draft[key] for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys]
+    found = (draft[key] for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys)
+    return [direction for direction in found if direction is not None]
 
 
 def _columns(directions: list[FloatArray], rows: int) -> FloatArray:

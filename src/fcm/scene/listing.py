@@ -62,7 +62,7 @@ def _name(scene: Scene, force: Force) -> str:
     """The degree of freedom of a force on one, if no other force is on it."""
     at = np.flatnonzero(force.direction)
     alone = sum(np.array_equal(force.direction, one.direction) for one in scene.forces) == 1
-    return scene.modal.dofs[at[0]] if at.size == 1 and alone else ""
+    return scene.modal.dofs[at[0]].strip("\0") if at.size == 1 and alone else ""
 
 
 def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:

@@ -10,35 +10,34 @@ from typing import Any
 
 from fcm.scene.address import replaced
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
+from fcm.scene.excitation import base_force, load_of, read_base, read_loads
 from fcm.scene.files import LARGEST, Files
+from fcm.scene.keys import names
 from fcm.scene.linear import (
     Parts,
     read_linear,
     read_output,
     reported_of,
+    with_base,
     with_modes,
     without_others,
     without_rounding,
 )
 from fcm.scene.modal import UNITS, modal_of
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import FloatArray, Force, Scene
 from fcm.scene.parts import (
     contact_of,
     force_of,
     read_contacts,
     read_forces,
     read_response,
+    read_units,
     response_table,
 )
 from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
 from fcm.scene.sweep import Swept, combinations, read_sweep
 from fcm.scene.toml import read_toml
-
-KEYS = (
-    "title", "frequency_unit", "modal", "structure", "contact", "force", "response", "sweep", "schedule",
-    "start",
-)  # fmt: skip
 
 MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
 
@@ -97,20 +96,22 @@ def scene_from_dict(
     if not data:
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
         mistakes.raise_if_any()
-    top.only(*KEYS)
+    top.only(*names(""))
     unit = _unit(top)
     response = response_table(top)
     ends, step = read_response(top, response, unit)
     parts, reported, notes = _parts(top, Files(Path(folder), largest_file), unit, response, ends)
     schedule, start = read_schedule(top, unit), read_start(top, parts)
     swept = read_sweep(top, parts)
-    title = top.text("title", "")
+    title, units = top.text("title", ""), read_units(top)
     mistakes.raise_if_any()
     scene = Scene(
         title=title,
         modal=modal_of(parts["modal"], unit),
         contacts=tuple(map(contact_of, parts["contact"])),
-        forces=tuple(map(force_of, parts["force"])),
+        forces=_forces(parts),
+        loads=tuple(map(load_of, parts["load"])),
+        units=units,
         frequency_range=ends,
         max_step=step,
         frequency_unit=unit,
@@ -133,13 +134,15 @@ def _parts(
     parts: Parts = {"modal": modal}
     parts["contact"] = read_contacts(top, modal["dofs"])
     parts["force"] = read_forces(top, modal["dofs"])
+    parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
+    parts["base"] = read_base(top, modal["dofs"], "structure" in top.data)
     output = read_output(response, modal["dofs"]) if response is not None else []
     if top.mistakes.count:
         return parts, (), []
     if matrices is not None:
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
     else:
-        parts, notes = without_rounding(parts, ends, unit)
+        parts, notes = without_rounding(with_base(top, parts), ends, unit)
         notes = [*modal["notes"], *notes]
     if top.mistakes.count:
         return parts, (), []
@@ -156,15 +159,24 @@ def _curves(scene: Scene, parts: dict[str, Any], swept: list[Swept]) -> tuple[Sc
 def _curve(scene: Scene, parts: dict[str, Any], swept: list[Swept], values: dict[str, float]) -> Scene:
     draft = parts
     for one in swept:
-        draft = replaced(draft, one.address, values[one.key])
-    modal, contacts, forces = scene.modal, scene.contacts, scene.forces
+        for address in one.addresses:
+            draft = replaced(draft, address, values[one.key])
+    modal, contacts, forces, loads = scene.modal, scene.contacts, scene.forces, scene.loads
     if draft["modal"] is not parts["modal"]:
         modal = modal_of(draft["modal"], scene.frequency_unit)
     if draft["contact"] is not parts["contact"]:
         contacts = tuple(map(contact_of, draft["contact"]))
-    if draft["force"] is not parts["force"]:
-        forces = tuple(map(force_of, draft["force"]))
-    return replace(scene, modal=modal, contacts=contacts, forces=forces, parameters=values)
+    if draft["force"] is not parts["force"] or draft["base"] is not parts["base"]:
+        forces = _forces(draft)
+    if draft["load"] is not parts["load"]:
+        loads = tuple(map(load_of, draft["load"]))
+    return replace(scene, modal=modal, contacts=contacts, forces=forces, loads=loads, parameters=values)
+
+
+def _forces(parts: Parts) -> tuple[Force, ...]:
+    """The harmonic forces, and those by which a base that moves pushes the structure."""
+    of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
+    return (*map(force_of, parts["force"]), *of_base)
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:

@@ -13,6 +13,7 @@ from fcm.scene.apart import read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.model import FloatArray
 
 ENDINGS = (".npz", ".mat", ".mtx", ".op4")
 
@@ -26,6 +27,20 @@ def read_matrix(name: str, files: Files) -> Any:
     with files.opened(path) as where:
         found = _READERS[ending](where, chosen, files)
         return _matrix(_chosen(found, chosen, path), path, files)
+
+
+def read_vector(name: str, files: Files) -> FloatArray:
+    """The numbers of a file that holds one row or column of them."""
+    path, chosen = split_name(name)
+    ending = Path(path).suffix.lower()
+    if ending not in ENDINGS:
+        raise DataFileError(f"{quoted(path)} cannot be read: a file of numbers is {', '.join(ENDINGS)}")
+    with files.opened(path) as where:
+        found = {key: np.atleast_2d(one) for key, one in _READERS[ending](where, chosen, files).items()}
+        matrix = _matrix(_chosen(found, chosen, path), path, files)
+        if min(matrix.shape) != 1:
+            raise DataFileError(f"{quoted(path)} holds a matrix; one row or column is needed")
+        return np.asarray(matrix.toarray().ravel(), dtype=np.float64)
 
 
 def is_matrix_file(name: str) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.keys import names
 from fcm.scene.modal_file import note_of_scale, read_modal_file
 from fcm.scene.model import FloatArray, Modal
 from fcm.scene.names import Names, checked_names
@@ -25,7 +26,7 @@ def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
     section, notes = _with_file(section, files, unit) if section else (None, [])
     if section is None:
         return dict.fromkeys(KEYS)
-    section.only(*KEYS, "file")
+    section.only(*names("modal"))
     frequency = section.vector("frequency", RULES["frequency"])
     dofs = _dofs(section)
     modes = len(frequency) if frequency is not None else None

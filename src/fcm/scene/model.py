@@ -43,11 +43,20 @@ class Contact:
 
 @dataclass(frozen=True)
 class Force:
-    """External force amplitude * sin(omega t + phase) on ``direction @ x``."""
+    """External force amplitude * omega^power * sin(omega t + phase) on ``direction @ x``."""
 
     direction: FloatArray  # (dof,)
     amplitude: float
     phase: float  # [rad]
+    power: int = 0  # 2 for forces in proportion to omega^2, as of an unbalance; omega in rad/s
+
+
+@dataclass(frozen=True)
+class Load:
+    """External static force on ``direction @ x``."""
+
+    direction: FloatArray  # (dof,)
+    force: float
 
 
 @dataclass(frozen=True)
@@ -85,6 +94,8 @@ class Scene:
     curves: tuple[Scene, ...] = ()  # one for each combination of swept values; empty without a sweep
     name: str = ""  # file or bundled name, for messages
     reported: tuple[str, ...] = ()  # of modal.dofs, those in results; the others carry loads and contacts
+    loads: tuple[Load, ...] = ()  # static, beside the forces
+    units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
 
     @property
@@ -105,16 +116,18 @@ class Scene:
         return replace(self._at(used, modals), curves=curves)
 
     def directions(self) -> list[FloatArray]:
-        """The directions of all contacts and forces, each (dof,)."""
+        """The directions of all contacts, forces and loads, each (dof,)."""
         of_contacts = [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
-        return [*of_contacts, *(force.direction for force in self.forces)]
+        of_forces = [force.direction for force in self.forces]
+        return [*of_contacts, *of_forces, *(load.direction for load in self.loads)]
 
     def _at(self, used: npt.NDArray[np.bool_], modals: dict[int, Modal]) -> Scene:
         contacts = tuple(
             replace(one, tangential=one.tangential[used], normal=one.normal[used]) for one in self.contacts
         )
         forces = tuple(replace(one, direction=one.direction[used]) for one in self.forces)
-        return replace(self, modal=modals[id(self.modal)], contacts=contacts, forces=forces)
+        loads = tuple(replace(one, direction=one.direction[used]) for one in self.loads)
+        return replace(self, modal=modals[id(self.modal)], contacts=contacts, forces=forces, loads=loads)
 
     def each_curve(self) -> tuple[Scene, ...]:
         """The scenes to trace: those of the sweep, or this one alone."""

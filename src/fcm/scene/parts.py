@@ -6,9 +6,11 @@ from math import nan
 from typing import Any
 
 from fcm.scene.errors import quoted
+from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.names import Names, same_names, unfit_name
+from fcm.scene.node_pairs import along, read_direction, read_pairs, read_shares
 from fcm.scene.rules import FRACTION, POSITIVE, RULES, SHORTEST_STEP, step_fault
 from fcm.scene.section import Section
 
@@ -20,7 +22,7 @@ MAX_STEP = 0.05  # longest step along a curve when the scene names none
 def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
     """The contacts as read, in the words of the file."""
     sections = top.tables("contact")
-    drafts = [_contact(section, dofs) for section in sections]
+    drafts = [draft for section in sections for draft in _contacts(section, dofs)]
     for name, group in same_names(draft["name"] for draft in drafts if draft["name"]):
         written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
         top.wrong(
@@ -29,21 +31,30 @@ def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
     return drafts
 
 
-def _contact(section: Section, dofs: Dofs) -> dict[str, Any]:
+def _contacts(section: Section, dofs: Dofs) -> list[dict[str, Any]]:
+    """The contacts of one [[contact]]: one, or one for each of its pairs of nodes."""
     name = section.text("name")
     if name:
         section.path += f" {quoted(name)}"
     if isinstance(section.data.get("name"), str) and (fault := unfit_name(name)):
         section.wrong("name", fault)
-    section.only("name", "tangential", "normal", "mu", "k_u", "k_v", "n_0", "gap")
+    section.only(*names("contact"))
     draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
     load = _load(section)
-    return draft | {
-        "name": name,
-        "tangential": section.weights("tangential", dofs),
-        "normal": section.weights("normal", dofs),
-        load: section.number(load, RULES[load]) if load in section.data else nan,
-    }
+    draft[load] = section.number(load, RULES[load]) if load in section.data else nan
+    keys = ("tangential", "normal")
+    if "nodes" not in section.data:
+        read_shares(section, 0)
+        return [draft | {"name": name} | {key: section.weights(key, dofs) for key in keys}]
+    pairs = read_pairs(section)
+    shares = read_shares(section, len(pairs))
+    directions = {key: read_direction(section, key) for key in keys}
+    return [
+        draft
+        | {"name": f"{name}_{number}", "group": name, "share": share}
+        | {key: along(section, directions[key], pair, dofs) for key in keys}
+        for number, (pair, share) in enumerate(zip(pairs, shares, strict=True), 1)
+    ]
 
 
 def _load(section: Section) -> str:
@@ -58,7 +69,7 @@ def _load(section: Section) -> str:
 
 def contact_of(draft: dict[str, Any]) -> Contact:
     """The contact of what was read: a gap becomes the preload -k_v * gap."""
-    n_0 = draft["n_0"] if "n_0" in draft else -draft["k_v"] * draft["gap"]
+    n_0 = draft["n_0"] * draft.get("share", 1.0) if "n_0" in draft else -draft["k_v"] * draft["gap"]
     for key in ("tangential", "normal"):
         draft[key].flags.writeable = False
     numbers = {key: draft[key] for key in ("name", "tangential", "normal", "mu", "k_u", "k_v")}
@@ -67,26 +78,51 @@ def contact_of(draft: dict[str, Any]) -> Contact:
 
 def read_forces(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
     """The forces as read, in the words of the file; `name` is the dof of a force on one."""
+    if "base" in top.data and "force" not in top.data:
+        return []
     if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
         top.wrong("force", "missing; without a [[force]] the response is zero")
     return [_force(section, dofs) for section in top.tables("force")]
 
 
 def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
-    section.only("dof", "amplitude", "phase")
+    section.only(*names("force"))
     dof = section.data.get("dof")
     return {
         "name": dof if isinstance(dof, str) else "",
         "dof": section.weights("dof", dofs),
         "amplitude": section.number("amplitude", RULES["amplitude"]),
-        "phase": section.number("phase", RULES["phase"], default=0.0),
+        "phase": section.angle("phase", default=0.0),
+        "power": _power(section),
     }
+
+
+def _power(section: Section) -> int:
+    """The power of omega that a force is in proportion to."""
+    law = section.data.get("proportional_to")
+    if law is not None and law != "omega^2":
+        section.wrong("proportional_to", f'must be "omega^2", is {quoted(law)}')
+    return 0 if law is None else 2
 
 
 def force_of(draft: dict[str, Any]) -> Force:
     """The force of what was read."""
     draft["dof"].flags.writeable = False
-    return Force(direction=draft["dof"], amplitude=draft["amplitude"], phase=draft["phase"])
+    numbers = {key: draft[key] for key in ("amplitude", "phase", "power")}
+    return Force(direction=draft["dof"], **numbers)
+
+
+def read_units(top: Section) -> tuple[str, str]:
+    """The units of length and of force, for labels; empty where they are not given."""
+    section = top.table("units", "") if "units" in top.data else None
+    if section is None:
+        return "", ""
+    section.only(*names("units"))
+    found = [section.text(key, "") for key in ("length", "force")]
+    for key, text in zip(("length", "force"), found, strict=True):
+        if key in section.data and isinstance(section.data[key], str) and (fault := unfit_name(text)):
+            section.wrong(key, fault)
+    return found[0], found[1]
 
 
 def response_table(top: Section) -> Section | None:
@@ -95,7 +131,7 @@ def response_table(top: Section) -> Section | None:
         return None
     section = top.table("response", "a [response] table with frequency = [from, to]")
     if section is not None:
-        section.only("frequency", "max_step", "output")
+        section.only(*names("response"))
     return section
 
 

@@ -93,6 +93,8 @@ RULES = {
     "gap": ANY,
     "dof": ANY,
     "amplitude": ANY,
+    "acceleration": ANY,
+    "force": ANY,
     "phase": ANY,
 }
 

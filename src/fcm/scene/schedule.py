@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.model import FloatArray, Phase, Start
 from fcm.scene.rules import ANY, POSITIVE, RULES
@@ -19,7 +20,7 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
     """The phases of a time simulation."""
     phases = []
     for section in top.tables("schedule"):
-        section.only("frequency", "cycles")
+        section.only(*names("schedule"))
         frequency = section.number("frequency", POSITIVE) * UNITS[unit]
         phases.append(Phase(frequency, _whole(section.number("cycles", POSITIVE))))
     total = sum(phase.cycles for phase in phases)
@@ -43,7 +44,7 @@ def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
     section = top.table("start", "") if "start" in top.data else None
     if section is None:
         return None
-    section.only("displacement", "velocity", "friction", "angle")
+    section.only(*names("start"))
     if not top.data.get("schedule"):
         section.wrong("", "is of no use without a [[schedule]], which starts from it")
     frequency = parts["modal"]["frequency"]

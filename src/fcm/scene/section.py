@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import nan
+from math import isfinite, nan, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -67,6 +67,20 @@ class Section:
         if fault:
             self.mistakes.add(path, fault)
         return nan if fault else number
+
+    def angle(self, key: str, default: float | None = None) -> float:
+        """An angle [rad], given in rad, or in degrees as "45deg"."""
+        value = self.data.get(key)
+        if not isinstance(value, str):
+            return self.number(key, ANY, default)
+        try:
+            degrees = float(value.removesuffix("deg")) if value.endswith("deg") else nan
+        except ValueError:
+            degrees = nan
+        if not isfinite(degrees):
+            what = f"must be a number, is the string {quoted(value)}"
+            self.wrong(key, f'{what}; degrees are written "45deg"')
+        return radians(degrees)
 
     def text(self, key: str, default: str | None = None) -> str:
         """A string; empty after a mistake."""

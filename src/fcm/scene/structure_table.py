@@ -11,12 +11,12 @@ import scipy.sparse
 
 from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.keys import names
 from fcm.scene.matrix_file import is_matrix_file, read_matrix
 from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
 
-KEYS = ("dofs", "file", "mass", "stiffness", "damping", "modes", "flexibility")
 ASYMMETRY = 1e-8  # relative difference of two entries that ought to be equal
 NEGLIGIBLE = 1e-12  # of the largest entry: differences this small are rounding
 MOST_SHOWN = 3  # entries that are not symmetric, named in a message
@@ -44,7 +44,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     if section is None:
         return None, None
     before = top.mistakes.count
-    section.only(*KEYS)
+    section.only(*names("structure"))
     K, M = (_matrix(section, key, files) for key in ("stiffness", "mass"))
     rows = None if K is None else K.shape[0]
     if K is not None and M is not None and M.shape[0] != rows:
@@ -202,7 +202,7 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[st
 
 
 def _proportional(table: Section) -> dict[str, Any]:
-    table.only("mass", "stiffness", "loss_factor")
+    table.only(*names("structure.damping"))
     if "loss_factor" in table.data:
         if len(table.data) > 1:
             table.wrong("", "has a loss_factor beside others; give it alone")

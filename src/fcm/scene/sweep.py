@@ -9,12 +9,15 @@ high], count, seed }.
 Curves are the product of the keys, the last one fastest, except that keys drawn with the same count are
 drawn together: 1000 draws of two keys are 1000 curves. Draws depend on the seed (0 when not given) and on
 the key, so two keys with one seed are independent, and adding a key changes no other key's draws.
+
+A name with a * stands for all that it matches: "contact.*.n_0" sets the preload of every contact. The keys of
+one [[sweep.paired]] table go in step, and must have as many values each.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
 from typing import Any
@@ -37,12 +40,12 @@ FORMS = (
 
 @dataclass(frozen=True)
 class Swept:
-    """One key of a sweep; keys drawn at random with the same count are drawn together."""
+    """One key of a sweep; keys of one group go in step."""
 
     key: str
-    address: Address
+    addresses: tuple[Address, ...]
     values: tuple[float, ...]
-    drawn: bool
+    group: object
 
 
 def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
@@ -51,7 +54,12 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
     if section is None:
         return []
     addresses = Addresses(parts)
-    found = [_swept(section, key, addresses) for key in section.data]
+    found: list[Swept | None] = []
+    for key in section.data:
+        if key == "paired":
+            found += _paired(section, addresses)
+        else:
+            found.append(_swept(section, key, addresses))
     swept = [one for one in found if one is not None]
     _note_overlaps(section, swept)
     count = prod(len(group[0].values) for group in _groups(swept))
@@ -74,27 +82,41 @@ def combinations(swept: list[Swept]) -> Iterator[dict[str, float]]:
 def _groups(swept: list[Swept]) -> list[list[Swept]]:
     groups: dict[object, list[Swept]] = {}
     for one in swept:
-        groups.setdefault(len(one.values) if one.drawn else one.key, []).append(one)
+        groups.setdefault(one.group, []).append(one)
     return list(groups.values())
 
 
+def _paired(section: Section, addresses: Addresses) -> list[Swept | None]:
+    """The keys of each [[sweep.paired]] table, which go in step."""
+    found: list[Swept | None] = []
+    for number, table in enumerate(section.tables("paired")):
+        keys = [_swept(table, key, addresses) for key in table.data]
+        counts = {len(one.values) for one in keys if one is not None}
+        if len(counts) > 1:
+            each = " and ".join(map(str, sorted(counts)))
+            table.wrong("", f"its keys go in step, but have {each} values")
+        elif None not in keys:
+            found += [replace(one, group=("paired", number)) for one in keys if one is not None]
+    return found
+
+
 def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
-    path = f"sweep.{quoted(key)}"
+    path = section.at(quoted(key))
     value = section.data[key]
     if isinstance(value, Mapping) and "." not in str(key) and not _FORM_KEYS & set(value):
         section.mistakes.add(path, 'put the whole key path in quotes, as in "contact.shroud.n_0" = [1, 2]')
         return None
-    address = addresses.find(str(key), path, section.mistakes)
-    if address is not None and "/" in str(key):
+    found = addresses.find(str(key), path, section.mistakes)
+    if found and "/" in str(key):
         section.mistakes.add(path, "a file cannot hold a name with a slash; give its number, as in contact.0")
     values = _values(section, path, str(key), value)
     if values is None:
         return None
-    if address is None:
+    if not found:
         return None
-    _check(section, path, values, RULES[_field(address)], listed=not isinstance(value, Mapping))
+    _check(section, path, values, RULES[_field(found[0])], listed=not isinstance(value, Mapping))
     drawn = isinstance(value, Mapping) and "from" not in value
-    return Swept(str(key), address, tuple(values.tolist()), drawn)
+    return Swept(str(key), found, tuple(values.tolist()), ("drawn", len(values)) if drawn else str(key))
 
 
 def _field(address: Address) -> str:
@@ -114,7 +136,7 @@ def _check(section: Section, path: str, values: Any, rule: Rule, listed: bool) -
 def _note_overlaps(section: Section, swept: list[Swept]) -> None:
     for index, one in enumerate(swept):
         for other in swept[:index]:
-            if overlap(one.address, other.address):
+            if any(overlap(mine, its) for mine in one.addresses for its in other.addresses):
                 section.wrong(quoted(one.key), f"sets the same number as {quoted(other.key)}")
 
 

@@ -1,0 +1,58 @@
+"""Results without the displacements that carry loads over many rows and are of no interest themselves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fcm.response.result import Curve, Response
+from fcm.response.trace import ResponseError
+from fcm.scene.model import Scene
+
+POINTS = ("amplitude", "phase", "mean")  # of curves, arrays over the dofs
+CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histories
+
+
+def check_solvable(scene: Scene) -> None:
+    """Raise ResponseError for what a scene may ask and no method here computes."""
+    unsolved = []
+    if scene.loads:
+        unsolved.append("[[load]]: static loads")
+    if any(force.power for force in scene.forces):
+        unsolved.append("force.proportional_to: forces in proportion to omega^2")
+    if unsolved:
+        raise ResponseError(f"{scene.name}: no method computes {' and '.join(unsolved)} yet")
+
+
+def visible(response: Response, scene: Scene) -> Response:
+    """The response at the degrees of freedom that the scene reports."""
+    shown = np.isin(response.dofs, scene.reported) if scene.reported else np.ones(len(response.dofs), bool)
+    if shown.all():
+        return response
+    dofs = tuple(name for name, one in zip(response.dofs, shown, strict=True) if one)
+    curves = [_curve(curve, shown, dofs) for curve in response.curves]
+    histories = response.histories
+    if histories is not None:
+        records = [_record(one, shown) for one in histories.records]
+        modal = histories.scene.modal.at(shown)
+        histories = replace(histories, records=records, scene=replace(histories.scene, modal=modal))
+    return replace(response, dofs=dofs, curves=curves, histories=histories)
+
+
+def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
+    orbits = None if curve.orbits is None else _at(curve.orbits, ("fundamental",), shown)
+    if orbits is not None and orbits.jumps is not None:
+        orbits = replace(orbits, jumps=[_at(jump, ("before", "after"), shown) for jump in orbits.jumps])
+    found: Curve = _at(curve, POINTS, shown)
+    return replace(found, peaks={name: curve.peaks[name] for name in dofs}, orbits=orbits)
+
+
+def _record(record: Any, shown: Any) -> Any:
+    phases = [_at(one, ("amplitude", "mean"), shown) for one in record.phases]
+    return replace(_at(record, CYCLES, shown), phases=phases)
+
+
+def _at(one: Any, names: tuple[str, ...], shown: Any) -> Any:
+    return replace(one, **{name: getattr(one, name)[..., shown] for name in names})

@@ -1,0 +1,150 @@
+"""What moves or loads a structure beside harmonic forces: its base, and static loads."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.files import DataFileError, Files
+from fcm.scene.keys import names
+from fcm.scene.model import FloatArray, Force, Load
+from fcm.scene.names import Names, at_node
+from fcm.scene.rules import RULES
+from fcm.scene.section import Section
+
+TRANSLATIONS = ("x", "y", "z")
+DIRECTIONS = {  # keys that are arrays over the degrees of freedom
+    "contact": ("tangential", "normal"), "force": ("dof",), "load": ("dof",)
+}  # fmt: skip
+BASE = "\0base"  # of the displacement that the base's acceleration works on; no name of a file begins so
+LOAD = "\0load"  # of the displacement that a distributed load works on
+
+
+def read_base(top: Section, dofs: Names | None, matrices: bool) -> list[dict[str, Any]]:
+    """The motion of the base as read: a list of one, or of none."""
+    if "base" not in top.data:
+        return []
+    section = top.table("base", "")
+    if section is None:
+        return []
+    section.only(*names("base"))
+    direction = _direction(section, dofs) if matrices else None
+    if not matrices and "direction" in section.data:
+        section.wrong("direction", "needs [structure]; modes have modal.participation for it")
+    return [
+        {
+            "name": "base",
+            "direction": direction,
+            "acceleration": section.number("acceleration", RULES["amplitude"]),
+            "phase": section.angle("phase", default=0.0),
+        }
+    ]
+
+
+def _direction(section: Section, dofs: Names | None) -> FloatArray | None:
+    """The displacement of all degrees of freedom when the base moves by 1."""
+    value = section.data.get("direction")
+    if not isinstance(value, str) or value not in TRANSLATIONS:
+        if isinstance(value, str) and dofs is not None and not dofs.find(value):
+            section.wrong("direction", f"must be x, y, z or a table of weights, is {quoted(value)}")
+            return None
+        return section.weights("direction", dofs)
+    if dofs is None:
+        return None
+    moved = [at_node(name).endswith(value) and not at_node(name).endswith(f"r{value}") for name in dofs]
+    if not any(moved):
+        what = f"no degree of freedom is named as a node and {quoted(value)}; give a table of weights"
+        section.wrong("direction", what)
+        return None
+    return np.array(moved, dtype=np.float64)
+
+
+def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:
+    """The inertial force -M d a of a base that moves by the acceleration a."""
+    direction = _unit(dofs, BASE)
+    return Force(direction=direction, amplitude=-draft["acceleration"], phase=draft["phase"])
+
+
+def read_loads(top: Section, files: Files, dofs: Names | None, matrices: bool) -> list[dict[str, Any]]:
+    """The static loads as read."""
+    return [_load(section, files, dofs, matrices) for section in top.tables("load")]
+
+
+def _load(section: Section, files: Files, dofs: Names | None, matrices: bool) -> dict[str, Any]:
+    section.only(*names("load"))
+    dof = section.data.get("dof")
+    draft: dict[str, Any] = {
+        "name": dof if isinstance(dof, str) else "",
+        "force": section.number("force", RULES["amplitude"], default=1.0 if "file" in section.data else None),
+        "distribution": None,
+    }
+    if "file" not in section.data:
+        return draft | {"dof": section.weights("dof", dofs)}
+    if "dof" in section.data:
+        section.wrong("", "has both dof and file; give one of them")
+    if not matrices:
+        section.wrong("file", "needs [structure], whose rows the numbers of the file belong to")
+    return draft | {"dof": None, "distribution": _distribution(section, files, dofs)}
+
+
+def _distribution(section: Section, files: Files, dofs: Names | None) -> FloatArray | None:
+    value = section.data["file"]
+    if not isinstance(value, str) or not value:
+        section.wrong("file", f"must be the name of a file, is {kind(value)}")
+        return None
+    from fcm.scene.matrix_file import read_vector  # scipy, which other scenes do without
+
+    try:
+        found = read_vector(value, files)
+    except DataFileError as error:
+        section.wrong("file", str(error))
+        return None
+    if dofs is not None and found.size != len(dofs):
+        section.wrong("file", f"has {found.size} numbers, but the structure has {len(dofs)} rows")
+        return None
+    if not np.isfinite(found).all():
+        section.wrong("file", "has numbers that are not finite")
+        return None
+    return found
+
+
+def load_of(draft: dict[str, Any]) -> Load:
+    """The static load of what was read."""
+    draft["dof"].flags.writeable = False
+    return Load(direction=draft["dof"], force=draft["force"])
+
+
+def distributions(parts: dict[str, Any], mass: Any) -> dict[str, FloatArray]:
+    """Loads over all rows of the matrices, by the names of the displacements that they work on."""
+    found = {f"{LOAD}{number}": draft["distribution"] for number, draft in enumerate(parts["load"])}
+    for draft in parts["base"]:
+        found[BASE] = mass @ draft["direction"]
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def with_displacements(parts: dict[str, Any], columns: dict[str, FloatArray]) -> dict[str, Any]:
+    """The parts with displacements that loads over many rows work on: shapes along them (mode,), by name."""
+    if not columns:
+        return parts
+    modal = parts["modal"]
+    dofs = (*modal["dofs"], *columns)
+    shapes = np.concatenate((modal["shapes"], np.array(list(columns.values())).T), axis=1)
+    parts = parts | {"modal": modal | {"dofs": type(modal["dofs"])(dofs), "shapes": shapes}}
+    more = np.zeros(len(columns))
+    for table, keys in DIRECTIONS.items():
+        parts[table] = [
+            draft | {key: np.append(draft[key], more) for key in keys if draft[key] is not None}
+            for draft in parts[table]
+        ]
+    parts["load"] = [
+        draft | ({"dof": _unit(dofs, f"{LOAD}{number}")} if draft["dof"] is None else {})
+        for number, draft in enumerate(parts["load"])
+    ]
+    return parts
+
+
+def _unit(dofs: tuple[str, ...], name: str) -> FloatArray:
+    """The direction of one degree of freedom."""
+    return np.array([1.0 if one == name else 0.0 for one in dofs])

@@ -1,0 +1,158 @@
+"""Every key of a scene: what it means, what it may be, and what it is when it is not given.
+
+The tables are read against these names: a key that is not here is refused, and `fcm respond --keys` prints
+what is here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fcm.scene.rules import FRACTION, POSITIVE, RULES, Rule
+
+REQUIRED = "required"
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a table."""
+
+    meaning: str
+    value: str | Rule  # what it may be
+    default: str = REQUIRED  # what it is when it is not given
+
+    @property
+    def kind(self) -> str:
+        """What it may be, in words."""
+        return (
+            self.value
+            if isinstance(self.value, str)
+            else f"number {self.value.text}".replace("number a ", "")
+        )
+
+
+_DIRECTION = "a degree of freedom, or a table of weights"
+_MATRIX = ".npz, .mat, .mtx or .op4 file, or a list of rows"
+_GIVEN = "as in the file"
+
+TABLES: dict[str, dict[str, Key]] = {
+    "": {
+        "title": Key("of the scene, for pictures and files", "string", "empty"),
+        "frequency_unit": Key("of all frequencies, also in results", '"rad/s" or "Hz"', '"rad/s"'),
+        "modal": Key("the structure by its modes, without the contacts", "[modal]", "[structure]"),
+        "structure": Key("the structure by its matrices, without the contacts", "[structure]", "[modal]"),
+        "contact": Key("the contacts", "[[contact]]", "none"),
+        "force": Key("the harmonic forces", "[[force]]", "needed without [base]"),
+        "load": Key("static loads", "[[load]]", "none"),
+        "base": Key("harmonic motion of the base; displacements are relative to it", "[base]", "at rest"),
+        "units": Key("for labels and files; nothing is converted", "[units]", "none"),
+        "response": Key("what is traced", "[response]", "needed without [[schedule]]"),
+        "sweep": Key("numbers of the scene that are varied, a curve for each value", "[sweep]", "one curve"),
+        "schedule": Key("phases of a simulation in time", "[[schedule]]", "none"),
+        "start": Key("the state that the schedule starts from", "[start]", "rest"),
+    },
+    "modal": {
+        "file": Key("of modes; keys beside it go before its own", ".npz, .mat, .uff or .unv", "none"),
+        "dofs": Key("names of the degrees of freedom", "list of names", _GIVEN),
+        "mass": Key("modal masses", RULES["mass"], "1: shapes are mass-normalised"),
+        "frequency": Key("undamped natural frequencies; 0 for rigid-body modes", RULES["frequency"], _GIVEN),
+        "damping": Key("damping ratios", RULES["damping"], _GIVEN),
+        "shapes": Key("shapes[i][j]: mode i at dofs[j]", "list of lists", _GIVEN),
+        "participation": Key("phi^T M d, d the direction of [base]", RULES["participation"], "none"),
+    },
+    "structure": {
+        "dofs": Key("names of the rows", "list of names, or a text file", "file"),
+        "file": Key("of the names of the rows, one on each line", "text file", "dofs"),
+        "mass": Key("mass matrix; a list of numbers is its diagonal", _MATRIX),
+        "stiffness": Key("stiffness matrix", _MATRIX),
+        "damping": Key("of every mode, in proportion, or a matrix", f"ratio, table, or {_MATRIX}"),
+        "modes": Key("how many are kept", "whole number", "all up to 3 times the range's end"),
+        "flexibility": Key("whether that of the other modes is kept", "true or false", "true"),
+    },
+    "structure.damping": {
+        "mass": Key("factor of the mass matrix", RULES["damping"], "0"),
+        "stiffness": Key("factor of the stiffness matrix", RULES["damping"], "0"),
+        "loss_factor": Key("hysteretic damping", RULES["damping"], "none"),
+    },
+    "contact": {
+        "name": Key("of the contact", "string"),
+        "tangential": Key("the displacement u along which it slides", _DIRECTION),
+        "nodes": Key("pairs [[a, b], ...] instead of one contact; u and v are of a less b", "list", "none"),
+        "areas": Key("of the pairs: n_0 is the total preload, shared by them", POSITIVE, "n_0 of each pair"),
+        "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
+        "mu": Key("friction coefficient", RULES["mu"]),
+        "k_u": Key("tangential contact stiffness", RULES["k_u"]),
+        "k_v": Key("normal contact stiffness", RULES["k_v"]),
+        "n_0": Key("preload", RULES["n_0"], "gap"),
+        "gap": Key("instead of a preload: n_0 = -k_v * gap", RULES["gap"], "n_0"),
+    },
+    "force": {
+        "dof": Key("where it acts", _DIRECTION),
+        "amplitude": Key("of amplitude * sin(omega t + phase)", RULES["amplitude"]),
+        "phase": Key("in rad, or in degrees", 'a number, or as "45deg"', "0"),
+        "proportional_to": Key("amplitude times omega^2, omega in rad/s", '"omega^2"', "constant"),
+    },
+    "load": {
+        "dof": Key("where it acts", _DIRECTION, "file"),
+        "file": Key("of its distribution, a number for each row", ".npz, .mat or .mtx file", "dof"),
+        "force": Key("its amount; of a file, a factor", RULES["force"], "1 with a file"),
+    },
+    "base": {
+        "acceleration": Key("amplitude of its acceleration", RULES["acceleration"]),
+        "direction": Key("of its motion; modes have participation instead", "x, y, z or a table of weights"),
+        "phase": Key("in rad, or in degrees", 'a number, or as "45deg"', "0"),
+    },
+    "units": {
+        "length": Key("of displacements", "string", "none"),
+        "force": Key("of forces", "string", "none"),
+    },
+    "response": {
+        "frequency": Key("[from, to], the range that is traced", POSITIVE, "needed without [[schedule]]"),
+        "max_step": Key("longest step, relative to the curve's own extent", FRACTION, "0.05"),
+        "output": Key("degrees of freedom in the results besides those of contacts and forces",
+                      "list of names, or of patterns such as \"40*\"", "all if they are 50 at most"),
+    },
+    "schedule": {
+        "frequency": Key("of the forces in this phase", POSITIVE),
+        "cycles": Key("of the forces in this phase", POSITIVE),
+    },
+    "start": {
+        "displacement": Key("modal, one number for each mode", "list of numbers", "zeros"),
+        "velocity": Key("modal, one number for each mode", "list of numbers", "zeros"),
+        "friction": Key("friction forces, one number for each contact", "list of numbers", "zeros"),
+        "angle": Key("of the forces, omega t", RULES["phase"], "0"),
+    },
+    "sweep": {
+        "paired": Key("keys that go in step, with as many values each", "[[sweep.paired]]", "none"),
+        '"contact.NAME.n_0"': Key("a number of the scene by its path, in quotes",
+                                  "list, range or draws", "none"),
+    },
+}  # fmt: skip
+
+LISTS = ("contact", "force", "load", "schedule", "sweep.paired")  # tables that are written [[...]]
+
+
+def names(table: str) -> tuple[str, ...]:
+    """The keys of a table.
+
+    >>> names("schedule")
+    ('frequency', 'cycles')
+    """
+    return tuple(TABLES[table])
+
+
+def as_lines() -> list[tuple[str, str, str, str]]:
+    """Every key with its table: path, what it may be, what it is when it is not given, what it means.
+
+    >>> as_lines()[0]
+    ('title', 'string', 'empty', 'of the scene, for pictures and files')
+    """
+    return [
+        (".".join(filter(None, (_written(table), name))), key.kind, key.default, key.meaning)
+        for table, keys in TABLES.items()
+        for name, key in keys.items()
+    ]
+
+
+def _written(table: str) -> str:
+    return f"{table}[]" if table in LISTS else table

@@ -1,0 +1,88 @@
+"""A contact over a list of node pairs: one contact for each pair, all of the same numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import isnan
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.model import FloatArray
+from fcm.scene.names import DIRECTIONS, Names
+from fcm.scene.rules import ANY, POSITIVE
+from fcm.scene.section import Section
+
+Pair = tuple[str, ...]  # two nodes, or one that touches the ground
+
+
+def read_pairs(section: Section) -> list[Pair]:
+    """The pairs of nodes; empty after a mistake."""
+    value = section.data["nodes"]
+    if not isinstance(value, list | tuple) or not value:
+        section.wrong("nodes", f"must be a list of pairs such as [[40, 41], [50, 51]], is {kind(value)}")
+        return []
+    pairs = [_pair(section, index, item) for index, item in enumerate(value)]
+    return [pair for pair in pairs if pair] if all(pairs) else []
+
+
+def _pair(section: Section, index: int, item: Any) -> Pair:
+    nodes = item if isinstance(item, list | tuple) else [item]
+    right = 1 <= len(nodes) <= 2 and all(isinstance(n, int | str) and not isinstance(n, bool) for n in nodes)
+    if not right:
+        section.wrong(
+            f"nodes[{index}]", "must be two nodes, or one that touches the ground, as [40, 41] or [40]"
+        )
+        return ()
+    if len(nodes) == 2 and str(nodes[0]) == str(nodes[1]):
+        section.wrong(f"nodes[{index}]", f"is the same node twice, {nodes[0]}")
+        return ()
+    return tuple(str(node) for node in nodes)
+
+
+def read_direction(section: Section, key: str) -> dict[str, float]:
+    """A direction such as "x" or { x = 0.6, y = 0.8 }, as weights; empty after a mistake."""
+    if section.missing(key, "a direction of the nodes, as x or { x = 0.6, y = 0.8 }"):
+        return {}
+    value = section.data[key]
+    terms = {value: 1.0} if isinstance(value, str) else value
+    if not isinstance(terms, Mapping) or not terms or not set(map(str, terms)) <= set(DIRECTIONS):
+        section.wrong(key, f"must be one of {', '.join(DIRECTIONS)}, or a table of weights of them")
+        return {}
+    path = section.at(key)
+    weights = {name: section.checked(item, f"{path}.{name}", ANY) for name, item in terms.items()}
+    return {} if any(map(isnan, weights.values())) else weights
+
+
+def along(section: Section, weights: dict[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
+    """The relative displacement of a pair along a direction; None after a mistake."""
+    if dofs is None or not weights:
+        return None
+    found = np.zeros(len(dofs))
+    for direction, weight in weights.items():
+        for node, sign in zip(pair, (1.0, -1.0), strict=False):
+            name = dofs.find(f"{node}{direction}") or dofs.find(f"{node}_{direction}")
+            if not name:
+                section.wrong("nodes", f"node {node} has no degree of freedom along {quoted(direction)}")
+                return None
+            found[dofs.place[name]] += sign * weight
+    return found
+
+
+def read_shares(section: Section, count: int) -> list[float]:
+    """The share of each pair in the total preload, by areas; 1 for each where no areas are given."""
+    if "areas" not in section.data:
+        return [1.0] * count
+    if "nodes" not in section.data:
+        section.wrong("areas", "is of no use without nodes, whose areas they are")
+        return [1.0] * count
+    if "gap" in section.data:
+        section.wrong("areas", "share a total preload n_0; a gap is the same for all")
+    areas = section.vector("areas", POSITIVE)
+    if areas is None:
+        return [1.0] * count
+    if count and len(areas) != count:
+        section.wrong("areas", f"must have one number for each of the {count} pairs, has {len(areas)}")
+        return [1.0] * count
+    return [float(area) for area in areas / areas.sum()]

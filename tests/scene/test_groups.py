@@ -1,0 +1,142 @@
+"""Numbers of several contacts together: names with a *, keys in step, contacts over node pairs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fcm.scene import SceneError, scene_from_dict
+
+DOFS = [f"{node}{direction}" for node in (40, 41, 50, 51) for direction in "xyz"]
+PAIRS = {"name": "shroud", "nodes": [[40, 41], [50, 51]], "tangential": {"x": 0.6, "y": 0.8}, "normal": "z"}
+NUMBERS = {"mu": 0.3, "k_u": 1.0, "k_v": 2.0, "n_0": 6.0}
+
+
+def read(contact=None, **top):
+    modal = {"dofs": DOFS, "frequency": [1.0, 3.0], "damping": 0.05, "shapes": np.eye(2, 12) + 0.1}
+    force = [{"dof": "40x", "amplitude": 1.0}]
+    data = {"modal": modal, "force": force, "response": {"frequency": [0.8, 1.2]}}
+    return scene_from_dict(data | {"contact": contact or [PAIRS | NUMBERS]} | top, "test.toml")
+
+
+def refused(contact=None, **top):
+    with pytest.raises(SceneError) as caught:
+        read(contact, **top)
+    return str(caught.value)
+
+
+def weights(direction):
+    return {dof: weight for dof, weight in zip(DOFS, direction.tolist(), strict=True) if weight}
+
+
+def test_a_contact_for_each_pair_of_nodes():
+    one, other = read().contacts
+    assert (one.name, other.name) == ("shroud_1", "shroud_2")
+    assert weights(one.tangential) == {"40x": 0.6, "40y": 0.8, "41x": -0.6, "41y": -0.8}
+    assert weights(other.normal) == {"50z": 1.0, "51z": -1.0}
+    assert (other.mu, other.k_u, other.k_v, other.n_0) == (0.3, 1.0, 2.0, 6.0)
+
+
+def test_nodes_that_touch_the_ground():
+    one, other = read([PAIRS | NUMBERS | {"nodes": [[40], "50"]}]).contacts
+    assert weights(one.normal) == {"40z": 1.0} and weights(other.tangential) == {"50x": 0.6, "50y": 0.8}
+
+
+def test_a_total_preload_is_shared_by_areas():
+    contacts = read([PAIRS | NUMBERS | {"areas": [1.0, 2.0]}]).contacts
+    assert [contact.n_0 for contact in contacts] == pytest.approx([2.0, 4.0])
+    assert [contact.k_u for contact in contacts] == [1.0, 1.0]
+
+
+@pytest.mark.parametrize("key", ["contact.shroud.n_0", "contact.shroud_*.n_0", "contact.*.n_0"])
+def test_the_preload_of_all_is_one_swept_number(key):
+    curves = read([PAIRS | NUMBERS | {"areas": [1.0, 2.0]}], sweep={key: [3.0, -9.0]}).curves
+    assert [[contact.n_0 for contact in curve.contacts] for curve in curves] == [[1, 2], [-3, -6]]
+    assert [curve.parameters for curve in curves] == [{key: 3.0}, {key: -9.0}]
+
+
+def test_one_pair_alone_is_swept_by_its_name():
+    curves = read(sweep={"contact.shroud_2.mu": [0.1]}).curves
+    assert [contact.mu for contact in curves[0].contacts] == [0.3, 0.1]
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"nodes": []}, "nodes: must be a list of pairs such as [[40, 41], [50, 51]]"),
+        ({"nodes": [[40, 41, 50]]}, "nodes[0]: must be two nodes"),
+        ({"nodes": [[40, 40]]}, "nodes[0]: is the same node twice, 40"),
+        ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x"'),
+        ({"nodes": [[40, 2.5]]}, "nodes[0]: must be two nodes"),
+        ({"tangential": "40x"}, "tangential: must be one of x, y, z, rx, ry, rz, or a table"),
+        ({"tangential": {"x": "1"}}, "tangential.x: must be a number"),
+        ({"areas": [1.0]}, "areas: must have one number for each of the 2 pairs, has 1"),
+        ({"areas": [1.0, 0.0]}, "areas[1]: must be greater than 0"),
+    ],
+)
+def test_mistakes_of_pairs(change, words):
+    assert words in refused([PAIRS | NUMBERS | change])
+
+
+def test_areas_without_what_they_share():
+    gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
+    assert "areas: share a total preload n_0" in refused([PAIRS | gap | {"areas": [1, 2]}])
+    plain = {"name": "a", "tangential": "40x", "normal": "40z", "areas": [1.0]}
+    assert "areas: is of no use without nodes" in refused([plain | NUMBERS])
+
+
+def several(*names, **numbers):
+    plain = {"tangential": "40x", "normal": "40z"} | NUMBERS
+    return [plain | {"name": name} for name in names]
+
+
+def test_a_star_stands_for_all_that_match():
+    curves = read(several("a1", "a2", "b"), sweep={"contact.a*.mu": [0.1, 0.2], "contact.b.mu": [0.5]}).curves
+    found = [[contact.mu for contact in curve.contacts] for curve in curves]
+    assert found == [[0.1, 0.1, 0.5], [0.2, 0.2, 0.5]]
+
+
+def test_a_star_for_forces_with_and_without_a_name():
+    force = [{"dof": "40x", "amplitude": 1.0}, {"dof": {"40x": 1.0, "41x": 1.0}, "amplitude": 1.0}]
+    curves = read(force=force, sweep={"force.*.amplitude": [2.0]}).curves
+    assert [one.amplitude for one in curves[0].forces] == [2.0, 2.0]
+
+
+def test_stars_that_stand_for_nothing_or_not_for_all():
+    assert 'nothing in the scene matches "contact.z*"' in refused(sweep={"contact.z*.n_0": [1]})
+    assert '"contact.shroud_1" has no "k_t" to sweep' in refused(sweep={"contact.*.k_t": [1]})
+    gap = {key: value for key, value in several("g")[0].items() if key != "n_0"} | {"gap": 0.1}
+    message = refused([*several("a"), gap], sweep={"contact.*.n_0": [1]})
+    assert '"contact.g" has no "n_0" to sweep; it is given by gap' in message
+
+
+def test_two_keys_for_one_number():
+    message = refused(several("a", "b"), sweep={"contact.*.n_0": [1], "contact.a.n_0": [2]})
+    assert 'sets the same number as "contact.*.n_0"' in message
+
+
+def test_keys_in_step_and_their_product_with_others():
+    paired = [{"contact.a.n_0": [1, 2], "contact.b.n_0": [5, 6]}]
+    curves = read(several("a", "b"), sweep={"contact.a.mu": [0.1, 0.2], "paired": paired}).curves
+    found = [(curve.contacts[0].mu, *(contact.n_0 for contact in curve.contacts)) for curve in curves]
+    assert found == [(0.1, 1, 5), (0.1, 2, 6), (0.2, 1, 5), (0.2, 2, 6)]
+    assert list(curves[0].parameters) == ["contact.a.mu", "contact.a.n_0", "contact.b.n_0"]
+
+
+def test_two_tables_of_keys_in_step():
+    paired = [{"contact.a.n_0": [1, 2], "contact.b.n_0": [5, 6]}, {"contact.a.mu": [0.1, 0.2]}]
+    assert len(read(several("a", "b"), sweep={"paired": paired}).curves) == 4
+
+
+@pytest.mark.parametrize(
+    "paired, words",
+    [
+        ([{"contact.a.n_0": [1, 2], "contact.b.n_0": [5]}], "its keys go in step, but have 1 and 2 values"),
+        ([{"contact.a.n_0": []}], 'sweep.paired[0]."contact.a.n_0": is an empty list'),
+        ([{"contact.z.n_0": [1]}], 'sweep.paired[0]."contact.z.n_0": there is no such number'),
+        ({"contact.a.n_0": [1]}, "sweep.paired: must be a list of tables"),
+        ([3], "sweep.paired[0]: must be a table"),
+    ],
+)
+def test_mistakes_of_keys_in_step(paired, words):
+    assert words in refused(several("a", "b"), sweep={"paired": paired})
