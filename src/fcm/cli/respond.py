@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import exact, schedule
+from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
@@ -65,6 +66,7 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 )  # fmt: skip
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
 @largest_file_option
+@about_scenes
 @click.option(
     "--compare",
     is_flag=True,

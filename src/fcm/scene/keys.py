@@ -33,7 +33,7 @@ class Key:
 
 _DIRECTION = "a degree of freedom, or a table of weights"
 _MATRIX = ".npz, .mat, .mtx or .op4 file, or a list of rows"
-_GIVEN = "as in the file"
+_GIVEN = "file"
 
 TABLES: dict[str, dict[str, Key]] = {
     "": {
@@ -65,7 +65,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "file": Key("of the names of the rows, one on each line", "text file", "dofs"),
         "mass": Key("mass matrix; a list of numbers is its diagonal", _MATRIX),
         "stiffness": Key("stiffness matrix", _MATRIX),
-        "damping": Key("of every mode, in proportion, or a matrix", f"ratio, table, or {_MATRIX}"),
+        "damping": Key("of every mode, in proportion, or a matrix", "ratio, table, or matrix as above"),
         "modes": Key("how many are kept", "whole number", "all up to 3 times the range's end"),
         "flexibility": Key("whether that of the other modes is kept", "true or false", "true"),
     },

@@ -1,0 +1,83 @@
+"""The table of keys is what scenes are checked against, and the template has all of them."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+
+import pytest
+from click.testing import CliRunner
+
+from fcm.cli import main
+from fcm.scene import SceneError, scene_from_dict
+from fcm.scene.keys import TABLES, as_lines, names
+
+
+def printed(option):
+    result = CliRunner().invoke(main, ["respond", option])
+    assert result.exit_code == 0 and result.stderr == ""
+    return result.stdout
+
+
+def test_every_key_is_printed_with_its_rule():
+    lines = printed("--keys").splitlines()
+    assert len(lines) == 1 + len(as_lines())
+    text = "\n".join(lines)
+    assert re.search(r"^contact\[\]\.mu +number at least 0 +required +friction coefficient$", text, re.M)
+    assert re.search(r"^response\.max_step +number greater than 0 and at most 1 +0\.05 ", text, re.M)
+
+
+@pytest.mark.parametrize("table", [table for table in TABLES if table not in ("sweep",)])
+def test_a_key_that_is_not_in_the_table_is_refused(table):
+    """With the keys of the table as suggestions: what is checked is what is printed."""
+    wrong = names(table)[0] + "q"
+    inner = {wrong: 1}
+    for word in reversed(table.split(".") if table else []):
+        inner = {word: [inner] if word in ("contact", "force", "load", "schedule") else inner}
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict(inner)
+    assert f"{wrong}: unknown key" in str(caught.value)
+
+
+def test_the_template_is_a_scene():
+    scene = scene_from_dict(tomllib.loads(printed("--template")))
+    assert scene.contacts[0].name == "shroud" and scene.has_range
+
+
+def test_the_template_has_every_key():
+    text = printed("--template")
+    for table, keys in TABLES.items():
+        for key in keys:
+            word = key.strip('"').replace("NAME", "*")
+            if table == "" or key == "paired":
+                assert re.search(rf"^(# )?(\[\[?)?(sweep\.)?{word}(\]| *=)", text, re.M), key
+            else:
+                assert re.search(rf"[#{{ \n\"]{re.escape(word)}\"? *=", text), (table, key)
+
+
+def test_what_the_template_has_in_comments_is_right():
+    """Its comments taken away, all but one of each choice: a scene of matrices, with all tables."""
+    text = printed("--template")
+    lines = [line.removeprefix("# ") for line in text[text.index("[[contact]]") :].splitlines()]
+    dropped = ("gap", "areas", "nodes", "file ", "phase ", " ", "phase   =")
+    kept = [line for line in lines if not line.startswith(dropped)]
+    table = '[structure]\ndofs = ["40x","40y","41x","41y","71x","50z","7a"]\nmass = [1,1,1,1,1,1,1]\n'
+    table += "stiffness = [1e5,2e5,3e5,4e5,5e5,6e5,7e5]\ndamping = 0.002\n"
+    data = tomllib.loads(table + "\n".join(kept))
+    data["start"] = {
+        key: [0.0] * (7 if key in ("displacement", "velocity") else 1)
+        for key in data["start"]
+        if key != "angle"
+    }
+    scene = scene_from_dict(data)
+    assert scene.loads and scene.schedule and scene.start and scene.units == ("m", "N")
+    assert len(scene.curves) == 6 and scene.forces[0].power == 2
+
+
+def test_neither_needs_the_solver():
+    code = "import sys; from fcm.cli import main; main(['respond', '--keys'], standalone_mode=False); "
+    code += "print([m for m in ('scipy', 'netCDF4', 'xarray', 'fcm.response.sweep') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
