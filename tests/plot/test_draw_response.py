@@ -98,10 +98,14 @@ def test_names_hold_no_mathematics_of_their_own():
     assert figure.axes[0].get_ylabel() == "Amplitude of $u_{"
 
 
-def test_of_very_many_curves_the_first_and_the_last_are_named():
+def test_of_very_many_curves_the_colours_are_named_by_a_bar():
     many = [resonance(5.0 + n / 10, 0.9 + n / 200, float(n)) for n in range(100)]
     figure = draw_response(response(*many))
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["$n_{0}$ = 0", "$n_{0}$ = 99"]
+    assert not figure.legends
+    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "$n_{0}$")
+    names = [text.get_text() for text in bar.get_yticklabels()]
+    assert (names[0], names[-1], len(names)) == ("0", "99", 9)
+    assert [float(name) for name in names] == [round(place) for place in bar.get_yticks()]
     assert len(figure.axes[0].lines) == 100
 
 
@@ -260,3 +264,8 @@ def test_a_level_curve_is_below_the_frame():
     (axes,) = draw_response(response(replace(resonance(35.0, 1.5, 100.0), amplitude=height))).axes
     bottom, top = axes.get_ylim()
     assert bottom == 0.0 and top > 1.04e-8
+
+
+def test_a_unit_of_length_is_in_the_label():
+    one = replace(response(resonance(5.0, 1.0, 1.0)), length="mm")
+    assert draw_response(one).axes[0].get_ylabel().endswith("(mm)")

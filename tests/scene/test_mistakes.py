@@ -59,6 +59,8 @@ CASES = [
     ("contact", {}, "contact: must be a list of tables, is a table; write [[contact]]"),
     ("contact", [3], "contact[0]: must be a table, is 3; write [[contact]]"),
     ("contact.0.ku", 3, 'contact[0] "shroud".ku: unknown key'),
+    ("contact.0.k_t", 3, 'contact[0] "shroud".k_t: unknown key; did you mean "k_u"?'),
+    ("contact.0.k_n", 3, 'contact[0] "shroud".k_n: unknown key; did you mean "k_v"?'),
     ("contact.0.name", GONE, "contact[0].name: missing; give a string"),
     ("contact.0.name", 7, "contact[0].name: must be a string, is 7"),
     ("contact.0.name", "", 'contact[0].name: "" is not a name'),

@@ -9,6 +9,8 @@ from fcm.cli.terminal import plain
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
+_EDGE = "*"  # beside the frequency of a peak where the range ends
+_LOST = "\n- the curve has no stable part there to land on"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
 
 
@@ -20,25 +22,49 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     if not curves:
         return "no curve"
     names = list(short_names(curves[0]["parameters"]).values())
-    dofs = list(curves[0]["peak"])[:_MOST_DOFS]
-    parts = [_curves(curves, names, dofs, unit)]
+    dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
+    parts = [_curves(curves, names, dofs, unit, length)]
     if any(curve.get("jumps") for curve in curves):
         parts.append(_jumps(curves, names, dofs, unit))
     return "\n\n".join(parts)
 
 
-def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str) -> str:
+def _greatest(curves: Sequence[Curve]) -> list[str]:
+    """Those degrees of freedom whose peaks are the greatest, in the order of the file."""
+
+    def peak(dof: str) -> float:
+        found = ((curve["peak"].get(dof) or {}).get("amplitude") for curve in curves)
+        return max((value for value in found if value is not None), default=0.0)
+
+    dofs = list(curves[0]["peak"])
+    chosen = sorted(dofs, key=peak, reverse=True)[:_MOST_DOFS]
+    return [dof for dof in dofs if dof in chosen]
+
+
+def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
-    peaks = [text for dof in dofs for text in (f"peak {dof}", f"at {unit}")]
+    of_length = f" [{length}]" if length else ""
+    peaks = [text for dof in dofs for text in (f"peak {dof}{of_length}", f"at {unit}")]
     header = [*names, *peaks, "points", "time [s]", f"folds at {unit}", ""]
-    return aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)
+    lines = [aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)]
+    if (count := len(curves[0]["peak"])) > len(dofs):
+        lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks")
+    if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
+        lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
+    return "\n".join(lines)
+
+
+def _at_edge(curve: Curve, dof: str) -> bool:
+    """Whether a peak is where the range ends."""
+    return bool((curve["peak"].get(dof) or {}).get("at_edge"))
 
 
 def _curve_row(curve: Curve, dofs: list[str]) -> list[str]:
     cells = swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
-        cells += [number(peak.get("amplitude")), number(peak.get("frequency"))]
+        at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
+        cells += [number(peak.get("amplitude")), at]
     folds = "  ".join(number(fold) for fold in curve["folds"]) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
@@ -52,7 +78,8 @@ def _jumps(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str
         for jump in curve.get("jumps", ()):
             moves = [number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
             rows.append([*swept(curve), number(jump["frequency"]), *moves, jump["sweep"]])
-    return aligned(rows, left=1)
+    lost = any("-" in row[len(names) :] for row in rows)
+    return aligned(rows, left=1) + (_LOST if lost else "")
 
 
 def swept(curve: Curve) -> list[str]:

@@ -127,7 +127,7 @@ def respond(
         if loaded.schedule:
             response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)
-        response.notes = list(loaded.notes)
+        response.notes, response.units = list(loaded.notes), loaded.units
         result = outputs.write(response, to_json)
     _close(messages, result, response.defects)
 

@@ -42,5 +42,14 @@ def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:
     return ", ".join(f"{name} = {value}" for name, value in zip(symbols(parameters), values, strict=True))
 
 
+def with_unit(text: str, unit: str) -> str:
+    """A label with its unit, if there is one.
+
+    >>> with_unit("Amplitude of u", "mm"), with_unit("Amplitude of u", "")
+    ('Amplitude of u (mm)', 'Amplitude of u')
+    """
+    return f"{text} ({unit})" if unit else text
+
+
 def frequency_label(unit: str) -> str:
     return "Frequency $f$ (Hz)" if unit == "Hz" else f"Frequency $\\omega$ ({unit})"

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, symbols
+from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, read_response
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
 
@@ -38,6 +38,7 @@ class Peaks:
     amplitude: FloatArray  # (curve, dof)
     frequency: FloatArray  # (curve, dof) in the file's unit
     complete: BoolArray  # (curve,)
+    length: str = ""  # unit of displacements, if the file says it
 
 
 def read_peaks(path: Path) -> Peaks:
@@ -55,7 +56,9 @@ def read_peaks(path: Path) -> Peaks:
         raise PlotError(f"{path}: not a response file: its peaks have shape {amplitude.shape}, not {shape}")
     keys = response.curves[0].parameters if response.curves else {}
     swept = {key: np.array([curve.parameters[key] for curve in response.curves]) for key in keys}
-    return Peaks(response.dofs, response.frequency_unit, swept, amplitude, frequency, complete == 1)
+    return Peaks(
+        response.dofs, response.frequency_unit, swept, amplitude, frequency, complete == 1, response.length
+    )
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
@@ -118,7 +121,7 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     name = symbol if symbol == key else f"{symbol}  ({key})"
     x = peaks.parameters[key][known]
     lower.set_xlabel(name, parse_math=symbol != key)
-    upper.set_ylabel(f"Peak amplitude of {peaks.dofs[column]}", parse_math=False)
+    upper.set_ylabel(with_unit(f"Peak amplitude of {peaks.dofs[column]}", peaks.length), parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
     if x.min() > 0.0 and x.max() > _DECADES * x.min():
         lower.set_xscale("log")

@@ -43,6 +43,7 @@ class DrawnResponse:
     dofs: tuple[str, ...]
     frequency_unit: str
     curves: tuple[DrawnCurve, ...]
+    length: str = ""  # unit of displacements, if the file says it
 
 
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
@@ -121,7 +122,8 @@ def _response(dataset: Any) -> DrawnResponse:
         )
         for i in range(len(frequency))
     )
-    return DrawnResponse(dofs, str(getattr(dataset, "frequency_unit", "rad/s")), curves)
+    length = str(getattr(variables["amplitude"], "units", ""))
+    return DrawnResponse(dofs, str(getattr(dataset, "frequency_unit", "rad/s")), curves, length)
 
 
 def _curve(

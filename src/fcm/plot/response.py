@@ -8,7 +8,7 @@ import numpy as np
 
 from fcm.plot.error_panel import HEIGHT, SHARES, draw_errors, has_errors
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, symbols
+from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
@@ -22,6 +22,7 @@ _HEADROOM = 1.05  # at least, above the highest amplitude
 _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 _DASHES = (0, (3, 1.6))
+_MOST_TICKS = 9  # of a colour bar
 _UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
@@ -122,7 +123,7 @@ def _named(curve: DrawnCurve, names: bool = True) -> str:
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
     axes.set_xlabel(frequency_label(response.frequency_unit))
-    axes.set_ylabel(f"Amplitude of {response.dofs[column]}", parse_math=False)
+    axes.set_ylabel(with_unit(f"Amplitude of {response.dofs[column]}", response.length), parse_math=False)
     axes.margins(x=0.0, y=0.07)
     axes.minorticks_on()
     if log:
@@ -144,11 +145,28 @@ def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: i
 def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
     lines = [line for line in axes.get_lines() if line.get_label() != _UNSTABLE]
-    shown = slice(None, None, len(lines) - 1 if len(lines) > _MOST_NAMES else 1)
     several = len(curves[0].parameters) > 1
+    if len(lines) > _MOST_NAMES:
+        _colour_bar(figure, curves)
+        return
     figure.legend(
-        lines[shown],
-        [_named(curve, names=not several) for curve in curves[shown]],
+        lines,
+        [_named(curve, names=not several) for curve in curves],
         title=",\n".join(symbols(curves[0].parameters)) if several else None,
         loc="outside right upper",
     )
+
+
+def _colour_bar(figure: Figure, curves: list[DrawnCurve]) -> None:
+    """Of very many curves: their colours in their order, with the values of some of them."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    count = len(curves)
+    each = BoundaryNorm(np.arange(count + 1) - 0.5, count)
+    colours = ScalarMappable(each, ListedColormap(sequence_colours(count)))
+    shown = np.unique(np.linspace(0, count - 1, _MOST_TICKS).round().astype(int)).tolist()
+    bar = figure.colorbar(colours, ax=figure.axes, ticks=shown, pad=0.02)
+    bar.ax.set_yticklabels([_named(curves[i], names=False) for i in shown])
+    bar.ax.minorticks_off()
+    bar.set_label(", ".join(symbols(curves[0].parameters)))

@@ -54,7 +54,7 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     scene = scene.in_use()
     check_solvable(scene)
     response = _curves(scene, method, at)
-    response.notes = list(scene.notes)
+    response.notes, response.units = list(scene.notes), scene.units
     if scene.schedule:
         from fcm.motion import histories
 

@@ -51,6 +51,13 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 }
 
 
+LENGTHS = (
+    "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
+    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least",
+)  # fmt: skip
+FORCES = ("spring_force",)
+
+
 class Field(NamedTuple):
     """One variable of the file."""
 
@@ -67,6 +74,7 @@ def summary(response: Response) -> dict[str, Any]:
         "frequency_unit": response.frequency_unit,
         "left_out": response.left_out,
         "notes": response.notes,
+        "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
     }
     if response.histories is not None:
@@ -100,7 +108,15 @@ def fields_of(response: Response) -> dict[str, Field]:
         from fcm.motion import output
 
         out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
-    return out
+    return _with_units(out, response.units)
+
+
+def _with_units(fields: dict[str, Field], units: tuple[str, str]) -> dict[str, Field]:
+    """The variables with the units of length and force that the scene names, where it does."""
+    for names, unit in zip((LENGTHS, FORCES), units, strict=True):
+        for name in set(names) & set(fields) if unit else ():
+            fields[name].attrs["units"] = unit
+    return fields
 
 
 def _point_fields(response: Response) -> dict[str, Field]:
@@ -263,7 +279,8 @@ def write_csv(response: Response, path: str | Path) -> None:
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
     kinds = ("amplitude", "phase", "mean", "fundamental")[: 4 if exact else 3]
-    columns = [f"{kind} {dof}" for dof in response.dofs for kind in kinds]
+    unit = f" [{response.units[0]}]" if response.units[0] else ""
+    columns = [f"{kind} {dof}{'' if kind == 'phase' else unit}" for dof in response.dofs for kind in kinds]
     regimes = [f"regime {name}" for name in response.contacts]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

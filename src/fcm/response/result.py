@@ -87,6 +87,16 @@ class Curve:
             "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
         }
 
+    def _peak(self, amplitude: float, frequency: float, unit: str) -> dict[str, Any]:
+        """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
+        known = self.frequency[np.isfinite(self.frequency)]
+        at_edge = self.complete and known.size > 1 and frequency in (known.min(), known.max())
+        return {
+            "amplitude": amplitude,
+            "frequency": float(in_unit(frequency, unit)),
+            "at_edge": bool(at_edge),
+        }
+
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
         return {
@@ -94,9 +104,7 @@ class Curve:
             "points": self.points,
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
-            "peak": {
-                d: {"amplitude": a, "frequency": float(in_unit(w, unit))} for d, (a, w) in self.peaks.items()
-            },
+            "peak": {d: self._peak(*peak, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
             "jumps": [self._jump(jump, unit) for jump in self.jumps()],
             "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
@@ -120,6 +128,7 @@ class Response:
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # of the scene: what was taken for what
+    units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 

@@ -20,6 +20,12 @@ LONGEST_NAME = (
 )
 
 
+SYNONYMS = {  # as others name what has another key here
+    "k_t": "k_u", "kt": "k_u", "k_tau": "k_u", "k_n": "k_v", "kn": "k_v", "friction": "mu", "preload": "n_0",
+    "clearance": "gap", "n0": "n_0", "k": "stiffness", "m": "mass",
+}  # fmt: skip
+
+
 class Section:
     """A table with its path. Readers note a mistake and return a stand-in, so that reading goes on."""
 
@@ -40,7 +46,7 @@ class Section:
         """Note every key that is not known."""
         for key in self.data:
             if key not in known:
-                self.wrong(bare(key), "unknown key", str(key), known)
+                self.wrong(bare(key), "unknown key", SYNONYMS.get(str(key), str(key)), known)
 
     def missing(self, key: str, right: str) -> bool:
         """Whether the key is missing, which is a mistake."""

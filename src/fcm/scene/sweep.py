@@ -179,7 +179,8 @@ def _range(table: Section) -> Any:
     count = _integer(table, "count", 1)
     if not (np.isfinite([low, high]).all() and count) or (log and (low <= 0 or high <= 0)):
         return None
-    return np.geomspace(low, high, count) if log else np.linspace(low, high, count)
+    values = np.geomspace(low, high, count) if log else np.linspace(low, high, count)
+    return np.array([float(f"{value:.15g}") for value in values.tolist()])  # 0.3, not 0.30000000000000004
 
 
 def _draws(table: Section, form: str, key: str) -> Any:

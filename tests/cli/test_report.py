@@ -1,0 +1,75 @@
+"""The tables of a run: which degrees of freedom they show, peaks at an end of the range, jumps to nowhere."""
+
+from __future__ import annotations
+
+import netCDF4
+import pytest
+
+from fcm.cli.report import as_table
+
+
+def curve(peaks, jumps=(), edge=()):
+    found = {
+        dof: {"amplitude": peak, "frequency": 1.5, "at_edge": dof in edge} for dof, peak in peaks.items()
+    }
+    state = {"points": 7, "complete": True, "seconds": 0.1, "folds": [], "jumps": list(jumps)}
+    return {"parameters": {}, "peak": found} | state
+
+
+def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
+    one = {"a": 1.0, "b": 5.0, "c": 3.0, "d": 2.0, "e": 4.0, "f": 0.5}
+    two = {"a": 9.0, "b": 1.0, "c": 1.0, "d": 1.0, "e": 1.0, "f": 0.1}
+    header, *rows = as_table({"curves": [curve(one), curve(two)]}, "Hz").splitlines()
+    assert [word for word in header.split() if word in one] == ["a", "b", "c", "e"]
+    assert rows[-1] == "the 4 of 6 degrees of freedom with the greatest peaks"
+
+
+def test_a_peak_where_the_range_ends_is_marked():
+    text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
+    assert text.splitlines()[1].split()[:4] == ["1.00000", "1.50000", "2.00000", "1.50000*"]
+    assert text.splitlines()[-1] == "* at an end of the range: beyond it the curve may rise further"
+
+
+def test_a_jump_to_no_stable_part_is_explained():
+    jump = {"sweep": "up", "frequency": 1.2, "before": {"u": 1.0}, "after": {"u": None}}
+    text = as_table({"curves": [curve({"u": 1.0}, [jump])]}, "Hz")
+    assert text.splitlines()[-1] == "- the curve has no stable part there to land on"
+    settled = as_table({"curves": [curve({"u": 1.0}, [jump | {"after": {"u": 0.5}}])]}, "Hz")
+    assert "land on" not in settled
+
+
+SCENE = """
+[units]
+length = "mm"
+force = "N"
+[modal]
+dofs = ["u", "v"]
+frequency = [1.0, 10.0]
+damping = 0.05
+shapes = [[0.707, 0.707], [1.0, -0.5]]
+[[contact]]
+name = "c"
+tangential = "u"
+normal = "v"
+mu = 0.4
+k_u = 1.0
+k_v = 1.0
+n_0 = 5.0
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.5, RANGE]
+"""
+
+
+@pytest.mark.parametrize("end, edge", [("1.1", True), ("1.8", False)])
+def test_units_and_edges_reach_table_and_files(fcm, tmp_path, end, edge):
+    (tmp_path / "s.toml").write_text(SCENE.replace("RANGE", end))
+    run = fcm("respond", "s.toml", "-o", "s.nc", "--csv", "s.csv", "--method", "closed-form")
+    assert run.code == 0 and "peak u [mm]" in run.out
+    assert ("* at an end of the range" in run.out) == edge
+    assert "amplitude u [mm]" in (tmp_path / "s.csv").read_text().splitlines()[0]
+    with netCDF4.Dataset(tmp_path / "s.nc") as file:
+        assert file["amplitude"].units == file["peak_amplitude"].units == "mm"
+        assert file["spring_force"].units == "N"
