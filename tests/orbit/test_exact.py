@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -153,7 +154,10 @@ def test_the_dataset_has_the_layout_of_every_response():
     exact, balanced = fcm.respond(scene, "exact"), fcm.respond(scene, "closed-form")
     for name in balanced.variables:
         assert exact[name].dims == balanced[name].dims
-    assert set(exact.variables) - set(balanced.variables) == {"fundamental", "closure_error", "sweep"}
+    assert set(exact.variables) - set(balanced.variables) == {
+        "fundamental", "closure_error", "sweep",
+        "repeats", "cycle_least", "cycle_greatest", "family_least", "family_greatest",
+    }  # fmt: skip
     assert exact.fundamental.dims == exact.amplitude.dims
     # the greatest displacement is never less than what one harmonic of three can hide
     assert (exact.amplitude >= 0.75 * exact.fundamental).all()
@@ -224,3 +228,15 @@ def test_a_scene_without_contacts():
 def test_a_mode_that_is_free_to_drift():
     curve = curve_of(one_mode(frequency=0.0, n_0=-100.0))
     assert curve.points == 0 and "free to drift" in curve.reason
+
+
+def test_a_stretch_on_which_all_contacts_stick_is_passed():
+    """Between 1.5787 and 1.5839 rad/s the motion is linear, whatever the residual friction."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/both_stuck.toml")
+    curve = curve_of(between(scene, 1.55, 1.62, max_step=0.2))
+    assert curve.complete
+    stuck = (curve.regime == "E").all(axis=1)
+    inside = (curve.frequency > 1.5787) & (curve.frequency < 1.5839)
+    assert inside.any() and stuck[inside].all() and not stuck.all()
+    exact = np.array([linear(scene, omega, stuck=True) for omega in curve.frequency[stuck]])
+    assert curve.amplitude[stuck] == pytest.approx(np.abs(exact), rel=1e-8)

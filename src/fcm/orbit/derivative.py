@@ -27,12 +27,12 @@ def derivative_at(system: System, segments: Segments, last: int, position: float
     return Along(np.array(kernel.columns), np.array(kernel.rate))
 
 
-def period_derivative(system: System, segments: Segments) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of x = (q, q', f) after one period by x at its start, and by the frequency.
+def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
+    """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency.
 
-    The period shortens as the frequency grows: dT / d omega = -T / omega.
+    The periods shorten as the frequency grows: dT / d omega = -T / omega.
     """
     last, u = len(segments) - 1, system.unknowns
     there = derivative_at(system, segments, last, segments.length[last])
-    by_frequency = there.columns[u, :u] - system.period / system.omega * there.rate[:u]
+    by_frequency = there.columns[u, :u] - duration / system.omega * there.rate[:u]
     return there.columns[:u, :u].T, by_frequency

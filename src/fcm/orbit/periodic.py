@@ -15,6 +15,7 @@ from fcm.motion.motion import Motion
 from fcm.motion.run import cycles_from
 from fcm.motion.state import State
 from fcm.motion.system import System
+from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
 
@@ -77,7 +78,7 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
     guess : State, optional
         At the forces' angle 0, from `Motion.end`, from a neighbouring `Orbit.state`, or from
         `harmonic_state`. By default the solution is the one that a simulation from rest approaches, or
-        goes around when that one is not stable.
+        goes around when that one is not stable; its residual friction is that of the scene's [start].
 
     Raises
     ------
@@ -103,9 +104,16 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
     return _approached(system)
 
 
+def unloaded(scene: Scene) -> State:
+    """At rest, with the residual friction of the scene's [start]."""
+    rest = State.rest(scene)
+    stiff = np.array([contact.k_u for contact in scene.contacts])
+    return State(rest.q, rest.velocity, -stiff * resting(scene))
+
+
 def _approached(system: System) -> Orbit:
     """The periodic solution that a simulation from rest comes near to."""
-    state, unstable = State.rest(system.scene), 0
+    state, unstable = unloaded(system.scene), 0
     for cycles in FREE_CYCLES:
         *_, (_, state) = cycles_from(system, cycles, state)
         orbit = shoot(system, state)
@@ -121,13 +129,18 @@ def _approached(system: System) -> Orbit:
 
 def shoot(system: System, guess: State) -> Orbit | None:
     """Newton's method from a state at the forces' angle 0; None when it does not converge."""
-    shot = Shot(system, np.concatenate((guess.q, guess.velocity, guess.friction)))
+    found = converged(Shot(system, np.concatenate((guess.q, guess.velocity, guess.friction))))
+    return None if found is None else closed(*found)
+
+
+def converged(shot: Shot) -> tuple[Shot, int] | None:
+    """The shot that closes, by Newton's method from one that does not, and the number of steps it took."""
     for iteration in range(MOST_ITERATIONS):
         if shot.residual <= TOLERANCE:
-            return closed(shot, iteration)
+            return shot, iteration
         better = _improved(shot)
         if better is None:
-            return closed(shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
+            return (shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
         shot = better
     return None
 
@@ -144,7 +157,8 @@ def _step(shot: Shot) -> FloatArray:
     """Newton's step; along directions in which nothing changes, none."""
     matrix = shot.by_state * shot.scale / shot.scale[:, None]
     solution = np.linalg.lstsq(matrix, -shot.gap / shot.scale, rcond=RANK)[0]
-    step: FloatArray = solution * shot.scale
+    with np.errstate(over="ignore"):  # what is not finite is refused when it is tried
+        step: FloatArray = solution * shot.scale
     return step
 
 
@@ -152,7 +166,11 @@ def _improved(shot: Shot) -> Shot | None:
     """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
     step, size = _step(shot), 1.0
     while size > 1e-3:
-        new = Shot(shot.system, shot.x + size * step)
+        try:
+            new = Shot(shot.system, shot.x + size * step, shot.resting, shot.periods)
+        except SimulationError:  # too far away to be computed
+            size *= 0.5
+            continue
         # across corners of the map the residual may grow for one step
         if new.residual < shot.residual * (1.0 if size < 1.0 else 2.0 if shot.residual > 1e-6 else 1.0):
             return new

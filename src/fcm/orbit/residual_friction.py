@@ -17,7 +17,7 @@ from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.segments import Segments
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import derivative_at
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import Contact, FloatArray, Scene
 
 MARGIN = 1e-9  # distance from the slip limit, relative to the forces
 
@@ -37,9 +37,21 @@ def resting(scene: Scene) -> FloatArray:
     start = scene.start
     if start is None:
         return np.zeros(len(scene.contacts))
-    x = scene.modal.shapes.T @ start.displacement
-    force = zip(scene.contacts, start.friction.tolist(), strict=True)
-    return np.array([c.tangential @ x - f / c.k_u if c.k_u > 0.0 else 0.0 for c, f in force]).reshape(-1)
+    return _resting(scene.contacts, scene.modal.shapes.T @ start.displacement, start.friction)
+
+
+def resting_at(system: System, x: FloatArray) -> FloatArray:
+    """The slip motions w of the contacts at x = (q, q', f): (contact,)."""
+    displacement = system.scene.modal.shapes.T @ x[system.q]
+    return _resting(system.contacts, displacement, x[system.f])
+
+
+def _resting(contacts: tuple[Contact, ...], displacement: FloatArray, friction: FloatArray) -> FloatArray:
+    w = np.zeros(len(contacts))
+    for j, contact in enumerate(contacts):
+        if contact.k_u > 0.0:
+            w[j] = contact.tangential @ displacement - friction[j] / contact.k_u
+    return w
 
 
 def always_stuck(system: System, segments: Segments) -> list[int]:
@@ -56,9 +68,9 @@ def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choi
     y = np.asarray(segments.y)[0]
     gaps = {j: _gap(system, y, j, float(wanted[j])) for j in always_stuck(system, segments)}
     away = [j for j, gap in gaps.items() if gap != 0.0]
-    rooms = _rooms(system, segments, away) if away else {}
+    room = rooms(system, segments, away) if away else {}
     return [
-        _choice(system, segments, j, gap, *rooms[j]) if gap else Choice(j, 0.0, _row(system, j), 0.0, False)
+        _choice(system, segments, j, gap, *room[j]) if gap else Choice(j, 0.0, _row(system, j), 0.0, False)
         for j, gap in gaps.items()
     ]
 
@@ -123,7 +135,7 @@ def _limit(system: System, j: int, sign: float) -> FloatArray:
     return row
 
 
-def _rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
+def rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
     """Of each contact the least of mu n - f and of mu n + f over the segments."""
     rows = [_limit(system, j, sign) for j in contacts for sign in (1.0, -1.0)]
     found = least(system, segments, np.array(rows))

@@ -20,7 +20,7 @@ TINY = 1e-300  # instead of a division by zero where nothing moves
 
 
 class Shot:
-    """The motion over one period from x = (q, q', f), and how it fails to close.
+    """The motion over some periods from x = (q, q', f), and how it fails to close.
 
     Parameters
     ----------
@@ -28,14 +28,18 @@ class Shot:
     x : (unknown,)
     resting : (contact,), optional
         The slip motions w that contacts which always stick are to have; any will do by default.
+    periods : int
+        Of the force, after which the motion is to repeat.
     """
 
-    def __init__(self, system: System, x: FloatArray, resting: FloatArray | None = None) -> None:
+    def __init__(
+        self, system: System, x: FloatArray, resting: FloatArray | None = None, periods: int = 1
+    ) -> None:
         m, u = system.modes, system.unknowns
-        self.system, self.x = system, x
+        self.system, self.x, self.resting, self.periods = system, x, resting, periods
         self.state = State(x[:m], x[m : 2 * m], x[2 * m :])
         y, states = entry(system, self.state)
-        self.segments, end, _ = march(system, y, states, system.period)
+        self.segments, end, _ = march(system, y, states, self.duration)
         self.gap = end[:u] - x
         self.chosen = [] if resting is None else choices(system, self.segments, resting)
         for choice in self.chosen:
@@ -47,8 +51,13 @@ class Shot:
 
     @property
     def cycle(self) -> Cycle:
-        """The period."""
-        return Cycle(self.system, 0.0, self.system.period, 0.0, self.segments)
+        """The motion over the periods."""
+        return Cycle(self.system, 0.0, self.duration, 0.0, self.segments)
+
+    @property
+    def duration(self) -> float:
+        """Of the periods [s]."""
+        return self.periods * self.system.period
 
     @cached_property
     def sequence(self) -> bytes:
@@ -57,7 +66,7 @@ class Shot:
 
     @cached_property
     def _derivatives(self) -> tuple[FloatArray, FloatArray]:
-        return period_derivative(self.system, self.segments)
+        return period_derivative(self.system, self.segments, self.duration)
 
     @property
     def derivative(self) -> FloatArray:
@@ -91,6 +100,8 @@ class Shot:
 class Shooting:
     """Periodic motions of a scene as the roots of a residual, over all frequencies.
 
+    With more than one period these are the motions that repeat after so many, and also those that do before.
+
     The unknowns are (q, q', f) at the forces' angle 0 without the friction forces that are always zero:
     `free` has their places. The residual is continuous, and smooth while the sequence of states stays.
 
@@ -105,8 +116,8 @@ class Shooting:
     ((5, 5), (5,), True)
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.resting = scene, resting(scene)
+    def __init__(self, scene: Scene, periods: int = 1) -> None:
+        self.scene, self.resting, self.each = scene, resting(scene), periods
         carries = np.array([has_friction(contact) for contact in scene.contacts], dtype=bool)
         self.free = np.flatnonzero(np.concatenate((np.ones(2 * scene.modal.mass.size, dtype=bool), carries)))
         self.size = 2 * scene.modal.mass.size + len(scene.contacts)
@@ -134,8 +145,8 @@ class Shooting:
         """
         x = np.zeros(self.size)
         x[self.free] = unknowns
-        self.periods += 1
-        return Shot(self.system(omega), x, self.resting)
+        self.periods += self.each
+        return Shot(self.system(omega), x, self.resting, self.each)
 
 
 def _scale(system: System, segments: Segments) -> FloatArray:

@@ -15,14 +15,15 @@ import numpy.typing as npt
 import fcm
 from fcm.contact.limits import FloatArray
 from fcm.files import replacing
-from fcm.response.result import Curve, Response
+from fcm.response.result import Curve, Orbits, Response
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
     import xarray
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
-ORBIT_COLUMNS = ("closure_error", "sweep")
+ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
+ORBIT_KINDS = ("fundamental", "cycle_least", "cycle_greatest", "family_least", "family_greatest")
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
     ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
@@ -46,6 +47,24 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
     "closure_error": (
         (),
         {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
+    ),
+    "repeats": (
+        (),
+        {
+            "long_name": "periods of the force after which the motion repeats, 0 if it is quasi-periodic or "
+            "irregular",
+            "units": "1",
+        },
+    ),
+    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle"}),
+    "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
+    "family_least": (
+        ("dof",),
+        {"long_name": "least amplitude over the residual friction of contacts that never slip"},
+    ),
+    "family_greatest": (
+        ("dof",),
+        {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
     ),
     "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
 }
@@ -159,9 +178,15 @@ def _point_fields(response: Response) -> dict[str, Field]:
 
 def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
     if curve.orbits is None:  # lost
-        return {"fundamental": curve.amplitude, "sweep": np.array([], dtype=str)}.get(name, curve.frequency)
+        lost: dict[str, npt.NDArray[Any]] = dict.fromkeys(ORBIT_KINDS, curve.amplitude)
+        return (lost | {"sweep": np.array([], dtype=str)}).get(name, curve.frequency)
     values: npt.NDArray[Any] = getattr(curve.orbits, name)
     return values
+
+
+def _of_orbit(orbits: Orbits, point: int) -> list[Any]:
+    """The last columns of a row of CSV."""
+    return [repr(float(orbits.closure_error[point])), orbits.sweep[point], int(orbits.repeats[point])]
 
 
 def _of_loop(curve: Curve, column: int) -> FloatArray:
@@ -278,7 +303,7 @@ def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
-    kinds = ("amplitude", "phase", "mean", "fundamental")[: 4 if exact else 3]
+    kinds = ("amplitude", "phase", "mean", *(ORBIT_KINDS if exact else ()))
     unit = f" [{response.units[0]}]" if response.units[0] else ""
     columns = [f"{kind} {dof}{'' if kind == 'phase' else unit}" for dof in response.dofs for kind in kinds]
     regimes = [f"regime {name}" for name in response.contacts]
@@ -298,7 +323,8 @@ def write_csv(response: Response, path: str | Path) -> None:
         )
         for number, c in enumerate(response.curves):
             orbits = c.orbits
-            parts = (c.amplitude, c.phase, c.mean, *(() if orbits is None else (orbits.fundamental,)))
+            own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
+            parts = (c.amplitude, c.phase, c.mean, *own)
             frequency = in_unit(c.frequency, response.frequency_unit)
             values = np.stack(parts, axis=2).reshape(c.frequency.size, len(columns))
             for k in np.flatnonzero(np.isfinite(c.frequency)):
@@ -307,5 +333,5 @@ def write_csv(response: Response, path: str | Path) -> None:
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), int(c.stable[k])]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
-                    + ([] if orbits is None else [repr(float(orbits.closure_error[k])), orbits.sweep[k]])
+                    + ([] if orbits is None else _of_orbit(orbits, int(k)))
                 )

@@ -28,6 +28,11 @@ class Orbits:
     fundamental: FloatArray  # (point, dof) amplitude of the fundamental
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
+    repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if it does not
+    cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
+    cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
+    family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
+    family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
     jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
 
@@ -110,8 +115,24 @@ class Curve:
             "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
-            **({} if self.orbits is None else {"closure_error": self.worst(self.orbits.closure_error)}),
+            **({} if self.orbits is None else self._of_orbits(self.orbits)),
             "seconds": self.seconds,
+        }
+
+    def _of_orbits(self, orbits: Orbits) -> dict[str, Any]:
+        """What only exact motions have, in the summary."""
+        here = np.isfinite(self.frequency)
+        known = np.isfinite(orbits.family_greatest).any(axis=1)
+        families = {
+            dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
+            for i, (dof, (_, omega)) in enumerate(self.peaks.items())
+            for k in np.flatnonzero(known & (self.frequency == omega))[:1]
+        }
+        return {
+            "closure_error": self.worst(orbits.closure_error),
+            "repeats": sorted({int(x) for x in orbits.repeats[here]}),
+            "not_unique": int(known.sum()),
+            **({"peak_range": families} if families else {}),
         }
 
 

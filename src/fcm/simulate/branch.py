@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fcm.motion.errors import SimulationError
+from fcm.orbit.family import chosen
 from fcm.orbit.periodic import Orbit, periodic
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
@@ -90,8 +91,11 @@ def first_point(equations: Equations, orbit: Orbit) -> Point:
     """The first point of a curve, its stuck contacts as little stressed as can be, directed inwards."""
     low, high = equations.scene.frequency_range
     state, omega = orbit.state, orbit.frequency
-    x = np.concatenate((state.q, state.velocity, state.friction))[equations.free]
-    z = np.append(x, omega)
+    z = np.append(equations.shooting.unknowns(state), omega)
+    near = equations.shot(z)
+    member = None if near is None else chosen(near, equations.shooting.resting)
+    if member is not None:
+        z = np.append(member.x[equations.free], omega)
     shot = equations.shot(z)
     row = level(z.size, 1.0 if omega - low <= high - omega else -1.0)
     found = None if shot is None else equations.correct(z, equations.scale(shot), row)

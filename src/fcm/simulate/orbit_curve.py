@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.motion.errors import SimulationError
+from fcm.orbit.family import family
 from fcm.response.groups import lost_curve
 from fcm.response.result import Curve, Orbits
 from fcm.scene.model import Scene
@@ -16,6 +18,7 @@ from fcm.simulate.branch import Branch
 from fcm.simulate.sample import Sample
 from fcm.simulate.visit import Visitor
 
+UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
@@ -25,21 +28,22 @@ def traced_curve(scene: Scene, branches: Sequence[Branch], reason: str) -> Curve
     for branch in branches:
         points += [None, *branch.orbits] if points else branch.orbits
     folds = [fold.frequency for branch in branches for fold in branch.folds]
-    return replace(_curve(scene, points, reason), folds=folds)
+    return replace(_curve(scene, points, reason, everywhere=False), folds=folds)
 
 
 def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
     """The points at which sweeps were steady, in order; complete without a reason, its own or that one."""
-    curve = _curve(scene, visitor.points, reason or visitor.reason)
+    curve = _curve(scene, visitor.points, reason or visitor.reason, everywhere=True)
     if curve.orbits is not None:
         curve.orbits.sweep, curve.orbits.jumps = np.array(visitor.sweep, dtype="<U4"), visitor.jumps
     return curve
 
 
-def _curve(scene: Scene, points: Sequence[Sample | None], reason: str) -> Curve:
+def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywhere: bool) -> Curve:
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
+    families = _families(scene, points, amplitude, everywhere)
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
         empty,
@@ -58,6 +62,10 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str) -> Curve:
             _rows(points, "fundamental", empty),
             _numbers(points, "residual"),
             np.full(len(points), "", dtype="<U4"),
+            _numbers(points, "repeats"),
+            _cycles(points, "least", empty),
+            _cycles(points, "greatest", empty),
+            *families,
         ),
     )
 
@@ -72,6 +80,35 @@ def _rows(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArra
     none = np.full(len(empty.peaks), np.nan)
     rows = [none if point is None else getattr(point.measure, name) for point in points]
     return np.array(rows).reshape(len(points), len(empty.peaks))
+
+
+def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArray:
+    """The least or greatest amplitude of a cycle of each point, (point, dof)."""
+    rows = _rows(points, "amplitude", empty)
+    for k, point in enumerate(points):
+        if point is not None and point.steady is not None:
+            rows[k] = getattr(point.steady, name)
+    return rows
+
+
+def _families(
+    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, everywhere: bool
+) -> tuple[FloatArray, FloatArray]:
+    """The extent over residual friction at the peaks, or everywhere; nan where the amplitude is unique."""
+    least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
+    known = np.isfinite(amplitude).any(axis=1)
+    chosen = range(len(points)) if everywhere else set(np.nanargmax(amplitude, axis=0)) if known.any() else ()
+    for k in chosen:
+        point = points[k]
+        if point is None or "E" not in point.states or point.repeats != 1:
+            continue
+        try:
+            found = family(scene, point.frequency, point.state)
+        except SimulationError:  # its neighbourhood cannot be computed
+            continue
+        if found is not None and found.spread.max() > UNIQUE:
+            least[k], greatest[k] = found.least, found.greatest
+    return least, greatest
 
 
 def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.str_]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.motion.measure import Measure
 from fcm.motion.state import State
 from fcm.orbit.periodic import closed, within_unit_circle
-from fcm.orbit.subharmonic import Repeating
+from fcm.orbit.steady import Steady
 from fcm.scene.model import FloatArray
 from fcm.simulate.arc import Point
 
@@ -29,6 +29,12 @@ class Sample:
     scale: FloatArray
     tangent: FloatArray
     orientation: float
+    steady: Steady | None = None  # how it repeats or ranges, where it does not after every period
+
+    @property
+    def repeats(self) -> int:
+        """Periods of the force after which the motion repeats, 0 if it does not."""
+        return 1 if self.steady is None else self.steady.periods
 
     @property
     def stable(self) -> bool:
@@ -45,12 +51,12 @@ def sampled(point: Point) -> Sample:
     )  # fmt: skip
 
 
-def repeated(omega: float, state: State, motion: Repeating) -> Sample:
-    """What is kept of a motion of several periods; it is stable, as it was come to."""
+def settled(omega: float, motion: Steady) -> Sample:
+    """What is kept of a motion that a simulation has come to."""
     none = np.zeros(0)
     return Sample(
-        omega, state, motion.states, motion.measure, none.astype(np.complex128), motion.error,
-        none, none, none, 0.0,
+        omega, motion.state, motion.states, motion.measure, motion.multipliers, motion.error,
+        none, none, none, 0.0, motion,
     )  # fmt: skip
 
 

@@ -16,26 +16,23 @@ import numpy as np
 
 from fcm.motion.errors import CycleError, SimulationError
 from fcm.motion.measure import Measure
-from fcm.motion.run import cycles_from
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.orbit.periodic import Orbit, shoot
-from fcm.orbit.subharmonic import repeating
+from fcm.orbit.periodic import shoot
+from fcm.orbit.steady import FREE_CYCLES, steady
 from fcm.response.jumps import Jump
 from fcm.run import Report
 from fcm.scene.model import Scene
 from fcm.simulate.arc import Equations, Point, level, rescaled
 from fcm.simulate.branch import first_point, shown
 from fcm.simulate.explore import solution_at
-from fcm.simulate.sample import Sample, repeated, sampled
+from fcm.simulate.sample import Sample, sampled, settled
 
-FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
 ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
 CLOSE = 0.05  # is another branch; but never within this distance
 SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
 BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
-SETTLED = 0.1  # distance of a simulated state from the periodic solution to which it belongs
 MOST_NAMED = 5
 JUMP = 0.01  # relative change of an amplitude that is one
 
@@ -192,22 +189,14 @@ class Visitor:
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
         self._here, self._sample, system = None, None, System(self.scene, omega)
-        for cycles in FREE_CYCLES:
-            *_, (_, state) = cycles_from(system, cycles, state)
-            self._state = state
-            orbit = shoot(system, state)
-            near = orbit is not None and orbit.stable and _distance(state, orbit) < SETTLED
-            if orbit is not None and near and self._take(first_point(self.equations, orbit)):
-                return
-            several = repeating(system, state)
-            if several is not None:
-                self._sample = repeated(omega, state, several)
-                return
-
-
-def _distance(state: State, orbit: Orbit) -> float:
-    """Of a state from a periodic solution, relative to the size of its motion."""
-    size = orbit.cycle.segments.largest()
-    system = orbit.cycle.system
-    parts = ((state.q, orbit.state.q, system.q), (state.velocity, orbit.state.velocity, system.p))
-    return max(float(np.abs(a - b).max()) / max(float(size[part].max()), 1e-300) for a, b, part in parts)
+        found = steady(system, state)
+        if isinstance(found, State):
+            self._state = found
+            return
+        self._state = found.state
+        if found.periods != 1:
+            self._sample = settled(omega, found)
+            return
+        orbit = shoot(system, found.state)
+        if orbit is not None:
+            self._take(first_point(self.equations, orbit))

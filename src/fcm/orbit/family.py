@@ -1,0 +1,173 @@
+"""The family of periodic motions of a scene with contacts that always stick, over their residual friction.
+
+The slider of such a contact may rest anywhere between its limits, and every place gives a steady motion. The
+family is followed from the motion that is chosen to the limits of one contact after the other, in both
+directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.motion.errors import SimulationError
+from fcm.motion.measure import measure
+from fcm.motion.state import State
+from fcm.motion.system import System
+from fcm.orbit.periodic import converged
+from fcm.orbit.residual_friction import always_stuck, resting_at, rooms
+from fcm.orbit.shooting import Shot
+from fcm.scene.model import FloatArray, Scene
+
+STEPS = 8  # from one limit of slip to the other
+SHORTEST = 1e-3  # part of a step below which the family has an end of its own
+MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
+
+
+@dataclass(frozen=True)
+class Family:
+    """The extent of the periodic motions at one frequency."""
+
+    contacts: tuple[int, ...]  # that always stick
+    friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
+    least: FloatArray  # (dof,) amplitude, half the peak-to-peak
+    greatest: FloatArray  # (dof,)
+    complete: bool  # whether the limits of slip were reached on every way
+
+    @property
+    def spread(self) -> FloatArray:
+        """By how much the amplitude is not determined, relative to its greatest value: (dof,)."""
+        size = np.where(self.greatest > 0.0, self.greatest, 1.0)
+        return (self.greatest - self.least) / size
+
+
+def family(scene: Scene, frequency: float, state: State) -> Family | None:
+    """The family that a periodic motion belongs to; None if no contact of it always sticks.
+
+    Parameters
+    ----------
+    scene : Scene
+    frequency : float
+        Of the external forces [rad/s].
+    state : State
+        Of a periodic motion at the forces' angle 0.
+
+    Raises
+    ------
+    SimulationError
+        If the state is not that of a periodic motion.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> from fcm.orbit import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> stuck = replace(scene, contacts=(replace(scene.contacts[0], n_0=100.0),))
+    >>> found = family(stuck, 1.3, periodic(stuck, 1.3).state)
+    >>> bool(found.spread.max() < 1e-9)  # nothing else feels it
+    True
+    """
+    system = System(scene, frequency)
+    x = np.concatenate((state.q, state.velocity, state.friction))
+    found = converged(Shot(system, x, resting_at(system, x)))
+    if found is None:
+        raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
+    begun = found[0]
+    contacts = always_stuck(system, begun.segments)
+    if not contacts:
+        return None
+    ways = [_Way(system, begun, contacts, sense) for sense in _senses(len(contacts))]
+    shots = [begun, *(shot for way in ways for shot in way.shots())]
+    amplitude = np.array([measure(shot.cycle).amplitude for shot in shots])
+    friction = np.array([_residual(shot)[contacts] for shot in shots])
+    return Family(
+        tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
+        amplitude.min(axis=0), amplitude.max(axis=0), all(way.ended for way in ways),
+    )  # fmt: skip
+
+
+def _senses(count: int) -> list[FloatArray]:
+    """The directions in which the family is followed: each contact alone, and all together."""
+    alone = [sign * row for row in np.eye(count) for sign in (1.0, -1.0)]
+    if count == 1:
+        return alone
+    if count > MOST_TOGETHER:
+        return [*alone, np.ones(count), -np.ones(count)]
+    together = np.array(np.meshgrid(*([(1.0, -1.0)] * count))).reshape(count, -1).T
+    return [*alone, *together]
+
+
+def _residual(shot: Shot) -> FloatArray:
+    """The friction forces that are left when the displacement is taken away, -k_u w: (contact,)."""
+    force: FloatArray = -shot.system.k_u * resting_at(shot.system, shot.x)
+    return force
+
+
+class _Way:
+    """The family in one direction, until every contact that is pushed is at its limit."""
+
+    def __init__(self, system: System, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
+        self.system, self.last, self.contacts, self.ended = system, begun, contacts, False
+        found = rooms(system, begun.segments, contacts)
+        reach = np.array([found[j][0].value + found[j][1].value for j in contacts])
+        self.push = np.zeros(len(system.contacts))
+        self.push[contacts] = sense * reach / STEPS
+
+    def shots(self) -> Iterator[Shot]:
+        """The motions on the way, the last one at the limits."""
+        share = 1.0
+        while share > SHORTEST and not self.ended:
+            new = self._further(share)
+            if new is None:
+                share *= 0.25
+                continue
+            self.ended = all(choice.limited for choice in new.chosen if self.push[choice.contact] != 0.0)
+            self.last, share = new, min(2.0 * share, 1.0)
+            yield new
+
+    def _further(self, share: float) -> Shot | None:
+        """The motion when the contacts are stressed a little more."""
+        new = _moved(self.last, -(_residual(self.last) + share * self.push))
+        if new is None or always_stuck(self.system, new.segments) != self.contacts:
+            return None
+        return new
+
+
+def chosen(shot: Shot, wanted: FloatArray) -> Shot | None:
+    """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
+
+    Parameters
+    ----------
+    shot : Shot
+        A motion that closes.
+    wanted : (contact,)
+        The slip motions w of the contacts where the scene starts: `Shooting.resting`.
+    """
+    begin, end = -_residual(shot), shot.system.k_u * wanted
+    done, share = 0.0, 1.0
+    while done < 1.0 and share > SHORTEST:
+        reach = min(done + share, 1.0)
+        new = _moved(shot, begin + reach * (end - begin))
+        if new is None:
+            share *= 0.25
+        else:
+            shot, done, share = new, reach, 2.0 * share
+    return shot if done == 1.0 else None
+
+
+def _moved(shot: Shot, force: FloatArray) -> Shot | None:
+    """The motion near another whose contacts rest where they would have the friction forces k_u w."""
+    system, x = shot.system, shot.x.copy()
+    change = -(force + _residual(shot))
+    for choice in shot.chosen:
+        if not choice.limited:  # else it may be sent further beyond
+            x[system.f.start + choice.contact] += change[choice.contact]
+    w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
+    try:
+        found = converged(Shot(system, x, w, shot.periods))
+    except SimulationError:
+        return None
+    return None if found is None else found[0]

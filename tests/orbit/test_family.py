@@ -1,0 +1,122 @@
+"""Motions that are not unique: residual friction of contacts that never slip."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.motion import SimulationError, State, simulate
+from fcm.motion.measure import measure
+from fcm.motion.system import System
+from fcm.orbit import periodic
+from fcm.orbit.family import chosen, family
+from fcm.orbit.periodic import converged
+from fcm.orbit.residual_friction import resting_at
+from fcm.orbit.shooting import Shot
+from fcm.simulate import trace_exact
+
+from ..motion.cases import yang
+
+OMEGA = 1.5
+# amplitude of v for residual friction, by another's simulation of 400 cycles from rest with that friction
+AMPLITUDES = {-4.0: 1.36, 0.0: 2.14, 4.0: 2.90}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return fcm.load_scene(Path(__file__).parent / "scenes/not_unique.toml")
+
+
+def at_rest(friction):
+    return State(np.zeros(2), np.zeros(2), np.array([0.0, friction]))
+
+
+def settled(scene, friction, omega=OMEGA):
+    return simulate(scene, omega, 400, at_rest(friction))
+
+
+@pytest.fixture(scope="module")
+def found(scene):
+    return family(scene, OMEGA, periodic(scene, OMEGA, settled(scene, 0.0).end).state)
+
+
+def test_the_extent_holds_what_simulations_come_to(scene, found):
+    assert found.contacts == (1,) and found.complete
+    for friction, published in AMPLITUDES.items():
+        amplitude = settled(scene, friction).measures(last=1)[0].amplitude
+        assert amplitude[1] == pytest.approx(published, abs=0.005)
+        assert (found.least < amplitude).all() and (amplitude < found.greatest).all()
+    assert found.spread.min() > 0.5
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_beyond_the_extent_the_contact_slips_back_to_it(scene, found, end):
+    """Stressed by a little more than the limit, then left to itself, it comes to the end of the family."""
+    amplitude = (found.least, found.greatest)[end]
+    system, end_state = System(scene, OMEGA), settled(scene, 0.0).end
+    x = np.concatenate((end_state.q, end_state.velocity, end_state.friction))
+    begun, _ = converged(Shot(system, x, resting_at(system, x)))
+    shot = chosen(begun, np.array([0.0, -1.1 * found.friction[0, end] / scene.contacts[1].k_u]))
+    assert shot.chosen[0].limited and measure(shot.cycle).amplitude == pytest.approx(amplitude, rel=1e-6)
+    stressed = replace(
+        shot.state, friction=shot.state.friction + np.array([0.0, 1e-3 * found.friction[0, end]])
+    )
+    motion = simulate(scene, OMEGA, 400, stressed)
+    assert 1 in {change.contact for change in motion.transitions()}
+    assert motion.measures(last=1)[0].amplitude == pytest.approx(amplitude, rel=1e-3)
+
+
+def test_it_does_not_depend_on_the_member_it_is_sought_from(scene, found):
+    for friction in (-4.0, 4.0):
+        one = replace(scene, start=replace(scene.start, friction=np.array([0.0, friction])))
+        other = family(one, OMEGA, settled(scene, friction).end)
+        assert other.least == pytest.approx(found.least, rel=1e-6)
+        assert other.greatest == pytest.approx(found.greatest, rel=1e-6)
+        assert other.friction == pytest.approx(found.friction, rel=1e-6)
+
+
+@pytest.mark.parametrize("friction", AMPLITUDES)
+def test_the_start_of_the_scene_chooses(scene, friction):
+    """The curve goes through the motion that a simulation from that start comes to."""
+    one = replace(scene, start=replace(scene.start, friction=np.array([0.0, friction])))
+    (curve,) = trace_exact(replace(one, frequency_range=(OMEGA - 1e-3, OMEGA), max_step=1.0)).curves
+    long = simulate(scene, OMEGA, 3000, at_rest(friction)).measures(last=1)[0].amplitude
+    assert curve.amplitude[-1] == pytest.approx(long, rel=1e-4)
+    assert curve.amplitude[-1, 1] == pytest.approx(AMPLITUDES[friction], abs=0.01)
+
+
+def test_a_curve_tells_the_extent_at_its_peak(scene):
+    (curve,) = trace_exact(replace(scene, frequency_range=(1.4, OMEGA), max_step=0.2)).curves
+    known = np.flatnonzero(np.isfinite(curve.orbits.family_least).all(axis=1))
+    k = int(np.argmax(curve.amplitude[:, 1]))
+    assert k in known
+    assert curve.orbits.family_least[k, 1] < curve.amplitude[k, 1] < curve.orbits.family_greatest[k, 1]
+    assert curve.summary()["not_unique"] == known.size
+    low, high = curve.summary()["peak_range"]["v"]
+    assert (low, high) == (curve.orbits.family_least[k, 1], curve.orbits.family_greatest[k, 1])
+
+
+def test_where_nothing_feels_it_the_amplitude_is_unique():
+    (curve,) = trace_exact(yang(100.0), [1.2, 1.3]).curves
+    assert set(curve.regime.ravel()) == {"E"} and curve.summary()["not_unique"] == 0
+
+
+def test_no_contact_that_always_sticks_is_no_family():
+    assert family(yang(), 1.3, periodic(yang(), 1.3).state) is None
+
+
+def test_a_state_of_no_periodic_motion_is_refused():
+    with pytest.raises(SimulationError, match="no periodic motion"):
+        family(replace(yang(-1e9), modal=replace(yang().modal, damping=np.zeros(2))), 1.0, State.rest(yang()))
+
+
+def test_two_contacts_that_stick_together():
+    """Each alone and both: the limits are those of the joint motion, and it is linear."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/both_stuck.toml")
+    found = family(scene, 1.581, periodic(scene, 1.581).state)
+    assert found.contacts == (0, 1) and found.complete
+    assert found.spread.max() < 1e-8 and (found.friction[:, 0] < found.friction[:, 1]).all()

@@ -1,0 +1,110 @@
+"""The steady motion that a simulation comes to: periods until it repeats, irregular motions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.motion import State, simulate
+from fcm.motion.system import System
+from fcm.orbit import Shooting, periodic
+from fcm.orbit.periodic import converged
+from fcm.orbit.residual_friction import resting_at
+from fcm.orbit.shooting import Shot
+from fcm.orbit.steady import Steady, steady
+from fcm.simulate import trace_exact
+
+from ..motion.cases import one_mode, yang
+
+SCENES = Path(__file__).parent / "scenes"
+TWO, IRREGULAR = (fcm.load_scene(SCENES / f"{name}.toml") for name in ("two_periods", "irregular"))
+
+
+def found_at(scene, omega):
+    found = steady(System(scene, omega), State.rest(scene))
+    assert isinstance(found, Steady)
+    return found
+
+
+@pytest.mark.parametrize(("scene", "omega"), [(TWO, 2.031), (yang(0.0), 0.74)], ids=["scene", "yang"])
+def test_a_motion_of_two_periods(scene, omega):
+    """Its cycles are by turns those of a long simulation, and the motion of one period is not stable."""
+    found = found_at(scene, omega)
+    assert found.periods == 2 and found.error < 1e-10
+    two = simulate(scene, omega, 3000).measures(last=2)
+    amplitude = np.sort([one.amplitude for one in two], axis=0)
+    assert found.least == pytest.approx(amplitude[0], rel=1e-5)
+    assert found.greatest == pytest.approx(amplitude[1], rel=1e-5)
+    assert (found.greatest > found.least * (1.0 + 1e-3)).any()
+    span = np.max([one.greatest for one in two], axis=0) - np.min([one.least for one in two], axis=0)
+    assert found.measure.amplitude == pytest.approx(0.5 * span, rel=1e-5)
+    x = np.concatenate((found.state.q, found.state.velocity, found.state.friction))
+    system = System(scene, omega)
+    once, _ = converged(Shot(system, x, resting_at(system, x)))
+    assert once.multipliers[0].real < -1.0 and once.multipliers[0].imag == 0.0
+
+
+def test_shares_of_the_time():
+    found = found_at(yang(), 1.3)
+    assert found.periods == 1 and found.states == ("SPEN",)
+    times = np.linspace(0.0, 2.0 * np.pi / 1.3, 20_001)
+    motion = simulate(yang(), 1.3, 1, found.state)
+    load = 5.0 + motion.displacement(times)[:, 1]
+    assert found.shares[0, 2] == pytest.approx((load < 0.0).mean(), abs=1e-3)
+    slips = np.abs(np.abs(motion.friction(times)[:, 0]) - 0.4 * load) < 1e-9
+    assert found.shares[0, 1] == pytest.approx((slips & (load > 0.0)).mean(), abs=1e-3)
+    assert found.shares.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_an_irregular_motion_has_an_extent():
+    """Neighbouring motions part, so that it repeats after no number of periods; a longer one stays inside."""
+    found = found_at(IRREGULAR, 1.3)
+    assert found.periods == 0 and np.isnan(found.error)
+    near = replace(found.state, q=found.state.q * (1.0 + 1e-9))
+    one, other = (simulate(IRREGULAR, 1.3, 300, state) for state in (found.state, near))
+    apart = [
+        np.abs(a.amplitude - b.amplitude).max() for a, b in zip(one.measures(), other.measures(), strict=True)
+    ]
+    assert max(apart[:5]) < 1e-6 and max(apart[-100:]) > 0.1
+    amplitude = np.array([measure.amplitude for measure in other.measures()])
+    assert (amplitude.max(axis=0) < 1.2 * found.greatest).all()
+    assert (amplitude.min(axis=0) > 0.5 * found.least).all()
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-5])
+def test_a_transient_is_no_steady_motion(damping):
+    """Growing without limit, or hardly decaying."""
+    scene = yang(-1e15)
+    scene = replace(scene, modal=replace(scene.modal, damping=np.full(2, damping)))
+    assert isinstance(steady(System(scene, 1.0), State.rest(scene)), State)
+
+
+def test_curves_say_after_how_many_periods_a_point_repeats():
+    (curve,) = trace_exact(TWO, [2.0, 2.031]).curves
+    at = dict(zip(curve.frequency.round(6), curve.orbits.repeats, strict=True))
+    assert at == {2.0: 1, 2.031: 2}
+    assert curve.summary()["repeats"] == [1, 2]
+    k = int(np.flatnonzero(curve.orbits.repeats == 2)[0])
+    assert (curve.orbits.cycle_least[k] < curve.orbits.cycle_greatest[k]).all()
+    (curve,) = trace_exact(IRREGULAR, [1.3]).curves
+    assert curve.complete and curve.orbits.repeats.tolist() == [0, 0]
+    data = fcm.respond(IRREGULAR, "exact", at=[1.3])
+    assert (data.repeats == 0).all() and (data.cycle_least < data.cycle_greatest).all()
+
+
+def test_the_residual_of_several_periods():
+    """That of one period closes after two; its derivatives are those of differences."""
+    scene, omega = one_mode(), 1.1
+    two, orbit = Shooting(scene, periods=2), periodic(scene, omega)
+    x = two.unknowns(orbit.state)
+    shot = two.residual(x, omega)
+    assert shot.residual < 1e-11 and len(shot.segments) > len(orbit.cycle.segments)
+    assert np.sort(np.abs(shot.multipliers)) == pytest.approx(
+        np.sort(np.abs(orbit.multipliers**2)), abs=1e-12
+    )
+    quotient = (two.residual(x, omega + 1e-6).gap - two.residual(x, omega - 1e-6).gap) / 2e-6
+    assert shot.by_frequency == pytest.approx(quotient, abs=1e-7 * np.abs(quotient).max())
