@@ -8,13 +8,11 @@ smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
 import cython
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import Cycle
+    from cython.cimports.fcm.contact.cycle import UNKNOWN, Cycle
     from cython.cimports.fcm.contact.law import Law
 else:
-    from fcm.contact.cycle import Cycle
+    from fcm.contact.cycle import UNKNOWN, Cycle
     from fcm.contact.law import Law
-
-UNKNOWN = cython.declare(cython.int, -1)  # as in `cycle`
 
 
 @cython.cclass

@@ -9,17 +9,13 @@ brought into it.
 import cython
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import Cycle, arc
+    from cython.cimports.fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
     from cython.cimports.fcm.contact.law import Law
 else:
-    from fcm.contact.cycle import Cycle, arc
+    from fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
     from fcm.contact.law import Law
 
-PI = cython.declare(cython.double, 3.141592653589793)
 LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
-UNKNOWN = cython.declare(cython.int, -1)  # as in `cycle`
-STUCK = cython.declare(cython.int, 0)
-SLIPPING = cython.declare(cython.int, 1)
 
 
 @cython.final

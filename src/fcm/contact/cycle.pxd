@@ -1,3 +1,6 @@
+cdef int UNKNOWN, STUCK, SLIPPING, OPEN
+cdef double PI
+
 cdef class Cycle:
     # the contact
     cdef double n0, b, sin_phi, cos_phi

@@ -7,11 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import Cycle
+    from cython.cimports.fcm.contact.cycle import SLIPPING, Cycle
 else:
-    from fcm.contact.cycle import Cycle
-
-SLIPPING = cython.declare(cython.int, 1)  # as in `cycle`
+    from fcm.contact.cycle import SLIPPING, Cycle
 
 
 class Spans(NamedTuple):

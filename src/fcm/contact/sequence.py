@@ -5,17 +5,13 @@ import numpy as np
 from cython.cimports.libc.math import atan2, fabs
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import Cycle
+    from cython.cimports.fcm.contact.cycle import OPEN, PI, SLIPPING, STUCK, Cycle
 else:
-    from fcm.contact.cycle import Cycle
+    from fcm.contact.cycle import OPEN, PI, SLIPPING, STUCK, Cycle
 
-PI = cython.declare(cython.double, 3.141592653589793)
 NAN = cython.declare(cython.double, float("nan"))
 # A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
 INVISIBLE = cython.declare(cython.double, 1e-15)
-STUCK = cython.declare(cython.int, 0)  # as in `cycle`
-SLIPPING = cython.declare(cython.int, 1)
-OPEN = cython.declare(cython.int, 2)
 
 # the letters of a sequence are digits of its number, in base 5; 0 is no sequence
 STICK = cython.declare(cython.int, 1)
