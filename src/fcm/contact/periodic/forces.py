@@ -94,8 +94,8 @@ class PeriodicContact:
         with cython.nogil:
             for i in range(x.shape[0]):
                 self.evaluate(
-                    x[i], 0, parameters[i, 0], parameters[i, 1], parameters[i, 2], parameters[i, 3],
-                    parameters[i, 4], gradient,
+                    x[i], 0, float(parameters[i, 0]), float(parameters[i, 1]), float(parameters[i, 2]),
+                    float(parameters[i, 3]), float(parameters[i, 4]), gradient,
                 )  # fmt: skip
                 for j in range(self.equations):
                     forces[i, j] = self.forces[j]

@@ -218,10 +218,12 @@ class Measures:
         """The states, from the first of the least number that they make, as one number."""
         i: cython.int
         p: cython.int
+        state: cython.int
         number: cython.longlong
         self.signature = PRIME
         for i in range(self.cycle.pieces):
             number = 0
             for p in range(self.cycle.pieces):
-                number = (number * 7 + self.cycle.state[(i + p) % self.cycle.pieces] + 2) % PRIME
+                state = self.cycle.state[(i + p) % self.cycle.pieces]
+                number = (number * 7 + cython.cast(cython.longlong, state) + 2) % PRIME
             self.signature = min(self.signature, number)

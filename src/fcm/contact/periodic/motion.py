@@ -83,13 +83,15 @@ class Motion:
             motion = max(motion, fabs(x[i]), fabs(x[i + 1]))
             variation = max(variation, fabs(x[i + 2]), fabs(x[i + 3]))
             # max passes over what is not a number
-            if not isfinite(x[i] + x[i + 1] + x[i + 2] + x[i + 3]):
+            if not (isfinite(x[i]) and isfinite(x[i + 1]) and isfinite(x[i + 2]) and isfinite(x[i + 3])):
                 return UNKNOWN
             i += 4
-        self.preload = n_0 + k_v * x[first + 1]
+        if not (isfinite(x[first]) and isfinite(x[first + 1]) and isfinite(n_0) and isfinite(mu)):
+            return UNKNOWN
+        self.preload = n_0 + k_v * float(x[first + 1])
         self.load_scale = max(k_v * variation, FAINT * fabs(self.preload), LEAST)
         self.scale = max(k_u * motion, mu * self.load_scale, FAINT * k_u * fabs(x[first]), LEAST)
-        if not isfinite(self.scale + self.preload + x[first] + mu + k_u + k_v):
+        if not (isfinite(self.scale) and isfinite(self.preload) and isfinite(k_u) and isfinite(k_v)):
             return UNKNOWN
         self.ratio = mu * (self.load_scale / self.scale)
         self.fill(x, first + 2, k_u, k_v)
