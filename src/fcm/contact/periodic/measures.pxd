@@ -7,7 +7,7 @@ cdef class Measures:
     cdef readonly Cycle cycle
     cdef readonly Crossings crossings
     cdef readonly double least_load, greatest_load, overlap, greatest_friction, dissipation, slip_path
-    cdef readonly long long signature
+    cdef readonly int signature
     cdef double piece_energy, piece_path
     cdef readonly double[::1] value
     cdef double[::1] points, weights

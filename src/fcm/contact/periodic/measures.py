@@ -61,7 +61,7 @@ LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and
 GREATEST_LOAD = cython.declare(cython.int, 11)
 TURN = cython.declare(cython.int, 12)  # of the motion
 POINTS = cython.declare(cython.int, 8)
-PRIME = cython.declare(cython.longlong, 2147483629)
+PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
 
 @cython.cclass

@@ -1,0 +1,129 @@
+"""What tells a continuation that the regime changes: signed margins, of which one vanishes at every change.
+
+Along lines between random motions every change of the sequence is located by bisection. Only a halt within a
+slip (P to PEP) comes without one: there the forces and their derivatives go on without a corner.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.measures import Measures
+
+from .motions import SINE, STILL, Case, random_cases
+
+CLOSES, OPENS, TOP, BOTTOM = range(4)  # the kinds of events of the kernel
+LEAST_LOAD, GREATEST_LOAD = 10, 11
+STEPS = 40
+
+
+def solve(case):
+    """The contact with its Jacobian, and the measures of its cycle."""
+    x = np.stack((case.u.real, case.u.imag, case.v.real, case.v.imag), axis=-1).ravel()
+    contact = PeriodicContact(*2 * [list(range(1, case.u.size))])
+    contact.at(np.delete(x, (1, 3)), *case.arguments()[2:])
+    measures = Measures(contact.cycle)
+    measures.take(case.k_u)
+    return contact, measures
+
+
+def margins(case):
+    """All that are signed, divided by the scale of the friction and of the load."""
+    contact, measures = solve(case)
+    cycle, extremes, scale = contact.cycle, measures.crossings, contact.motion.scale
+    found = [measures.overlap / scale]
+    found += [
+        measures.value[i] for i in range(extremes.count) if extremes.kind[i] in (LEAST_LOAD, GREATEST_LOAD)
+    ]
+    for e in range(cycle.events):
+        if cycle.event_kind[e] == CLOSES:
+            found += [cycle.lower_rate[e], cycle.upper_rate[e]]
+        elif cycle.event_kind[e] in (OPENS, TOP, BOTTOM):
+            found.append(cycle.margin[e])
+    return np.array(found)
+
+
+def sequence(case):
+    contact, measures = solve(case)
+    states = "".join("NEPS"[contact.cycle.state[p] + 1] for p in range(contact.cycle.pieces))
+    return measures.signature, states
+
+
+def line(one, other):
+    """From one motion to another; the stiffnesses are those of the first."""
+    count = max(one.u.size, other.u.size)
+    u, v, du, dv = (np.pad(x, (0, count - x.size)) for x in (one.u, one.v, other.u, other.v))
+    n_0 = other.n_0 * one.k_v / other.k_v
+    return lambda t: replace(
+        one, u=(1 - t) * u + t * du, v=(1 - t) * v + t * dv, n_0=(1 - t) * one.n_0 + t * n_0
+    )
+
+
+def changes(at):
+    """The two sides of every change of the sequence between neighbouring steps."""
+    steps = np.linspace(0.0, 1.0, STEPS + 1)
+    known = [sequence(at(t))[0] for t in steps]
+    for i in np.flatnonzero(np.diff(known)):
+        low, high = steps[i], steps[i + 1]
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            if sequence(at(middle))[0] == known[i]:
+                low = middle
+            else:
+                high = middle
+        yield at(low), at(high)
+
+
+def without_halts(states):
+    """The sequence as if a slip that halts went on, from its least letter on."""
+    for halt, slip in (("PEP", "P"), ("NEN", "N")):
+        while halt in 2 * states:
+            i = (2 * states).find(halt)
+            turned = (states[i:] + states[:i])[: len(states)]
+            states = slip + turned[3:]
+    return min(states[i:] + states[:i] for i in range(len(states)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_at_every_change_of_regime_a_margin_vanishes(seed):
+    cases = random_cases(24, 300 + seed, most=4)
+    kinds = {"margin": 0, "halt": 0}
+    for one, other in zip(cases[::2], cases[1::2], strict=False):
+        for before, after in changes(line(one, other)):
+            if min(np.abs(margins(before)).min(), np.abs(margins(after)).min()) < 1e-6:
+                kinds["margin"] += 1
+                continue
+            kinds["halt"] += 1
+            assert without_halts(sequence(before)[1]) == without_halts(sequence(after)[1])
+            J, K = (np.array(solve(case)[0].jacobian) for case in (before, after))
+            assert np.abs(J - K).max() <= 1e-4 * np.abs(J).max()
+    assert kinds["margin"] >= len(cases) / 3
+
+
+def test_margins_of_the_slip_limit():
+    """u = sin(theta) under a constant load n: the limits overlap by 2 k_u - 2 mu n, equation (25)."""
+    for n in (0.3, 0.999, 1.0, 1.001, 5.0):
+        _, measures = solve(Case(SINE, 0.0 * SINE, 1.0, n_0=n))
+        assert measures.overlap == pytest.approx(2.0 - 2.0 * n, abs=1e-15)
+        assert (measures.least_load, measures.greatest_load) == pytest.approx((n, n), rel=1e-15)
+    assert solve(Case(SINE, 0.0 * SINE, 1.0, n_0=0.5))[1].slip_path == pytest.approx(2.0)
+
+
+def test_equal_sequences_have_equal_signatures():
+    """Wherever the cycle begins; and different ones differ."""
+    known = {}
+    for case in random_cases(150, 5, most=4):
+        signature, states = sequence(case)
+        first = min(states[i:] + states[:i] for i in range(len(states)))
+        assert known.setdefault(first, signature) == signature
+    assert len(set(known.values())) == len(known) > 15
+
+
+def test_measures_of_a_contact_that_is_open_or_never_moves():
+    _, measures = solve(Case(SINE, 0.0 * SINE, n_0=-2.0))
+    assert (measures.greatest_load, measures.greatest_friction, measures.dissipation) == (-2.0, 0.0, 0.0)
+    _, measures = solve(Case(np.array([0.3 + 0j]), STILL, k_u=2.0, n_0=3.0))
+    assert measures.greatest_friction == pytest.approx(0.6, abs=1e-16)
+    assert measures.overlap < 0.0
