@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import fourier_coefficients, normal_coefficients, periodic_forces
+from fcm.contact.periodic.forces import PeriodicContact
 
 from . import periodic_march
 from .cases import all_boundaries, points
@@ -99,6 +100,27 @@ def test_any_number_of_harmonics_of_the_forces(harmonics):
     assert f.shape == n.shape == (harmonics + 1,)
     np.testing.assert_allclose(f, more_f[: harmonics + 1], atol=1e-15)
     np.testing.assert_allclose(n, more_n[: harmonics + 1], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("inside", "outside"), [([1, 2, 3, 9], [2, 9, 14]), ([4], [1, 4, 8, 12]), ([], [1]), ([3], [])]
+)
+def test_a_set_of_harmonics_is_as_all_with_zeros_between(inside, outside):
+    """What other kernels use: forces and derivatives of the harmonics that they ask for."""
+    rng = np.random.default_rng(4)
+    sparse = PeriodicContact(inside, outside)
+    full = PeriodicContact(list(range(1, 15)), list(range(1, 15)))
+    columns, rows = (
+        np.array([0, 1, *(4 * h - 2 + i for h in some for i in range(4))]) for some in (inside, outside)
+    )
+    for n_0 in (-0.5, 0.0, 0.7, 30.0):
+        x, whole = rng.standard_normal(sparse.unknowns), np.zeros(full.unknowns)
+        whole[columns] = x
+        assert sparse.at(x, 0.4, 2.0, 1.5, n_0) == full.at(whole, 0.4, 2.0, 1.5, n_0)
+        np.testing.assert_allclose(sparse.forces, np.array(full.forces)[rows], atol=1e-14)
+        np.testing.assert_allclose(
+            sparse.jacobian, np.array(full.jacobian)[np.ix_(rows, columns)], atol=1e-13
+        )
 
 
 def test_arguments_broadcast():

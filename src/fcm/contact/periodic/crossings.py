@@ -147,6 +147,7 @@ class Crossings:
             return
         sign: cython.int = 1 if value > 0.0 else -1
         kind: cython.int = self.rising if sign > 0 else self.falling
+        # a polynomial has no more zeros than there is room for, so nothing is lost
         if sign == -self.sign and kind >= 0 and self.count < self.capacity:
             self.angle[self.count] = self.root(
                 self.row, 0.0, self.last, self.last_value, self.last_slope, theta, value, slope

@@ -63,7 +63,23 @@ TWO_PI = cython.declare(cython.double, 6.283185307179586)
 
 @cython.cclass
 class Cycle(Events):
-    """The pieces of a cycle in order, up to `pieces`, and the events at which they begin."""
+    """The pieces of a cycle in order, up to `pieces`.
+
+    Attributes
+    ----------
+    state
+        STICK, POSITIVE or NEGATIVE slip, SEPARATION.
+    begin
+        The angle [rad] at which it begins, increasing; the last ends at 2 pi after the first begins.
+    event
+        The event at which it begins; nothing, if it is the only one and `cause` is 0.
+    rest
+        Of a stick the place of the slider k_u w, from the mean of u, divided by the scale of the motion.
+    cause
+        Of a stick what brought the slider to rest: POSITIVE or NEGATIVE slip, SEPARATION; 0 its start.
+    overlap
+        Of a contact that never opens, how far the greatest top is above the least bottom.
+    """
 
     def __init__(self, motion: Motion) -> None:
         crossings = Crossings(motion)
