@@ -312,7 +312,7 @@ def test_names_do_not_command_the_terminal(program):
 def test_what_is_escaped_and_what_is_not():
     assert plain("blade 3, n̄₀ = 5 µm, 位 ü") == "blade 3, n̄₀ = 5 µm, 位 ü"
     assert plain("a\tb\rc\x7fd\x85e\u2028f\u200bg\udcff") == r"a\tb\rc\x7fd\x85e\u2028f\u200bg\udcff"
-    assert plain("a\nb", keep="\n") == "a\nb"
+    assert plain("a\nb", several_lines=True) == "a\nb"
 
 
 @pytest.mark.parametrize("command", [["tabulate", "--for"], ["respond"], ["tabulate", "--verify"]])

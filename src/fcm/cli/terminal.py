@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
-import unicodedata
 from typing import Any, TextIO
 
-_KINDS = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # control, format (as right-to-left), half of a character, line ends
+# controls, what cannot be seen, ends of lines, directions of writing, halves of characters, tags
+_ACTED_UPON = (
+    "\x00-\x09\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
+    "\ud800-\udfff\U000e0000-\U000e007f"
+)
+_IN_TEXT = re.compile(f"[{_ACTED_UPON}]")
+_IN_NAME = re.compile(f"[{_ACTED_UPON}\n]")
 
 
-def plain(name: object, keep: str = "") -> str:
+def plain(name: object, several_lines: bool = False) -> str:
     r"""A name without characters that a terminal acts upon; they are escaped instead.
 
     >>> print(plain("a\x1b[31m\nb"))
     a\x1b[31m\nb
     """
-    text = str(name)
-    if text.isprintable():
-        return text
-    return "".join(c if c in keep or unicodedata.category(c) not in _KINDS else _escaped(c) for c in text)
+    return (_IN_TEXT if several_lines else _IN_NAME).sub(_escaped, str(name))
 
 
-def _escaped(character: str) -> str:
-    return character.encode("unicode_escape", "surrogatepass").decode()
+def _escaped(found: re.Match[str]) -> str:
+    return found[0].encode("unicode_escape", "surrogatepass").decode()
 
 
 class Terminal:
@@ -36,7 +39,7 @@ class Terminal:
         """Write text of several lines."""
         if not isinstance(text, str):  # click tries whether it takes bytes
             raise TypeError(f"text is written here, not {type(text).__name__}")
-        self.stream.write(plain(text, keep="\n"))
+        self.stream.write(plain(text, several_lines=True))
         return len(text)
 
     def redraw(self, text: str) -> None:

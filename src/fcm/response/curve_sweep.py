@@ -41,7 +41,8 @@ class CurveSweep:
         outcome = sweep(compute, batches, place_for(self.jobs if len(batches) > 1 else 1), kept, progress)
         curves: list[Curve] = []
         for number, batch in enumerate(batches):
-            found = outcome.of(number) or [None] * len(batch)
+            found = outcome.of(number)
+            found += [None] * (len(batch) - len(found))
             curves += [as_curve(scene, one, NOT_BEGUN) for scene, one in zip(batch, found, strict=True)]
             self.defects += [one.defect for one in found if isinstance(one, Lost) and one.defect]
         return curves

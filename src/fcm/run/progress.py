@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterable, Sequence
 
 from fcm.run.work import Progress
@@ -13,15 +14,17 @@ class Bar:
     """How much of each batch is finished, shown as the progress of all."""
 
     def __init__(self, sizes: Sequence[int], finished: Iterable[int], progress: Progress | None) -> None:
-        self.sizes, self.done, self.progress = sizes, [0.0] * len(sizes), progress
+        self.sizes, self.shares, self.progress = sizes, [0.0] * len(sizes), progress
+        self.total, self.done = sum(sizes), 0.0
+        self._lock = threading.Lock()
         for number in finished:
-            self.done[number] = 1.0
+            self._set(number, 1.0)
 
     def of(self, number: int, draw: bool) -> Progress:
         """The progress of one batch; draw if it comes from the thread that may draw."""
 
         def show(fraction: float, _text: str) -> None:
-            self.done[number] = max(self.done[number], ALMOST * min(fraction, 1.0))
+            self._set(number, ALMOST * min(fraction, 1.0))
             if draw:
                 self.draw()
 
@@ -29,15 +32,19 @@ class Bar:
 
     def finish(self, number: int) -> None:
         """A batch is finished."""
-        self.done[number] = 1.0
+        self._set(number, 1.0)
         self.draw()
 
     def draw(self) -> None:
         """Show it."""
         if self.progress is not None:
-            total = sum(self.sizes)
-            done = sum(size * share for size, share in zip(self.sizes, self.done, strict=True))
-            self.progress(done / total, f"{int(done)} of {total} curves")
+            self.progress(min(self.done / self.total, 1.0), f"{int(self.done)} of {self.total} curves")
+
+    def _set(self, number: int, share: float) -> None:
+        with self._lock:
+            more = max(share - self.shares[number], 0.0)
+            self.shares[number] += more
+            self.done += self.sizes[number] * more
 
 
 def part(progress: Progress | None, begin: float, end: float) -> Progress | None:

@@ -27,9 +27,9 @@ class Outcome:
     parts: dict[int, list[Any]] = field(default_factory=dict)  # of batches that were interrupted
     interrupted: bool = False
 
-    def of(self, number: int) -> list[Any] | None:
+    def of(self, number: int) -> list[Any]:
         """What there is of a batch."""
-        return self.results.get(number) or self.parts.get(number)
+        return list(self.results.get(number, self.parts.get(number, ())))
 
 
 def place_for(jobs: int, *, threads: bool = False) -> Factory:
