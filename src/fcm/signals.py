@@ -2,7 +2,7 @@
 
 While the program loads, nothing is to be saved: it ends at once with one line. While it works, it is a
 KeyboardInterrupt, so that finished work is written. When it has ended, only the interpreter is left to be
-shut down: it ends at once, with the exit code that was decided.
+shut down: that goes on to the exit code that was decided.
 
 This module imports next to nothing, for it is the first thing that the program does.
 """
@@ -21,25 +21,21 @@ if TYPE_CHECKING:
 
 NOT_COMPLETED = 3  # exit code
 INTERRUPTED = "interrupted: the calculation was not completed"
-ONE = (
-    1.0  # [s] signals closer together are one interruption: `timeout` sends two, a terminal that closes more
-)
+ONE = 1.0  # [s] signals closer together are one: `timeout` sends two, a terminal that closes even more
 AGAIN = 0.005  # [s] after which an interruption that nobody could raise is raised again
 ALL = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
-
-_LOADS, _WORKS, _ENDS = range(3)
 
 
 class _Program:
     """What an interruption means now."""
 
     def __init__(self) -> None:
-        self.phase, self.code, self.last = _LOADS, NOT_COMPLETED, -ONE
+        self.works, self.last = False, -ONE
         self.shields, self.waits = 0, False  # what must not be disturbed, and whether an interruption waits
         self.before: dict[int, Any] = {}
 
     def interrupted(self, _number: int, _frame: FrameType | None) -> None:
-        if self.phase != _WORKS:
+        if not self.works:
             self.leave()
         now = time.monotonic()
         if now - self.last >= ONE:
@@ -48,10 +44,9 @@ class _Program:
 
     def leave(self) -> None:
         try:
-            if self.phase == _LOADS:
-                os.write(2, f"fcm: {INTERRUPTED}\n".encode())
+            os.write(2, f"fcm: {INTERRUPTED}\n".encode())
         finally:  # be standard error closed
-            os._exit(self.code)
+            os._exit(NOT_COMPLETED)
 
     def again(self, _number: int, _frame: FrameType | None) -> None:
         if self.shields:
@@ -103,13 +98,14 @@ def give_back() -> None:
 def works() -> None:
     """From now on there may be something to save."""
     if _program is not None:
-        _program.phase = _WORKS
+        _program.works = True
 
 
-def ends(code: int) -> None:
-    """Nothing is left to be saved, and the exit code decided."""
+def ends() -> None:
+    """Nothing is left to be saved, and the exit code decided: no signal is to change it."""
     if _program is not None:
-        _program.phase, _program.code = _ENDS, code
+        for number in _program.before:
+            signal.signal(number, signal.SIG_IGN)  # the interpreter itself would undo any other handler
 
 
 class undisturbed:  # noqa: N801

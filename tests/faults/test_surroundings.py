@@ -271,6 +271,20 @@ def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
         assert run.returncode in (0, 3) and "Traceback" not in said and "Exception" not in said
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_after_the_end_changes_nothing(program, number):
+    """While the interpreter takes itself apart: everything is written, and the exit code says so."""
+    late = f"""
+import os, sys
+class Late:
+    def __del__(self, kill=os.kill, process=os.getpid()):
+        kill(process, {int(number)})
+sys.late = Late()
+"""
+    done = program("plot", "normal", "-o", "a.svg", before=late)
+    assert done.returncode == 0 and done.err == "wrote a.svg\n"
+
+
 def test_what_is_told_to_ignore_a_signal_ignores_it(program):
     """As `nohup` does."""
     deaf = lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN)  # noqa: E731

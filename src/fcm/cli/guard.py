@@ -56,15 +56,11 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
             warnings.showwarning = _shown_by(messages)
             result = run(ctx)
             sys.stdout.flush()
-        signals.ends(0)
+        signals.ends()
         return result
-    except click.ClickException as error:
+    except (click.ClickException, click.exceptions.Exit):
         messages.clear()
-        signals.ends(error.exit_code)
-        raise
-    except click.exceptions.Exit as error:
-        messages.clear()
-        signals.ends(error.exit_code)
+        signals.ends()
         raise
     except BrokenPipeError:
         _discard_output()
@@ -74,7 +70,7 @@ def _watched(run: Callable[[click.Context], Any], ctx: click.Context) -> Any:
         messages.error(line)
         if code == DEFECT and (messages.verbosity >= 1 or os.environ.get("FCM_DEBUG")):
             traceback.print_exception(error)
-        signals.ends(code)
+        signals.ends()
         ctx.exit(code)
 
 
