@@ -8,14 +8,21 @@ transitions it is of low order, so its steps are halved until its convergence ca
 
 from __future__ import annotations
 
+import itertools
 import time
+import timeit
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 import fcm
-from fcm.orbit import periodic
+from fcm.motion.measure import measure
+from fcm.motion.run import march
+from fcm.motion.state import entry
+from fcm.motion.system import System
+from fcm.orbit import Shooting, periodic
+from fcm.orbit.derivative import derivative_at
 from fcm.response import Response
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.simulate import trace_exact
@@ -163,25 +170,72 @@ def large(contacts: int = 4, modes: int = 50) -> Scene:
     return Scene("large", modal, made, (Force(unit[-1] + 0.3 * unit[1], 10.0, 0.0),), (0.8, 3.0), 0.05)
 
 
+def sine() -> float:
+    """Seconds of a value of np.sin, the unit of what follows."""
+    x = np.linspace(0.0, 6.0, 1000)
+    return min(timeit.repeat(lambda: np.sin(x), number=1000, repeat=REPEATS)) / 1e6
+
+
+def of_a_period(name: str, scene: Scene, omega: float) -> None:
+    """One period, the flows of a new frequency, the derivative, all that Newton's method needs."""
+    orbit, problem = periodic(scene, omega), Shooting(scene)
+    system, frequencies = System(scene, omega), itertools.count()
+    y, states = entry(system, orbit.state)
+    segments, _, _ = march(system, y, states, system.period)
+    kernel, last = system.march(), len(segments) - 1
+    x, end = problem.unknowns(orbit.state), segments.length[last]
+
+    def period() -> None:
+        kernel.begins(y, states, system.period, 10_000)
+        assert kernel.go() == 0
+
+    def elsewhere() -> None:
+        system.flows.at(omega * (1.0 + 1e-9 * next(frequencies)))
+        period()
+
+    def newton() -> None:
+        shot = problem.residual(x, omega * (1.0 + 1e-9 * next(frequencies)))
+        assert shot.by_state.size and shot.by_frequency.size
+
+    calls = {
+        "a period": period,
+        "with the flows of a new frequency": elsewhere,
+        "its derivative": lambda: derivative_at(system, segments, last, end),
+        "residual and derivatives, as an orbit needs": newton,
+        "multipliers": lambda: problem.residual(x, omega).multipliers,
+        "amplitudes, mean and fundamental": lambda: measure(orbit.cycle),
+    }
+    print(f"\n{name}: {len(segments)} segments, {' '.join(orbit.states)}")
+    for what, call in calls.items():
+        number, _ = timeit.Timer(call).autorange()
+        took = min(timeit.repeat(call, number=number, repeat=REPEATS)) / number / sine()
+        print(f"  {what:44s} {took:10.0f} np.sin, {1e-2 * took:10.1f} us at 10 ns each")
+
+
+def periods() -> None:
+    of_a_period("the paper's oscillator, n_0 = 5", fcm.load_scene("yang1998-n5"), 1.3)
+    of_a_period("4 contacts and 50 modes", large(), 1.5)
+
+
 def aims() -> None:
     """One periodic solution: from a neighbouring one, and from nothing."""
     print("\none periodic solution")
-    for name, scene, omega, aim in (
-        ("the paper's oscillator, n_0 = 5", fcm.load_scene("yang1998-n5"), 1.3, 0.02),
-        ("4 contacts and 50 modes", large(), 1.5, 1.0),
+    for name, scene, omega in (
+        ("the paper's oscillator, n_0 = 5", fcm.load_scene("yang1998-n5"), 1.3),
+        ("4 contacts and 50 modes", large(), 1.5),
     ):
         beside = periodic(scene, omega - 0.01).state
         near, _ = seconds(lambda: periodic(scene, omega, beside), REPEATS)  # noqa: B023
         alone, orbit = seconds(lambda: periodic(scene, omega), REPEATS)  # noqa: B023
-        states = " ".join(orbit.states)
         print(
-            f"  {name:34s} {1e3 * near:8.1f} ms beside a known one, {1e3 * alone:8.1f} ms from rest; "
-            f"aim {1e3 * aim:.0f} ms; {states}"
+            f"  {name:34s} {1e3 * near:8.2f} ms beside a known one, {1e3 * alone:8.2f} ms from rest; "
+            f"{' '.join(orbit.states)}"
         )
 
 
 def main() -> None:
     print("processor times of one core; ratios carry over to other machines better than times")
+    periods()
     aims()
     one_frequency()
     ten_preloads()

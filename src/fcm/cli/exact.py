@@ -74,4 +74,32 @@ def traced(
     shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
     response = trace_exact(scene, at, shown, jobs=jobs, keep=checkpoint)
     messages.clear()
+    for remark in remarks(response):
+        messages.info(remark)
     return response
+
+
+def remarks(response: Response) -> list[str]:
+    """What to know of points whose motion does not repeat after every period, or is one of many."""
+    import numpy as np
+
+    found = [curve.orbits for curve in response.curves if curve.orbits is not None]
+    several = sum(int((orbits.repeats > 1).sum()) for orbits in found)
+    irregular = sum(int((orbits.repeats == 0).sum()) for orbits in found)
+    loose = [orbits for orbits in found if np.isfinite(orbits.family_greatest).any()]
+    spread = [float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in loose]
+    out = []
+    if several:
+        out.append(f"points that repeat only after several periods of the force (repeats): {several}")
+    if irregular:
+        out.append(
+            f"quasi-periodic or irregular points (repeats is 0; cycle_least to cycle_greatest): {irregular}"
+        )
+    if loose:
+        count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in loose)
+        out.append(
+            f"points that are not unique: {count}; a contact never slips there, and its residual friction "
+            f"changes an amplitude by up to {max(spread):.0%} (family_least to family_greatest); [start] "
+            "friction chooses"
+        )
+    return out
