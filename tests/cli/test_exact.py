@@ -2,6 +2,7 @@
 
 import csv
 import json
+from pathlib import Path
 
 import netCDF4
 import numpy as np
@@ -113,3 +114,25 @@ def test_a_curve_without_points_is_a_header(fcm, scene, tmp_path):
     assert done.code == 3 and "wrote a.csv" in done.err
     assert (tmp_path / "a.csv").read_text().startswith("curve,branch,frequency [rad/s],amplitude u")
     assert len((tmp_path / "a.csv").read_text().splitlines()) == 1
+
+
+SCENES = Path(__file__).parents[1] / "orbit/scenes"
+
+
+def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
+    """In words, in the summary, in the file and in the CSV."""
+    args = ("--method", "exact", "--json", "--csv", "points.csv", "-o", "points.nc")
+    run = fcm("respond", SCENES / "two_periods.toml", *args, "--at", 2.0, "--at", 2.031)
+    (curve,) = json.loads(run.out)["curves"]
+    assert run.code == 0 and curve["repeats"] == [1, 2]
+    assert "repeat only after several periods of the force (repeats): 2" in run.err
+    with netCDF4.Dataset(tmp_path / "points.nc") as data:
+        assert data["repeats"][0].tolist() == [1, 2, 2, 1]
+        assert (data["cycle_least"][0, 1] < data["cycle_greatest"][0, 1]).all()
+    rows = list(csv.DictReader((tmp_path / "points.csv").open()))
+    assert [row["repeats"] for row in rows] == ["1", "2", "2", "1"]
+    run = fcm("respond", SCENES / "not_unique.toml", *args, "--at", 1.5)
+    (curve,) = json.loads(run.out)["curves"]
+    least, greatest = curve["peak_range"]["v"]
+    assert least < 1.36 and greatest > 2.90 and curve["not_unique"] == 2
+    assert "points that are not unique: 2" in run.err and "[start] friction chooses" in run.err
