@@ -173,7 +173,7 @@ def large(contacts: int = 4, modes: int = 50) -> Scene:
 def sine() -> float:
     """Seconds of a value of np.sin, the unit of what follows."""
     x = np.linspace(0.0, 6.0, 1000)
-    return min(timeit.repeat(lambda: np.sin(x), number=1000, repeat=REPEATS)) / 1e6
+    return min(timeit.repeat(lambda: np.sin(x), number=1000, repeat=20, timer=time.process_time)) / 1e6
 
 
 def of_a_period(name: str, scene: Scene, omega: float) -> None:
@@ -205,10 +205,12 @@ def of_a_period(name: str, scene: Scene, omega: float) -> None:
         "multipliers": lambda: problem.residual(x, omega).multipliers,
         "amplitudes, mean and fundamental": lambda: measure(orbit.cycle),
     }
+    unit = sine()
     print(f"\n{name}: {len(segments)} segments, {' '.join(orbit.states)}")
     for what, call in calls.items():
-        number, _ = timeit.Timer(call).autorange()
-        took = min(timeit.repeat(call, number=number, repeat=REPEATS)) / number / sine()
+        timer = timeit.Timer(call, timer=time.process_time)
+        number, _ = timer.autorange()
+        took = min(timer.repeat(REPEATS, number)) / number / unit
         print(f"  {what:44s} {took:10.0f} np.sin, {1e-2 * took:10.1f} us at 10 ns each")
 
 
