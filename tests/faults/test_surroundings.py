@@ -246,7 +246,7 @@ class Finder:
 """
 
 
-@pytest.mark.parametrize("after", [1, 3, 10, 30, 60, 100, 180, 300, 500])
+@pytest.mark.parametrize("after", [1, 10, 30, 60, 120, 300, 500])
 def test_ctrl_c_while_it_begins_is_one_line(program, after):
     """At the import with this number, of some five hundred; after them the run is over before it comes."""
     begin = EARLY + "from fcm import signals\nsignals.take()\nsys.meta_path.insert(0, Finder())\n"
@@ -262,7 +262,7 @@ def test_ctrl_c_while_it_begins_is_one_line(program, after):
 def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
     """Once Python itself has begun, which is not this program's to mend."""
     rng = random.Random(1)
-    for _ in range(6):
+    for _ in range(4):
         run = program.start("respond", "one.toml", "-o", "a.nc", before="print('begun', flush=True)")
         assert run.stdout.readline() == "begun\n"
         time.sleep(0.05 + rng.uniform(0.0, 0.25))
@@ -271,7 +271,7 @@ def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
         assert run.returncode in (0, 3) and "Traceback" not in said and "Exception" not in said
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_after_the_end_changes_nothing(program, number):
     """While the interpreter takes itself apart: everything is written, and the exit code says so."""
     late = f"""

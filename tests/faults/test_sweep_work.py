@@ -315,7 +315,7 @@ def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
 
 def test_ctrl_c_while_workers_start_shows_no_traceback(program):
     """To all of the terminal's processes at once, as a terminal does."""
-    for delay in (0.0, 0.05, 0.1, 0.2):
+    for delay in (0.0, 0.1):
         run = program.start("respond", "sweep.toml", "-o", "a.nc", "--jobs", "2", before=SLOW)
         program.until(lambda run=run: len(session(run.pid)) > 1 or run.poll() is not None)
         time.sleep(delay)
@@ -420,7 +420,7 @@ visit.Visitor._go = go
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_of_exact_runs_every_finished_point_is_kept(program, number):
-    """Of two curves at twelve frequencies, interrupted three times; a former result stays what it was."""
+    """Of two curves at twelve frequencies, interrupted twice; a former result stays what it was."""
     program.write("sweep.toml", SWEEP.replace("count = 12", "count = 2"))
     assert program(*AT[:-1], "whole.nc", "--jobs", "1", before=VISITED).returncode == 0
     visits = program.folder / "visits"
@@ -428,7 +428,7 @@ def test_of_exact_runs_every_finished_point_is_kept(program, number):
     visits.unlink()
     (program.folder / "a.nc").write_text("former")
     size = 0
-    for _ in range(3):
+    for _ in range(2):
         run = program.start(*AT, "--resume", "--jobs", "1", before=VISITED)
         program.until(lambda size=size: program.kept(more_than=size + 6000))
         end(run, number)
