@@ -44,6 +44,30 @@ KEYS += [
     "gap",
 ]
 KEYS += ["dof", "amplitude", "phase", "max_step", "cycles", "from", "to", "count", "log", "seed", "uniform"]
+KEYS += [
+    "structure",
+    "stiffness",
+    "modes",
+    "loss_factor",
+    "nodes",
+    "areas",
+    "proportional_to",
+    "load",
+    "base",
+]
+KEYS += [
+    "base",
+    "acceleration",
+    "direction",
+    "units",
+    "length",
+    "output",
+    "paired",
+    "participation",
+    "x",
+    "1x",
+    "2x",
+]
 KEYS += ["contact.0.n_0", "modal.damping", "force.0.dof.u", "u", "v", ""]
 
 
@@ -149,3 +173,47 @@ def test_a_valid_scene_with_values_replaced(changes):
         (table[0] if isinstance(table, list) else table)[key] = value
     with contextlib.suppress(SceneError):
         assert isinstance(scene_from_dict(data), Scene)
+
+
+OF_MATRICES = [
+    ("structure", key) for key in ("dofs", "file", "mass", "stiffness", "damping", "modes", "flexibility")
+]
+OF_MATRICES += [("contact", key) for key in ("nodes", "areas", "tangential", "normal", "n_0", "gap", "name")]
+OF_MATRICES += [("load", key) for key in ("dof", "file", "force")]
+OF_MATRICES += [("base", key) for key in ("acceleration", "direction", "phase")]
+OF_MATRICES += [("units", key) for key in ("length", "force")]
+OF_MATRICES += [
+    ("response", "output"),
+    ("response", "frequency"),
+    ("force", "proportional_to"),
+    ("force", "phase"),
+]
+OF_MATRICES += [
+    ("sweep", key) for key in ("paired", "contact.*.n_0", "contact.c.mu", "base.acceleration", "*.*")
+]
+LISTED = ("contact", "force", "load")
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.lists(st.tuples(st.sampled_from(OF_MATRICES), TREES), max_size=4))
+def test_a_valid_scene_of_matrices_with_values_replaced(changes):
+    data = {
+        "structure": {
+            "dofs": ["1x", "1y", "2x", "2y"],
+            "stiffness": [[2.0, 0, -1, 0], [0, 3, 0, 0], [-1, 0, 2, 0], [0, 0, 0, 1]],
+            "mass": [1.0, 1.0, 2.0, 2.0],
+            "damping": {"mass": 0.1},
+        },
+        "contact": {"name": "c", "nodes": [[1, 2], [2]], "tangential": "x", "normal": {"y": 1.0}, "n_0": 1.0}
+        | {"mu": 0.4, "k_u": 1, "k_v": 1},
+        "force": {"dof": "1:x", "amplitude": 1.0, "phase": "90deg"},
+        "load": {"dof": "2x", "force": 1.0},
+        "base": {"acceleration": 1.0, "direction": "x"},
+        "units": {"length": "m"},
+        "response": {"frequency": [0.5, 1.5], "output": ["2*"]},
+        "sweep": {"contact.c.n_0": [1, 2]},
+    }
+    for (section, key), value in changes:
+        data[section][key] = value
+    with contextlib.suppress(SceneError):
+        assert isinstance(scene_from_dict({k: [v] if k in LISTED else v for k, v in data.items()}), Scene)

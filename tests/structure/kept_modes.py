@@ -2,8 +2,9 @@
 
     python tests/structure/kept_modes.py blade.toml 40z 3 5 10 20 30
 
-SCENE has a [structure]; its curves are traced with so many modes, and compared with as many as there are, or
-300. Printed is the largest relative error over all curves, and the bound that a run states of its receptances.
+SCENE has a [structure]; its curves are traced with so many modes, and compared with as many as there are,
+or 300. Printed is the largest relative error over all curves, and the bound that a run states of its
+receptances.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ import fcm
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import Modes, StructureError, missed, modes_of, system_of
 from fcm.structure.flexibility import flexibility
+from fcm.structure.reduced import reduced
 
 from . import beams
 
@@ -47,6 +48,11 @@ def test_rows_without_mass_are_no_modes():
     [
         (lambda K, M: (K - 1e3 * M, M), "negative eigenvalue"),
         (lambda K, M: (K, 0 * M), "the mass has no entry greater than 0"),
+        (
+            lambda K, M: (K, M - 0.03 * M.max() * scipy.sparse.eye_array(40)),
+            "the mass has .* negative eigenvalue",
+        ),
+        (lambda K, M: (K, 1e-320 * M), "too small beside the stiffness"),
         (lambda K, M: (0 * K, M), "the stiffness has no entry"),
     ],
 )
@@ -54,6 +60,15 @@ def test_matrices_of_no_structure(change, words):
     K, M, _ = beams.beam(20)
     with pytest.raises(StructureError, match=words):
         system_of(*(scipy.sparse.csc_array(one) for one in change(K, M)))
+
+
+def test_all_rigid_body_modes_are_kept_and_a_soft_mode_is_none():
+    """Three masses that nothing holds, a fourth on a very soft spring."""
+    K = scipy.sparse.csc_array(np.diag([0.0, 0.0, 0.0, 1e-9, 1.0]))
+    M = scipy.sparse.eye_array(5, format="csc")
+    found = reduced(K, M, np.ones((5, 1)), 0.5, 1, True)
+    assert found.rigid == 3 <= found.kept
+    assert found.modes.stiffness[:3].tolist() == [0.0, 0.0, 0.0] and found.modes.stiffness[3] > 0.9e-9
 
 
 def test_modes_that_were_missed_are_counted():

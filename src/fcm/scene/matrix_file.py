@@ -23,24 +23,17 @@ def read_matrix(name: str, files: Files) -> Any:
     path, chosen = split_name(name)
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS:
-        raise DataFileError(f"{quoted(path)} cannot be read: a file of a matrix is {', '.join(ENDINGS)}")
+        raise DataFileError(f"{quoted(path)} cannot be read: such a file is {', '.join(ENDINGS)}")
     with files.opened(path) as where:
-        found = _READERS[ending](where, chosen, files)
-        return _matrix(_chosen(found, chosen, path), path, files)
+        return _matrix(_chosen(_READERS[ending](where, chosen, files), chosen, path), path, files)
 
 
 def read_vector(name: str, files: Files) -> FloatArray:
     """The numbers of a file that holds one row or column of them."""
-    path, chosen = split_name(name)
-    ending = Path(path).suffix.lower()
-    if ending not in ENDINGS:
-        raise DataFileError(f"{quoted(path)} cannot be read: a file of numbers is {', '.join(ENDINGS)}")
-    with files.opened(path) as where:
-        found = {key: np.atleast_2d(one) for key, one in _READERS[ending](where, chosen, files).items()}
-        matrix = _matrix(_chosen(found, chosen, path), path, files)
-        if min(matrix.shape) != 1:
-            raise DataFileError(f"{quoted(path)} holds a matrix; one row or column is needed")
-        return np.asarray(matrix.toarray().ravel(), dtype=np.float64)
+    matrix = read_matrix(name, files)
+    if min(matrix.shape) != 1:
+        raise DataFileError(f"{quoted(name)} holds a matrix; one row or column is needed")
+    return np.asarray(matrix.toarray().ravel(), dtype=np.float64)
 
 
 def is_matrix_file(name: str) -> bool:
@@ -97,7 +90,8 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
 
 def _chosen(found: dict[str, Any], chosen: str, path: str) -> Any:
     """The matrix of a name; without one, the only matrix that there is."""
-    matrices = {name: one for name, one in found.items() if np.ndim(one) == 2 or scipy.sparse.issparse(one)}
+    arrays = {name: one if scipy.sparse.issparse(one) else np.atleast_2d(one) for name, one in found.items()}
+    matrices = {name: one for name, one in arrays.items() if one.ndim == 2}
     if chosen in matrices:
         return matrices[chosen]
     if not matrices:

@@ -87,8 +87,8 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
     if matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
         section.wrong(key, f"must be square, has {matrix.shape[0]} rows and {matrix.shape[1]} columns")
         return None
-    if not np.isfinite(matrix.data).all():
-        section.wrong(key, "has entries that are not finite")
+    for fault in filter(None, map(ANY.fault, matrix.data[ANY.faulty(matrix.data)[:, 0]][:1].tolist())):
+        section.wrong(key, f"has an entry that {fault}")
         return None
     return matrix
 

@@ -23,7 +23,7 @@ Matrix = Any  # scipy sparse array or matrix
 DENSE = 600  # rows up to which all modes are computed at once
 SHIFT = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
 NO_MASS = 1e-13  # relative: below it, an eigenvalue of the inverse problem is no mode, but a row without mass
-NEGATIVE = 1e-8  # relative stiffness below which a matrix is not positive semidefinite, beyond rounding
+NEGATIVE = 1e-9  # of the largest mass: less negative than that is rounding
 
 
 class StructureError(ValueError):
@@ -57,27 +57,42 @@ class System:
 
 
 def system_of(K: Matrix, M: Matrix) -> System:
-    """Factorise K - s M; StructureError where it is not positive definite."""
+    """Factorise K - s M; StructureError where the matrices are no stiffness and mass."""
     stiff, heavy = K.diagonal(), M.diagonal()
     if not (heavy > 0.0).any():
         raise StructureError("the mass has no entry greater than 0 on its diagonal")
-    shift = -SHIFT * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+    with np.errstate(over="ignore"):
+        shift = -SHIFT * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
     if shift == 0.0:
         raise StructureError("the stiffness has no entry on its diagonal")
-    matrix = scipy.sparse.csc_array(K - shift * M)
+    if not np.isfinite(shift):
+        raise StructureError("the mass is too small beside the stiffness to calculate with")
+    ground = scipy.sparse.diags_array(np.full(heavy.size, NEGATIVE * heavy.max()))
+    for what, matrix in (("mass", M + ground), ("stiffness", K - shift * M)):
+        if (count := _negative(_factor(matrix, f"the {what} is singular"))) not in (0, None):
+            raise StructureError(f"the {what} has {count} negative eigenvalues, that of a structure has none")
+    return System(
+        K, M, shift, _factor(K - shift * M, "the stiffness is singular where there is no mass").solve
+    )
+
+
+def _factor(matrix: Matrix, singular: str) -> Any:
+    """LU factors without pivoting off the diagonal: the signs of the pivots are those of the eigenvalues."""
     try:
-        # no pivoting off the diagonal, so that the signs of the pivots are those of the eigenvalues
-        factor = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        return splu(
+            scipy.sparse.csc_array(matrix),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
         )
     except RuntimeError:
-        raise StructureError("the stiffness is singular where there is no mass") from None
-    pivots = factor.U.diagonal()
-    if (factor.perm_r == factor.perm_c).all() and (pivots < 0.0).any():
-        raise StructureError(
-            f"the stiffness has {int((pivots < 0.0).sum())} negative eigenvalues: no structure at rest has"
-        )
-    return System(K, M, shift, factor.solve)
+        raise StructureError(singular) from None
+
+
+def _negative(factor: Any) -> int | None:
+    """How many eigenvalues are negative (Sylvester's law of inertia); None if rows were exchanged."""
+    exchanged = (factor.perm_r != factor.perm_c).any()
+    return None if exchanged else int((factor.U.diagonal() < 0.0).sum())
 
 
 def modes_of(system: System, count: int) -> Modes:
@@ -120,13 +135,8 @@ def missed(system: System, modes: Modes) -> int | None:
     gaps = np.diff(modes.stiffness)
     at = int(np.argmax(gaps[-min(8, gaps.size) :])) + max(0, gaps.size - 8)
     between = float(modes.stiffness[at : at + 2].mean())
-    matrix = scipy.sparse.csc_array(system.K - between * system.M)
     try:
-        factor = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
-    except RuntimeError:
+        below = _negative(_factor(system.K - between * system.M, "no matter"))
+    except StructureError:
         return None
-    if not (factor.perm_r == factor.perm_c).all():
-        return None
-    return int((factor.U.diagonal() < 0.0).sum()) - (at + 1)
+    return None if below is None else below - (at + 1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, system_of
 from fcm.structure.flexibility import flexibility
-from fcm.structure.rigid_body import rigid_by_energy, rigid_by_gap
+from fcm.structure.rigid_body import rigid_by_energy
 
 FEWEST = 10  # modes that are kept at least, where none are asked for
 ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
@@ -36,9 +36,11 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | No
     """
     system = system_of(K, M)
     found = _enough(lambda n: modes_of(system, n), system.rows, top, count)
-    wanted = min(found.count, count or _within(found, top, system.rows))
+    rigid = rigid_by_energy(K, found)
+    if rigid == found.count < system.rows:  # all of them are kept
+        return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest)
+    wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
-    rigid = max(rigid_by_energy(K, kept), rigid_by_gap(np.sqrt(np.maximum(kept.stiffness, 0.0))))
     kept.stiffness[:rigid] = 0.0
     lost = missed(system, found)
     if found.count == wanted:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 FAR_BELOW = 1e-4  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
 MOST = 6  # rigid-body modes of one body
 CANCELLED = 1e-13  # share of the elastic energy's terms that is left of their sum: rounding
+NEARLY = 1e-6  # the same, of a matrix written with few digits
 
 
 def rigid_by_gap(frequency: FloatArray) -> int:
@@ -26,6 +27,8 @@ def rigid_by_gap(frequency: FloatArray) -> int:
 
 
 def rigid_by_energy(K: Matrix, modes: Modes) -> int:
-    """How many modes have no elastic energy, beyond the rounding of its sum."""
+    """How many of the lowest modes have no elastic energy, beyond the rounding of its sum."""
     terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
-    return int((modes.stiffness <= CANCELLED * terms).sum())
+    left = modes.stiffness / np.where(terms > 0.0, terms, 1.0)
+    far_below = np.arange(left.size) < rigid_by_gap(np.sqrt(np.maximum(modes.stiffness, 0.0)))
+    return int(((left <= CANCELLED) | (far_below & (left <= NEARLY))).sum())
