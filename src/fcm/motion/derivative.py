@@ -60,15 +60,18 @@ class Derivative:
         j: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.flows.modes
         n: cython.Py_ssize_t = 2 * m + self.flows.contacts
+        i: cython.Py_ssize_t
         self.at = 0
-        np.asarray(self.columns)[:] = np.eye(self.unknowns + 2, self.flows.size)
-        np.asarray(self.columns)[self.unknowns] = 0.0
+        for k in range(self.unknowns + 1):
+            for i in range(self.flows.size):
+                self.columns[k, i] = 1.0 if i == k and k < self.unknowns else 0.0
         for k in range(m):
             for j in range(self.flows.contacts):
                 self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
         for k in range(self.unknowns):
             self._put_friction(self.columns, k, segments, 0, True)
-        np.asarray(self.columns)[self.unknowns + 1] = np.asarray(segments.y)[0]
+        for i in range(self.flows.size):
+            self.columns[self.unknowns + 1, i] = segments.y[0, i]
 
     def go(self, segments: Segments, last: int, position: float) -> int:
         """To a position in a segment; the segment whose flow is missing, or -1 when it is there."""

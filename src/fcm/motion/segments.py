@@ -8,6 +8,8 @@ from cython.cimports.libc.math import fabs
 
 from fcm.scene.model import FloatArray
 
+TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
+
 
 @cython.cclass
 class Segments:
@@ -34,6 +36,36 @@ class Segments:
         for k in range(self.count):
             for i in range(self.y.shape[1]):
                 out[i] = max(out[i], fabs(self.y[k, i]))
+        return np.asarray(out)
+
+    def scale(
+        self,
+        per_unit: cython.double[::1],
+        mu: cython.double[::1],
+        preload: cython.double[::1],
+        k_u: cython.double[::1],
+        omega: cython.double,
+    ) -> FloatArray:
+        """The size of the displacements, velocities and friction forces: (2 modes + contacts,).
+
+        A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its
+        force and of the smaller of its limit and of the force of that displacement.
+        """
+        m: cython.Py_ssize_t = per_unit.shape[0]
+        c: cython.Py_ssize_t = mu.shape[0]
+        y: cython.double[::1] = self.largest()
+        out: cython.double[::1] = np.empty(2 * m + c)
+        length: cython.double = TINY
+        limit: cython.double
+        i: cython.Py_ssize_t
+        for i in range(m):
+            length = max(length, per_unit[i] * max(y[i], y[m + i] / omega))
+        for i in range(m):
+            out[i] = length / per_unit[i]
+            out[m + i] = out[i] * omega
+        for i in range(c):
+            limit = mu[i] * (fabs(preload[i]) + y[2 * m + c + i])
+            out[2 * m + i] = max(max(y[2 * m + i], min(limit, k_u[i] * length)), TINY)
         return np.asarray(out)
 
     def seen(self) -> list[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import Protocol
 
 import numpy as np
@@ -16,10 +17,6 @@ from fcm.motion.steps import Steps
 from fcm.scene.model import Contact, FloatArray, Scene
 
 LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
-_SHARED = (
-    "tangential", "normal", "preload", "mu", "k_u", "stiffness", "per_unit", "sine", "cosine",
-    "flows", "_march", "_derivative",
-)  # fmt: skip
 
 
 class Kernel(Protocol):
@@ -35,14 +32,10 @@ class System:
     ----------
     scene : Scene
     omega : float
-    other : System, optional
-        The same scene at another frequency, whose flows are used on.
     """
 
-    def __init__(self, scene: Scene, omega: float, other: System | None = None) -> None:
-        if not (np.isfinite(omega) and omega > 0.0):
-            raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
-        self.scene, self.omega = scene, float(omega)
+    def __init__(self, scene: Scene, omega: float) -> None:
+        self.scene, self.omega = scene, _checked(omega)
         self.contacts = scene.contacts
         modal = scene.modal
         m, c = modal.mass.size, len(scene.contacts)
@@ -50,26 +43,21 @@ class System:
         self.q, self.p = slice(0, m), slice(m, 2 * m)
         self.f, self.n = slice(2 * m, 2 * m + c), slice(2 * m + c, 2 * m + 2 * c)
         self.unknowns = 2 * m + c  # (q, q', f): the rest follows
-        if other is not None:
-            self.__dict__ |= {name: getattr(other, name) for name in _SHARED}
-            return
         self.tangential = np.array([modal.shapes @ k.tangential for k in scene.contacts]).reshape(c, m)
         self.normal = np.array([modal.shapes @ k.normal for k in scene.contacts]).reshape(c, m)
-        self.preload = np.array([contact.n_0 for contact in scene.contacts])
-        self.mu, self.k_u, self.stiffness = (
-            np.array([(k.mu, k.k_u, k.k_v) for k in scene.contacts]).reshape(c, 3).T
-        )
+        law = np.array([(k.mu, k.k_u, k.k_v, k.n_0) for k in scene.contacts]).reshape(c, 4)
+        self.mu, self.k_u, self.stiffness, self.preload = law.T.copy()
         shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
-        self.per_unit = np.where(
-            shapes > 0.0, shapes, 1.0
-        )  # displacement by a mode, whatever its mass and unit
+        self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
         self.sine, self.cosine = _modal_force(scene)
         self.flows = self._flows()
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
 
     def at(self, omega: float) -> System:
-        """The same scene at another frequency."""
-        return System(self.scene, omega, self)
+        """The same scene at another frequency, with the same flows."""
+        other = copy(self)
+        other.omega = _checked(omega)
+        return other
 
     @property
     def period(self) -> float:
@@ -120,6 +108,12 @@ class System:
             (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
             law,
         )
+
+
+def _checked(omega: float) -> float:
+    if not (np.isfinite(omega) and omega > 0.0):
+        raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
+    return float(omega)
 
 
 def has_friction(contact: Contact) -> bool:

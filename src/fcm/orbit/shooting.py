@@ -9,14 +9,11 @@ import numpy.typing as npt
 
 from fcm.motion.cycle import Cycle
 from fcm.motion.run import march
-from fcm.motion.segments import Segments
 from fcm.motion.state import State, entry
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import period_derivative
 from fcm.orbit.residual_friction import choices, overshoots, resting
 from fcm.scene.model import FloatArray, Scene
-
-TINY = 1e-300  # instead of a division by zero where nothing moves
 
 
 class Shot:
@@ -46,7 +43,7 @@ class Shot:
             self.gap[2 * m + choice.contact] = choice.gap
         for contact, missing in () if resting is None else overshoots(system, self.segments):
             self.gap[2 * m + contact] -= missing
-        self.scale = _scale(system, self.segments)
+        self.scale = self.segments.scale(system.per_unit, system.mu, system.preload, system.k_u, system.omega)
         self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
 
     @property
@@ -127,7 +124,7 @@ class Shooting:
     def system(self, omega: float) -> System:
         """The scene at a frequency [rad/s]."""
         if self._system is None or self._system.omega != omega:
-            self._system = System(self.scene, omega, self._system)
+            self._system = System(self.scene, omega) if self._system is None else self._system.at(omega)
         return self._system
 
     def unknowns(self, state: State) -> FloatArray:
@@ -147,15 +144,3 @@ class Shooting:
         x[self.free] = unknowns
         self.periods += self.each
         return Shot(self.system(omega), x, self.resting, self.each)
-
-
-def _scale(system: System, segments: Segments) -> FloatArray:
-    """The size of the displacements, velocities and friction forces."""
-    y = segments.largest()
-    length = max(
-        (system.per_unit * y[system.q]).max(), (system.per_unit * y[system.p]).max() / system.omega, TINY
-    )
-    limit = system.mu * (np.abs(system.preload) + y[system.n])
-    force = np.maximum(np.maximum(y[system.f], np.minimum(limit, system.k_u * length)), TINY)
-    modes = length / system.per_unit
-    return np.concatenate((modes, modes * system.omega, force))
