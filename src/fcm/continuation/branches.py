@@ -1,0 +1,94 @@
+"""All branches of a problem that hold some known solutions, each traced once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation.follow import Progress, follow
+from fcm.continuation.path import FloatArray, Path, Status
+from fcm.continuation.problem import Problem
+
+SAME = 1e-5  # solutions closer than this, in the problem's scale, are one
+
+
+@dataclass(frozen=True)
+class Branches:
+    """Paths that do not hang together; each solution that was given lies on one of them, or is in lost."""
+
+    paths: tuple[Path, ...]
+    lost: tuple[FloatArray, ...] = ()  # solutions from which nothing could be followed
+
+    @property
+    def status(self) -> Status:
+        """COMPLETE if every branch ended as a whole branch does, else how the first that did not ended."""
+        whole = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+        broken = [path.status for path in self.paths if path.status not in whole]
+        return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
+
+
+def all_branches(
+    new_problem: Callable[[], Problem],
+    solutions: Sequence[FloatArray],
+    span: tuple[float, float],
+    max_step: float,
+    progress: Progress | None = None,
+) -> Branches:
+    """Follow every solution that no branch followed before contains.
+
+    Parameters
+    ----------
+    new_problem : callable
+        Makes the problem; each path has one of its own.
+    solutions : sequence of (n + 1,)
+        In the order in which they are to be followed; those at an end of the span lead inwards, those inside
+        it both ways.
+    """
+    stations = sorted({float(z[-1]) for z in solutions})
+    paths: list[Path] = []
+    lost: list[FloatArray] = []
+    for z in solutions:
+        problem = new_problem()
+        if any(contains(path, z, problem) for path in paths):
+            continue
+        path = _through(new_problem, z, span, max_step, stations, progress)
+        if path.z.shape[0]:
+            paths.append(path)
+        else:
+            lost.append(z)
+    return Branches(tuple(paths), tuple(lost))
+
+
+def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
+    """Whether a path has a point that is the solution z, at the same value of the parameter."""
+    at = np.flatnonzero(path.parameter == z[-1])
+    if at.size == 0:
+        return False
+    problem.measure(z)
+    off = (path.z[at] - z)[:, :-1] / np.asarray(problem.scale)[:-1]
+    return bool((np.sqrt((off * off).sum(axis=1)) < SAME).any())
+
+
+def _through(
+    new_problem: Callable[[], Problem],
+    z: FloatArray,
+    span: tuple[float, float],
+    max_step: float,
+    stations: Sequence[float],
+    progress: Progress | None,
+) -> Path:
+    """The whole branch through a solution, from its lower end where it has one."""
+    if z[-1] == span[0] or z[-1] == span[1]:
+        path = follow(new_problem(), z, span, z[-1] == span[0], max_step, stations, progress)
+        return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path
+    path = follow(new_problem(), z, span, True, max_step, stations, progress)
+    if path.status is Status.CLOSED or path.z.shape[0] == 0:
+        return path
+    other = follow(new_problem(), z, span, False, max_step, stations, progress)
+    if other.z.shape[0] == 0:
+        return path
+    if other.status not in (Status.COMPLETE, Status.RETURNED):
+        path, other = other, path
+    return other.backwards().then(path)

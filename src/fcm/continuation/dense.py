@@ -1,0 +1,120 @@
+"""One dense linear system: factored once, solved for several right-hand sides.
+
+Small systems are eliminated here, without leaving compiled code; large ones by LAPACK.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs
+
+LARGE = cython.declare(cython.int, 40)  # from here on LAPACK is faster, its call included
+
+
+@cython.cclass
+class Solver:
+    """matrix x = right: fill `matrix`, `factor`, fill `right`, `solve`: right is then x.
+
+    orientation is the sign of the determinant. Neither array may be replaced.
+    """
+
+    def __init__(self, size: cython.int) -> None:
+        self.size = size
+        self.matrix = np.zeros((size, size))
+        self.right = np.zeros(size)
+        self.swapped = np.zeros(size, dtype=np.intc)
+        self.orientation = 0.0
+        self.factors = None
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def factor(self) -> cython.bint:
+        """Factor the matrix, in place; false if it is singular or not finite."""
+        if self.size < LARGE:
+            return self.eliminate()
+        from scipy.linalg import lapack
+
+        matrix = np.asarray(self.matrix)
+        if not np.isfinite(matrix).all():
+            self.orientation = 0.0
+            return False
+        lu, pivots, info = lapack.dgetrf(matrix.T, overwrite_a=True)
+        self.factors = (lu, pivots)
+        swaps = np.count_nonzero(pivots != np.arange(self.size))
+        self.orientation = 0.0 if info else float(np.prod(np.sign(lu.diagonal()))) * (-1.0) ** swaps
+        return info == 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def solve(self) -> cython.int:
+        """Replace right by the solution."""
+        if self.size < LARGE:
+            self.substitute()
+            return 0
+        from scipy.linalg import lapack
+
+        right = np.asarray(self.right)
+        right[:] = lapack.dgetrs(*self.factors, right, trans=1)[0]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def eliminate(self) -> cython.bint:
+        """Gaussian elimination with row pivots: unit lower and upper triangle in the place of the matrix."""
+        a: cython.double[:, ::1] = self.matrix
+        n: cython.Py_ssize_t = self.size
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        best: cython.Py_ssize_t
+        most: cython.double
+        factor: cython.double
+        held: cython.double
+        self.orientation = 1.0
+        for k in range(n):
+            best, most = k, fabs(a[k, k])
+            for i in range(k + 1, n):
+                if fabs(a[i, k]) > most:
+                    best, most = i, fabs(a[i, k])
+            if not (0.0 < most <= 1e300):
+                self.orientation = 0.0
+                return False
+            self.swapped[k] = cython.cast(cython.int, best)
+            if best != k:
+                self.orientation = -self.orientation
+                for j in range(n):
+                    held = a[k, j]
+                    a[k, j] = a[best, j]
+                    a[best, j] = held
+            if a[k, k] < 0.0:
+                self.orientation = -self.orientation
+            for i in range(k + 1, n):
+                if a[i, k] != 0.0:
+                    factor = a[i, k] / a[k, k]
+                    a[i, k] = factor
+                    for j in range(k + 1, n):
+                        a[i, j] -= factor * a[k, j]
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def substitute(self) -> cython.void:
+        a: cython.double[:, ::1] = self.matrix
+        x: cython.double[::1] = self.right
+        n: cython.Py_ssize_t = self.size
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        held: cython.double
+        for i in range(n):
+            j = self.swapped[i]
+            held = x[j]
+            x[j] = x[i]
+            x[i] = held
+        for i in range(1, n):
+            for j in range(i):
+                x[i] -= a[i, j] * x[j]
+        for i in range(n - 1, -1, -1):
+            for j in range(i + 1, n):
+                x[i] -= a[i, j] * x[j]
+            x[i] /= a[i, i]

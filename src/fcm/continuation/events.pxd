@@ -1,0 +1,1 @@
+from fcm.continuation.front cimport Front, Place

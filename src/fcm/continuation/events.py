@@ -1,0 +1,113 @@
+# cython: wraparound=True
+"""What happens within a step: roots of functions along it, each found on the curve itself."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import cython
+import numpy as np
+
+from fcm.continuation.front import Front, Place
+from fcm.continuation.path import FloatArray, Mark
+
+LOOKS = 40  # places looked at to find a root
+FINE = 1e-11  # of a step: a root is known to this
+RISE = 1e-7  # growth of an output over its size, along a unit of arc, that is not rounding
+NEARLY_GREATEST = 0.9  # of the greatest so far: a lower peak of an output is not looked for
+MARGIN, FOLD, PEAK = range(3)  # the functions along a step
+
+
+class Found(NamedTuple):
+    """A point of the curve within a step."""
+
+    length: float  # from the beginning of the step
+    mark: int  # a `Mark`
+    z: FloatArray
+    direction: FloatArray
+    orientation: float
+    shift: float  # from the approximate equations to the exact ones
+
+
+def found(front: Front, length: float, mark: int, place: Place) -> Found:
+    """A place to keep."""
+    direction = np.asarray(front.newton.scale) * np.asarray(place.tangent)
+    return Found(length, mark, np.array(place.z), direction, place.orientation, front.there.shift)
+
+
+def first_margin(front: Front) -> tuple[float, int]:
+    """Where within the step a margin changes sign first, and which."""
+    first, which = front.step, -1
+    for k in range(front.problem.margins):
+        if front.here.margin[k] * front.there.margin[k] < 0.0:
+            at = root(front, MARGIN, k, front.step)
+            if at <= first:
+                first, which = at, k
+    return first, which
+
+
+def within(front: Front, limit: float, values: list[float], greatest: FloatArray) -> list[Found]:
+    """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
+    n: cython.Py_ssize_t = front.problem.unknowns
+    k: cython.Py_ssize_t
+    size: cython.double
+    most: cython.double[::1] = greatest
+    here: Place = front.here
+    there: Place = front.there
+    events = []
+    for value in values:
+        if (value - here.z[n]) * (value - there.z[n]) < 0.0 and front.land(value):
+            events.append(found(front, front.length(front.between), Mark.STATION, front.between))
+    if here.tangent[n] * there.tangent[n] < 0.0:
+        events += located(front, FOLD, 0, limit, Mark.FOLD)
+    for k in range(front.problem.outputs):
+        size = max(here.output[k], there.output[k])
+        if here.growth[k] > RISE * size and there.growth[k] < -RISE * size:
+            if size >= NEARLY_GREATEST * most[k]:
+                events += located(front, PEAK, k, limit, Mark.PEAK)
+    return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
+
+
+def located(front: Front, kind: int, k: int, limit: float, mark: int) -> list[Found]:
+    """The root of a function along the step, as a list of one point, or none if the curve is not found."""
+    at = root(front, kind, k, front.step)
+    return [found(front, at, mark, front.between)] if at <= limit and front.put(at) else []
+
+
+@cython.cfunc
+def value(place: Place, kind: cython.int, k: cython.Py_ssize_t) -> cython.double:
+    """A function along the step."""
+    if kind == MARGIN:
+        return place.margin[k]
+    return place.tangent[place.tangent.shape[0] - 1] if kind == FOLD else place.growth[k]
+
+
+@cython.cfunc
+def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.double) -> cython.double:
+    """Length at which a function changes sign between here and there.
+
+    By the secant through the last two values of opposite sign, one of them halved when it does not move
+    (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the root.
+    """
+    low: cython.double = 0.0
+    high: cython.double = step
+    before: cython.double = value(front.here, kind, k)
+    after: cython.double = value(front.there, kind, k)
+    at: cython.double
+    now: cython.double
+    last: cython.int = 0
+    count: cython.int
+    for count in range(LOOKS):
+        at = (low * after - high * before) / (after - before)
+        if high - low <= FINE * step or not low < at < high or not front.put(at):
+            return high
+        now = value(front.between, kind, k)
+        if now == 0.0:
+            return at
+        if now * before > 0.0:
+            after = 0.5 * after if last == 1 else after
+            low, before, last = at, now, 1
+        else:
+            before = 0.5 * before if last == -1 else before
+            high, after, last = at, now, -1
+    return high

@@ -1,0 +1,2 @@
+from fcm.continuation.front cimport Front, Place
+from fcm.continuation.problem cimport Problem

@@ -1,0 +1,267 @@
+# cython: wraparound=True
+r"""Follow a curve by steps along its arc; everything that happens on it is a point of it.
+
+A step is predicted by a parabola, corrected in the plane normal to the tangent, and accepted if the curve turned
+gently and was where it was predicted. What happens within an accepted step - a fold, a peak of something reported,
+a value of the parameter that was asked for - is the root of a function along it (`events`).
+
+Where a margin of the problem changes sign the curve may have a corner. It is not approached by shorter and
+shorter steps: the margins are known functions, so the step ends just beyond where the prediction crosses one,
+the corner is landed on, and the curve is left in the direction that the equations have just beyond, with the
+orientation that a piecewise smooth curve keeps (Allgower and Georg, "Introduction to Numerical Continuation
+Methods").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import acos, sqrt
+
+from fcm.continuation import events
+from fcm.continuation.front import Front, Place
+from fcm.continuation.path import FloatArray, Mark, Path, Status
+from fcm.continuation.problem import Problem
+
+FIRST = 1e-3  # the first step
+SHORTEST = 1e-9  # a step that is still too long then leads nowhere
+SHARP = 1e-4  # a step this short may turn by any angle below a right angle
+COSINE = 0.94  # otherwise by at most 20 degrees
+AIM = 0.2  # [rad] the turn that a step aims at
+MISS = 0.03  # of its length, by which a step aims to miss the curve
+UNEVEN = 0.15  # change of an output, over its size, that a step aims not to have foreseen
+PAST = 1e-3  # of a step that ends at a margin, by which it goes past
+BEFORE = 1e-6  # of the way to a corner: up to here the curve is smooth
+BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for
+TOUCHED = 1e-8  # a margin this near is met: less than BEYOND
+AFTER = 0.2  # of the step that led to a corner, the first one beyond
+LONGEST = 20_000  # steps
+BOUNDLESS = 1e9  # size, in units of that at the start, that only an undamped resonance reaches
+
+Progress = Callable[[float], None]  # fraction of the range that has been covered
+
+
+def follow(
+    problem: Problem,
+    start: FloatArray,
+    span: tuple[float, float],
+    forward: bool = True,
+    max_step: float = 0.05,
+    stations: Sequence[float] = (),
+    progress: Progress | None = None,
+) -> Path:
+    """Follow the curve through start until the parameter leaves the span, or the curve closes.
+
+    Parameters
+    ----------
+    problem : Problem
+        With n unknowns.
+    start : (n + 1,)
+        Near a point of the curve, the parameter last; it is corrected with the parameter held.
+    span : (low, high)
+        Of the parameter; the start may lie within.
+    forward : bool
+        Whether the parameter rises at first.
+    max_step : float
+        Longest step, in the problem's scale.
+    stations : sequence of float
+        Values of the parameter at which the curve has points, marked.
+    progress : callable, optional
+        Called now and then.
+
+    Returns
+    -------
+    Path
+        With status STALLED and without points where there is no curve at the start.
+    """
+    return _Follower(problem, span, max_step, stations, progress).run(start, forward)
+
+
+@cython.cclass
+class _Follower:
+    problem: Problem
+    front: Front
+    n: cython.Py_ssize_t
+    low: cython.double
+    high: cython.double
+    step: cython.double
+    max_step: cython.double
+    size: cython.double
+    values: list  # of the parameter, to be landed on: stations, then the ends of the range
+    points: list
+    greatest: object
+    start: object
+    heading: object
+    interior: cython.bint
+    repeated: cython.int  # corners at one point
+    progress: object
+
+    def __init__(
+        self,
+        problem: Problem,
+        span: tuple[float, float],
+        max_step: float,
+        stations: Sequence[float],
+        progress: Progress | None,
+    ) -> None:
+        self.problem, self.front, self.n = problem, Front(problem), problem.unknowns
+        self.low, self.high = span
+        self.max_step, self.progress = max_step, progress
+        self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
+        self.points = []
+        self.greatest = np.zeros(problem.outputs)
+        self.repeated = 0
+
+    def run(self, start: FloatArray, forward: bool) -> Path:
+        here: Place = self.front.here
+        count: cython.int
+        row = np.zeros(self.n + 1)
+        row[-1] = 1.0 if forward else -1.0
+        if not self.front.begin(np.array(start, dtype=np.float64), row):
+            return self.path(Status.STALLED)
+        here.z[self.n] = start[-1]
+        self.interior = self.low < start[-1] < self.high
+        self.start, self.heading = np.array(here.z), np.array(here.tangent)
+        self.size = self.front.extent()
+        self.points.append(events.found(self.front, 0.0, 0 if self.interior else Mark.END, here))
+        self.step = min(FIRST, self.max_step)
+        for count in range(LONGEST):
+            status = self.advance()
+            if status is not None:
+                return self.path(status)
+            if self.progress is not None and count % 16 == 0:
+                self.progress(abs(here.z[self.n] - self.start[-1]) / (self.high - self.low))
+        return self.path(Status.TOO_LONG)
+
+    @cython.cfunc
+    def advance(self) -> object:
+        """One step; a status where the curve ends."""
+        front: Front = self.front
+        step: cython.double = self.step
+        reach: cython.double
+        while step > SHORTEST:
+            reach = front.ahead(step)
+            if reach < min(step, TOUCHED):
+                return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
+            if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
+                if front.crosses():
+                    if front.missed < 1.0:
+                        return self.corner()
+                elif self.good():
+                    return self.smooth()
+            # the curve may turn back in a corner, so that nothing is to be found beyond
+            if reach < step and front.go(reach * (1.0 - PAST)) and not front.crosses() and self.good():
+                return self.smooth()
+            step = 0.25 * min(step, reach)
+        return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def good(self) -> cython.bint:
+        """Whether the curve was where it was predicted, and went on as it did."""
+        front: Front = self.front
+        if front.step <= SHARP:
+            return front.turn > 0.0
+        same: cython.bint = front.there.orientation == front.here.orientation
+        return same and front.missed < 0.5 and front.turn > COSINE and front.unforeseen() < 4.0 * UNEVEN
+
+    @cython.cfunc
+    def smooth(self) -> object:
+        """Go on to the place there."""
+        front: Front = self.front
+        growth: cython.double
+        if self.keep(front.step):
+            return self.end()
+        if self.interior and self.closed():
+            self.points.append(self.points[0])
+            return Status.CLOSED
+        turned: cython.bint = front.there.orientation != front.here.orientation
+        self.points.append(events.found(front, front.step, Mark.BRANCH if turned else 0, front.there))
+        growth = AIM / max(acos(min(front.turn, 1.0)), 1e-9)
+        growth = min(growth, sqrt(MISS / max(front.missed, 1e-9)), UNEVEN / max(front.unforeseen(), 1e-9))
+        self.step = min(front.step * min(max(0.9 * growth, 0.4), 2.5), self.max_step)
+        front.accept(front.there, front.step)
+        self.repeated = 0
+        np.maximum(self.greatest, front.here.output, out=self.greatest)
+        return Status.UNBOUNDED if front.extent() > BOUNDLESS * self.size else None
+
+    @cython.cfunc
+    def corner(self) -> object:
+        """Go on from the first corner of the step, in the direction that the curve has beyond."""
+        front: Front = self.front
+        led: cython.double = front.step
+        at, which = events.first_margin(front)
+        if not front.shorten((1.0 - BEFORE) * at):
+            return Status.STALLED
+        if self.keep(front.step):
+            return self.end()
+        if not front.put(at):
+            return Status.STALLED
+        self.repeated = self.repeated + 1 if at < SHARP * led else 0
+        point = events.found(front, at, Mark.CORNER, front.between)
+        front.between.margin[which] = front.here.margin[which]
+        front.accept(front.between, at)
+        self.step = max(AFTER * led, 10.0 * BEYOND)
+        return self.turn(which, point)
+
+    @cython.cfunc
+    def turn(self, which: cython.int, point: object) -> object:
+        """Keep the corner that is here, and turn into the direction that the curve has beyond."""
+        front: Front = self.front
+        rise: cython.double = front.here.tangent[self.n]
+        growth = np.array(front.here.growth)
+        front.cross(which, BEYOND)
+        if self.repeated > self.problem.margins:  # the curve only touches the margin
+            front.here.margin[which] = 0.0
+        mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
+        if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
+            mark |= Mark.PEAK
+        self.points.append(point._replace(mark=mark))
+        np.maximum(self.greatest, front.here.output, out=self.greatest)
+        self.step = max(self.step, min(FIRST, self.max_step))
+        return None
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def keep(self, limit: cython.double) -> cython.bint:
+        """Keep what happens within the step up to a limit; true if the curve leaves its range there."""
+        for event in events.within(self.front, limit, self.values, self.greatest):
+            ends = event.mark & Mark.STATION and event.z[self.n] in (self.low, self.high)
+            self.points.append(event._replace(mark=Mark.END) if ends else event)
+            if ends:
+                return True
+        return False
+
+    @cython.cfunc
+    def end(self) -> object:
+        """The status of a curve that has left its range."""
+        back = not self.interior and self.points[-1].z[self.n] == self.start[-1]
+        return Status.RETURNED if back else Status.COMPLETE
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def closed(self) -> cython.bint:
+        """Whether the step passes the point where the curve began, in the same direction."""
+        front: Front = self.front
+        scale = np.asarray(front.newton.scale)
+        before = (np.asarray(front.here.z) - self.start) / scale
+        after = (np.asarray(front.there.z) - self.start) / scale
+        if min(np.linalg.norm(before), np.linalg.norm(after)) > front.step:
+            return False
+        passes = before @ self.heading < 0.0 <= after @ self.heading
+        return bool(passes and np.asarray(front.here.tangent) @ self.heading > 0.5)
+
+    def path(self, status: Status) -> Path:
+        """The points kept so far."""
+        points, width = self.points, self.n + 1
+        return Path(
+            z=np.array([p.z for p in points]).reshape(-1, width),
+            direction=np.array([p.direction for p in points]).reshape(-1, width),
+            mark=np.array([p.mark for p in points], dtype=np.int64),
+            orientation=np.array([p.orientation for p in points]),
+            shift=np.array([p.shift for p in points]),
+            status=status,
+            evaluations=self.front.newton.evaluations,
+        )

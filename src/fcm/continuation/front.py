@@ -1,0 +1,325 @@
+"""The advancing end of a curve: the place it has come to, the next one, and places between the two.
+
+Lengths are measured in the problem's scale at the place `here`. A place at the length s lies in the plane
+through here + s tangent whose normal is that tangent.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs, sqrt
+
+from fcm.continuation.newton import Newton
+from fcm.continuation.problem import Problem
+
+NAN = cython.declare(cython.double, float("nan"))
+LOOKS = cython.declare(cython.int, 12)  # bisections of the predicted step to where a margin changes sign
+
+
+@cython.cclass
+class Place:
+    """A point of the curve with what the problem says of it; the tangent in scaled coordinates, a unit vector."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
+        self.margin = np.zeros(problem.margins)
+        self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
+        self.orientation, self.shift = 0.0, 0.0
+
+
+@cython.cclass
+class Front:
+    """See the module. `go` finds the place there, `put` one between, `accept` makes one of them here."""
+
+    def __init__(self, problem: Problem) -> None:
+        size = problem.unknowns + 1
+        self.problem, self.newton = problem, Newton(problem)
+        self.here, self.there, self.between = Place(problem), Place(problem), Place(problem)
+        self.bend, self.guess = np.zeros(size), np.zeros(size)
+        self.step, self.missed, self.turn, self.which = 0.0, 0.0, 1.0, -1
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def begin(self, z: cython.double[::1], row: cython.double[::1]) -> cython.int:
+        """Start from near z, moved to the curve in the plane of row; 0 if there is no curve."""
+        self.problem.measure(z)
+        self.newton.scale[:] = self.problem.scale
+        self.newton.z[:] = z
+        self.newton.row[:] = row
+        if not self.newton.correct(1.0):
+            return 0
+        self.problem.measure(self.newton.z)  # the guess may have been far larger than the solution
+        self.newton.scale[:] = self.problem.scale
+        if not self.newton.correct(1.0):
+            return 0
+        self.record(self.here)
+        self.bend[:] = 0.0
+        return 1
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def ahead(self, step: cython.double) -> cython.double:
+        """The step, or where on it the prediction comes to the first change of sign of a margin: of which."""
+        count: cython.int
+        low: cython.double = 0.0
+        high: cython.double = step
+        if self.problem.margins == 0:
+            return step
+        self.predict(step)
+        self.problem.bound(self.guess)
+        if not self.crossed():
+            return step
+        for count in range(LOOKS):
+            self.predict(0.5 * (low + high))
+            self.problem.bound(self.guess)
+            if self.crossed():
+                high = 0.5 * (low + high)
+            else:
+                low = 0.5 * (low + high)
+        return high
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def crossed(self) -> cython.bint:
+        """Whether a margin has the other sign at the guess than here; which is then one of those."""
+        k: cython.Py_ssize_t
+        for k in range(self.problem.margins):
+            if self.problem.margin[k] * self.here.margin[k] < 0.0:
+                self.which = k
+                return True
+        return False
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def go(self, step: cython.double) -> cython.bint:
+        """Find the place there at a step; missed and turn say how well it was predicted."""
+        i: cython.Py_ssize_t
+        missed: cython.double = 0.0
+        self.predict(step)
+        self.newton.z[:] = self.guess
+        self.newton.row[:] = self.here.tangent
+        if not self.sought(step):
+            return False
+        self.turn = 0.0
+        for i in range(self.here.tangent.shape[0]):
+            self.turn += self.here.tangent[i] * self.newton.tangent[i]
+            missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
+        self.step, self.missed = step, sqrt(missed) / step
+        self.record(self.there)
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def sought(self, step: cython.double) -> cython.bint:
+        """Correct the place there, with the approximate equations first if there are any.
+
+        What the exact ones then change is its shift; NaN where the approximate ones had no solution.
+        """
+        near: cython.bint = False
+        if self.problem.coarse:
+            self.problem.refine(False)
+            near = self.newton.correct(step)
+            self.problem.refine(True)
+            if not near:
+                self.newton.z[:] = self.guess
+        if not self.newton.correct(step):
+            return False
+        if self.problem.coarse:
+            self.there.shift = self.newton.moved if near else NAN
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def put(self, at: cython.double) -> cython.bint:
+        """Find the place between here and there at a length from here."""
+        self.interpolate(at)
+        self.newton.z[:] = self.guess
+        self.newton.row[:] = self.here.tangent
+        if not self.newton.correct(at):
+            return False
+        self.record(self.between)
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def land(self, parameter: cython.double) -> cython.bint:
+        """Find the place between here and there with a value of the parameter between theirs."""
+        n: cython.Py_ssize_t = self.problem.unknowns
+        rise: cython.double = self.there.z[n] - self.here.z[n]
+        self.interpolate(self.step * (parameter - self.here.z[n]) / rise)
+        self.newton.z[:] = self.guess
+        self.newton.z[n] = parameter
+        self.newton.row[:] = 0.0
+        self.newton.row[n] = 1.0 if rise > 0.0 else -1.0
+        if not self.newton.correct(self.step) or self.newton.moved > self.step:
+            return False
+        self.newton.z[n] = parameter
+        self.record(self.between)
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def accept(self, place: Place, length: cython.double) -> cython.int:
+        """Go on from a place at a length from here, 0 beyond a corner, in the scale that is right for it."""
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = place.z.shape[0]
+        along: cython.double = 0.0
+        total: cython.double = 0.0
+        ratio: cython.double
+        self.problem.measure(place.z)
+        for i in range(size):
+            ratio = self.newton.scale[i] / self.problem.scale[i]
+            self.bend[i] = (place.tangent[i] - self.here.tangent[i]) / length * ratio if length > 0.0 else 0.0
+            place.tangent[i] *= ratio
+            total += place.tangent[i] * place.tangent[i]
+        total = sqrt(total)
+        for i in range(size):
+            place.tangent[i] /= total
+            along += place.tangent[i] * self.bend[i]
+        for i in range(size):
+            self.bend[i] = (self.bend[i] - along * place.tangent[i]) / total
+        self.newton.scale[:] = self.problem.scale
+        self.here.z[:] = place.z
+        self.here.tangent[:] = place.tangent
+        self.here.margin[:] = place.margin
+        self.here.output[:] = place.output
+        self.here.orientation = place.orientation
+        for i in range(place.growth.shape[0]):
+            self.here.growth[i] = place.growth[i] / total
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shorten(self, at: cython.double) -> cython.bint:
+        """Make the place at a length from here the one there, with the direction that it has exactly there."""
+        i: cython.Py_ssize_t
+        if not self.put(at) or not self.newton.look():
+            return False
+        self.record(self.between)
+        self.step, self.turn = at, 0.0
+        for i in range(self.here.tangent.shape[0]):
+            self.turn += self.here.tangent[i] * self.between.tangent[i]
+        self.there, self.between = self.between, self.there
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def cross(self, which: cython.Py_ssize_t, past: cython.double) -> cython.bint:
+        """Turn, at a corner that is here, into the direction that the curve has a length past it.
+
+        The orientation of a piecewise smooth curve is the same on both sides, and says which way it goes on.
+        """
+        i: cython.Py_ssize_t
+        sign: cython.double
+        size: cython.Py_ssize_t = self.here.z.shape[0]
+        self.newton.row[:] = self.here.tangent
+        for i in range(size):
+            self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
+        self.here.margin[which] = -self.here.margin[which]
+        if not self.newton.look():
+            return False
+        sign = 1.0 if self.newton.orientation == self.here.orientation else -1.0
+        for i in range(size):
+            self.here.tangent[i] = sign * self.newton.tangent[i]
+            self.guess[i] = self.newton.scale[i] * self.here.tangent[i]
+        if self.problem.outputs:
+            self.problem.report(self.here.z, self.guess)
+            self.here.growth[:] = self.problem.growth
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def crosses(self) -> cython.bint:
+        """Whether a margin changes sign from here to there."""
+        k: cython.Py_ssize_t
+        for k in range(self.problem.margins):
+            if self.here.margin[k] * self.there.margin[k] < 0.0:
+                return True
+        return False
+
+    @cython.ccall
+    @cython.exceptval(-1e300, check=False)
+    def length(self, place: Place) -> cython.double:
+        """Of the way from here to the plane that a place lies in."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        for i in range(place.z.shape[0]):
+            total += self.here.tangent[i] * (place.z[i] - self.here.z[i]) / self.newton.scale[i]
+        return total
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def extent(self) -> cython.double:
+        """Greatest unit of the unknowns: the size of the solution."""
+        i: cython.Py_ssize_t
+        most: cython.double = 0.0
+        for i in range(self.problem.unknowns):
+            most = greater(most, self.newton.scale[i])
+        return most
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def unforeseen(self) -> cython.double:
+        """Greatest change of the growth of an output over the step, as a change of the output over its size."""
+        k: cython.Py_ssize_t
+        worst: cython.double = 0.0
+        size: cython.double
+        for k in range(self.problem.outputs):
+            size = greater(self.here.output[k], self.there.output[k])
+            if size > 0.0:
+                worst = greater(worst, fabs(self.there.growth[k] - self.here.growth[k]) * self.step / size)
+        return worst
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def record(self, place: Place) -> cython.int:
+        """The corrector's result as a place."""
+        i: cython.Py_ssize_t
+        place.z[:] = self.newton.z
+        place.tangent[:] = self.newton.tangent
+        place.orientation = self.newton.orientation
+        self.problem.bound(place.z)
+        place.margin[:] = self.problem.margin
+        if self.problem.outputs:
+            for i in range(place.z.shape[0]):
+                self.guess[i] = self.newton.scale[i] * place.tangent[i]
+            self.problem.report(place.z, self.guess)
+            place.output[:] = self.problem.output
+            place.growth[:] = self.problem.growth
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def predict(self, step: cython.double) -> cython.void:
+        """A parabola from here along the tangent, with the bend of the last step."""
+        i: cython.Py_ssize_t
+        for i in range(self.guess.shape[0]):
+            self.guess[i] = self.here.z[i] + self.newton.scale[i] * step * (
+                self.here.tangent[i] + 0.5 * step * self.bend[i]
+            )
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def interpolate(self, at: cython.double) -> cython.void:
+        """The cubic through here and there with their tangents."""
+        i: cython.Py_ssize_t
+        x: cython.double = at / self.step
+        slope: cython.double = self.step / greater(self.turn, 0.1)
+        for i in range(self.guess.shape[0]):
+            self.guess[i] = (
+                self.here.z[i] * (1.0 + 2.0 * x) * (1.0 - x) * (1.0 - x)
+                + self.there.z[i] * x * x * (3.0 - 2.0 * x)
+                + self.newton.scale[i]
+                * (
+                    self.step * self.here.tangent[i] * x * (1.0 - x) * (1.0 - x)
+                    - slope * self.there.tangent[i] * x * x * (1.0 - x)
+                )
+            )
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def greater(a: cython.double, b: cython.double) -> cython.double:
+    return a if a > b else b

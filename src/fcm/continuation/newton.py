@@ -1,0 +1,156 @@
+r"""Newton's method for a point of a curve, in coordinates made dimensionless by the problem's scale.
+
+The n equations for the n + 1 numbers z are closed by a row: the point is sought in the plane through the guess
+whose normal is the row. A row along the curve gives the next point; a row along the parameter holds that. The
+same matrix gives the direction of the curve, and the sign of its determinant the orientation.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import isfinite, sqrt
+
+from fcm.continuation.dense import Solver
+from fcm.continuation.problem import Problem
+
+ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
+CLOSE = cython.declare(cython.double, 1e-10)  # error of a point, estimated from the convergence
+EPS = cython.declare(cython.double, 2.220446049250313e-16)
+FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
+ROUNDINGS = cython.declare(
+    cython.double, 8.0
+)  # a step that does not shrink and is no longer than these is one
+COARSEST = cython.declare(cython.double, 1e-6)  # and no longer than this
+
+
+@cython.cclass
+class Newton:
+    """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
+
+    z, scale, row, tangent: (n + 1,), the parameter last; row and tangent in scaled coordinates. The tangent is
+    a unit vector on the side of the row.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        size = problem.unknowns + 1
+        self.problem = problem
+        self.solver = Solver(size)
+        self.z, self.guess = np.zeros(size), np.zeros(size)
+        self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
+        self.orientation, self.moved = 0.0, 0.0
+        self.evaluations = 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def correct(self, reach: cython.double) -> cython.bint:
+        """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
+
+        reach is the length, in scaled coordinates, that stands before the first step. Converged is what has
+        an error below CLOSE, for convergence of the order 1.5, that of a force whose slope changes as a root.
+        """
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.problem.unknowns + 1
+        count: cython.int
+        step: cython.double
+        ratio: cython.double
+        before: cython.double = reach
+        self.guess[:] = self.z
+        for count in range(ITERATIONS):
+            if not self.factor():
+                return False
+            step = self.step()
+            if not step < FAR or (count > 2 and step > 2.0 * before):
+                return False
+            for i in range(size):
+                self.z[i] += self.scale[i] * self.solver.right[i]
+            ratio = step / before
+            if step * ratio * sqrt(ratio) < CLOSE or step < EPS:
+                return self.direct()
+            if count > 0 and ratio > 0.25 and step < COARSEST and step < ROUNDINGS * self.rounding():
+                return self.direct()
+            before = step
+        return False
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def look(self) -> cython.bint:
+        """Tangent and orientation at z as it stands; false if they are not determined there."""
+        self.guess[:] = self.z
+        return self.factor() and self.direct()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def factor(self) -> cython.bint:
+        """The system closed by the row, at z."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.problem.unknowns
+        unit: cython.double
+        self.problem.evaluate(self.z)
+        self.evaluations += 1
+        for i in range(n):
+            unit = 1.0 / self.scale[i]
+            for j in range(n + 1):
+                self.solver.matrix[i, j] = self.problem.jacobian[i, j] * (self.scale[j] * unit)
+        for j in range(n + 1):
+            self.solver.matrix[n, j] = self.row[j]
+        return self.solver.factor()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def step(self) -> cython.double:
+        """Length of the Newton step, which is left in the solver."""
+        i: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.problem.unknowns
+        total: cython.double = 0.0
+        off: cython.double = 0.0
+        for i in range(n):
+            self.solver.right[i] = -self.problem.residual[i] / self.scale[i]
+        for i in range(n + 1):
+            off += self.row[i] * (self.z[i] - self.guess[i]) / self.scale[i]
+        self.solver.right[n] = -off
+        self.solver.solve()
+        for i in range(n + 1):
+            total += self.solver.right[i] * self.solver.right[i]
+        return sqrt(total) if isfinite(total) else 2.0 * FAR
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def direct(self) -> cython.bint:
+        """Tangent and orientation from the system as it is factored, and how far z is from the guess."""
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.problem.unknowns + 1
+        total: cython.double = 0.0
+        moved: cython.double = 0.0
+        self.orientation = self.solver.orientation
+        for i in range(size):
+            self.solver.right[i] = 0.0
+        self.solver.right[size - 1] = 1.0
+        self.solver.solve()
+        for i in range(size):
+            total += self.solver.right[i] * self.solver.right[i]
+            moved += ((self.z[i] - self.guess[i]) / self.scale[i]) ** 2
+        if not (isfinite(total) and total > 0.0):
+            return False
+        for i in range(size):
+            self.tangent[i] = self.solver.right[i] / sqrt(total)
+        self.moved = sqrt(moved)
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def rounding(self) -> cython.double:
+        """Length of the Newton step that a relative error of EPS in every number makes, after Skeel."""
+        size: cython.Py_ssize_t = self.problem.unknowns + 1
+        scale = np.asarray(self.scale)
+        inverse = np.zeros((size, size))
+        inner = np.asarray(self.problem.jacobian) * scale / scale[: size - 1, None]
+        matrix = np.concatenate((inner, np.asarray(self.row)[None]))
+        for i in range(size):
+            self.solver.right[:] = 0.0
+            self.solver.right[i] = 1.0
+            self.solver.solve()
+            inverse[:, i] = self.solver.right
+        z = np.abs(np.asarray(self.z) / scale)
+        return float(EPS * np.sqrt(np.sum((np.abs(inverse) @ (np.abs(matrix) @ z)) ** 2)))

@@ -1,0 +1,81 @@
+"""What following a curve yields: its points in order, what each is, and how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum, IntFlag
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Status(Enum):
+    """How a curve ended."""
+
+    COMPLETE = "the curve reached the other end of its range"
+    RETURNED = "the curve came back to the end of the range where it began"
+    CLOSED = "the curve came back to the point where it began"
+    STALLED = "no further point could be found; try a smaller --max-step or another range"
+    UNBOUNDED = "the amplitude grows without limit, at a resonance that hardly anything damps; add damping"
+    TOO_LONG = "the curve did not leave the range within the number of steps allowed; try a larger --max-step"
+    INTERRUPTED = "interrupted"
+
+
+class Mark(IntFlag):
+    """What a point of a curve is besides a point."""
+
+    NONE = 0
+    END = 1  # of the range
+    FOLD = 2  # the parameter turns back
+    CORNER = 4  # a margin changes sign
+    PEAK = 8  # something reported is greatest there, or at a corner
+    STATION = 16  # the parameter has a value that was asked for
+    BRANCH = 32  # the orientation changes without a fold
+    CROSSING = 64  # stability changes between folds
+
+
+@dataclass(frozen=True)
+class Path:
+    """Points of one curve in the order in which they were followed."""
+
+    z: FloatArray  # (point, unknown + 1), the parameter last
+    direction: FloatArray  # (point, unknown + 1) along the curve, in the units of z
+    mark: npt.NDArray[np.int64]  # (point,) of `Mark`, joined
+    orientation: FloatArray  # (point,) sign of the determinant of the equations closed by the direction
+    shift: FloatArray  # (point,) from the approximate equations, if there are any, to the exact ones
+    status: Status
+    evaluations: int  # of the equations, to follow it
+
+    @property
+    def parameter(self) -> FloatArray:
+        """The parameter at each point."""
+        return self.z[:, -1]
+
+    def where(self, mark: Mark) -> npt.NDArray[np.intp]:
+        """The points that have a mark."""
+        return np.flatnonzero(self.mark & mark)
+
+    def backwards(self) -> Path:
+        """The same points in the other order."""
+        return replace(
+            self,
+            z=self.z[::-1],
+            direction=-self.direction[::-1],
+            mark=self.mark[::-1],
+            orientation=-self.orientation[::-1],
+            shift=self.shift[::-1],
+        )
+
+    def then(self, other: Path) -> Path:
+        """This path continued by another that begins where it ends."""
+        return Path(
+            z=np.concatenate((self.z, other.z[1:])),
+            direction=np.concatenate((self.direction, other.direction[1:])),
+            mark=np.concatenate((self.mark[:-1], self.mark[-1:] | other.mark[:1], other.mark[1:])),
+            orientation=np.concatenate((self.orientation, other.orientation[1:])),
+            shift=np.concatenate((self.shift, other.shift[1:])),
+            status=other.status,
+            evaluations=self.evaluations + other.evaluations,
+        )

@@ -1,0 +1,16 @@
+cdef class Problem:
+    cdef public int unknowns
+    cdef public int margins
+    cdef public int outputs
+    cdef public bint coarse
+    cdef public double[::1] residual
+    cdef public double[:, ::1] jacobian
+    cdef public double[::1] scale
+    cdef public double[::1] margin
+    cdef public double[::1] output
+    cdef public double[::1] growth
+    cpdef int evaluate(self, double[::1] z) except -1
+    cpdef int measure(self, double[::1] z) except -1
+    cpdef int bound(self, double[::1] z) except -1
+    cpdef int refine(self, bint exact) except -1
+    cpdef int report(self, double[::1] z, double[::1] direction) except -1
