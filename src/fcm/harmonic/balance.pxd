@@ -1,0 +1,26 @@
+from fcm.continuation.problem cimport Problem
+from fcm.harmonic.displacement cimport Displacements
+from fcm.harmonic.law cimport Law
+from fcm.structure.receptance cimport Receptance
+
+cdef class Balance(Problem):
+    cdef public Receptance seen
+    cdef public Displacements shown
+    cdef public list laws
+    cdef public int contacts
+    cdef public int width
+    cdef public double span
+    cdef public double load
+    cdef public double[::1] counted
+    cdef public double[::1] force
+    cdef public double[:, :, ::1] tangent
+    cdef public double[::1] largest
+    cdef double[::1] size
+    cdef double[::1] evaluated
+    cdef double[::1] now
+    cdef double[::1] rate
+    cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
+    cdef int contact_forces(self, double[::1] z) except -1
+    cdef void means(self) noexcept
+    cdef void harmonic(self, int j) noexcept
+    cdef void by_parameter(self) noexcept

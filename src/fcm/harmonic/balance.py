@@ -1,0 +1,249 @@
+r"""Harmonic balance of means and any harmonics, condensed to the contacts, as a problem to be followed.
+
+The modes are summed into the receptance G(h omega) between the contacts' ports, so that the unknowns are the
+relative displacements of the contacts alone, whatever the number of modes:
+
+    X_h = X_external,h - G(h omega) F_h,    x_0 = -G(0) f_0
+
+The residual has the unit of a displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+from cython.cimports.libc.math import sqrt
+
+from fcm.continuation.problem import Problem
+from fcm.harmonic.displacement import Displacements
+from fcm.harmonic.law import Law
+from fcm.structure.receptance import Receptance
+
+OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a unit is at least this much of its own, and of the greatest, maximum
+
+
+@cython.cclass
+class Balance(Problem):
+    """The balance of laws (contact,) on a structure; unknowns as in `law`, contact after contact."""
+
+    def __init__(
+        self,
+        seen: Receptance,
+        laws: list[Law],
+        shown: Displacements,
+        counted: npt.NDArray[np.float64],
+        span: cython.double,
+    ) -> None:
+        width: cython.int = 2 + 4 * seen.count
+        Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs)
+        self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
+        self.counted, self.span, self.load = np.array(counted), span, 1.0
+        self.force, self.now, self.rate = (np.zeros(self.unknowns) for _ in range(3))
+        self.evaluated = np.zeros(self.unknowns + 1)
+        self.tangent = np.zeros((len(laws), width, width))
+        self.largest, self.size = np.zeros(2 * len(laws)), np.zeros(2 * len(laws))
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, z: cython.double[::1]) -> cython.int:
+        i: cython.Py_ssize_t
+        j: cython.int
+        self.seen.at(z[self.unknowns])
+        self.contact_forces(z)
+        self.means()
+        for j in range(self.seen.count):
+            self.harmonic(j)
+        self.by_parameter()
+        self.evaluated[:] = z
+        for i in range(self.unknowns):
+            self.residual[i] += z[i]
+            self.jacobian[i, i] += 1.0
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def contact_forces(self, z: cython.double[::1]) -> cython.int:
+        """Forces and tangents of the contacts, without those counted to the structure."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            first = c * self.width
+            law.evaluate(z, first)
+            for i in range(self.width):
+                self.force[first + i] = law.force[i]
+            self.tangent[c, :, :] = law.tangent
+            self.force[first + 1] -= self.counted[c] * z[first + 1]
+            self.tangent[c, 1, 1] -= self.counted[c]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def means(self) -> cython.void:
+        """Rows of the means: the static answer to the mean forces."""
+        w: cython.Py_ssize_t = self.width
+        row: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for p in range(2 * self.contacts):
+            row = (p // 2) * w + p % 2
+            self.residual[row] = 0.0
+            for q in range(self.contacts):
+                S_u: cython.double = self.seen.static[p, 2 * q]
+                S_v: cython.double = self.seen.static[p, 2 * q + 1]
+                self.residual[row] += S_u * self.force[q * w] + S_v * self.force[q * w + 1]
+                for k in range(w):
+                    self.jacobian[row, q * w + k] = S_u * self.tangent[q, 0, k] + S_v * self.tangent[q, 1, k]
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def harmonic(self, j: cython.int) -> cython.void:
+        """Rows of one harmonic: real and imaginary part of G F."""
+        w: cython.Py_ssize_t = self.width
+        at: cython.Py_ssize_t = 2 + 4 * j  # of Re U among the unknowns of a contact; Im U, Re V, Im V follow
+        row: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for p in range(2 * self.contacts):
+            row = (p // 2) * w + at + 2 * (p % 2)
+            self.residual[row] = self.residual[row + 1] = 0.0
+            for q in range(self.contacts):
+                u_re: cython.double = self.seen.G_re[j, p, 2 * q]
+                u_im: cython.double = self.seen.G_im[j, p, 2 * q]
+                v_re: cython.double = self.seen.G_re[j, p, 2 * q + 1]
+                v_im: cython.double = self.seen.G_im[j, p, 2 * q + 1]
+                f: cython.Py_ssize_t = q * w + at
+                self.residual[row] += u_re * self.force[f] - u_im * self.force[f + 1]
+                self.residual[row] += v_re * self.force[f + 2] - v_im * self.force[f + 3]
+                self.residual[row + 1] += u_im * self.force[f] + u_re * self.force[f + 1]
+                self.residual[row + 1] += v_im * self.force[f + 2] + v_re * self.force[f + 3]
+                for k in range(w):
+                    a: cython.double = self.tangent[q, at, k]
+                    b: cython.double = self.tangent[q, at + 1, k]
+                    c: cython.double = self.tangent[q, at + 2, k]
+                    d: cython.double = self.tangent[q, at + 3, k]
+                    self.jacobian[row, q * w + k] = u_re * a - u_im * b + v_re * c - v_im * d
+                    self.jacobian[row + 1, q * w + k] = u_im * a + u_re * b + v_im * c + v_re * d
+            if j == self.seen.driven:
+                self.residual[row] -= self.load * self.seen.X_re[p]
+                self.residual[row + 1] -= self.load * self.seen.X_im[p]
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def by_parameter(self) -> cython.void:
+        """Derivative by the frequency; the means have none."""
+        w: cython.Py_ssize_t = self.width
+        n: cython.Py_ssize_t = self.unknowns
+        j: cython.int
+        row: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        q: cython.Py_ssize_t
+        for p in range(2 * self.contacts):
+            self.jacobian[(p // 2) * w + p % 2, n] = 0.0
+            for j in range(self.seen.count):
+                row = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                re: cython.double = 0.0
+                im: cython.double = 0.0
+                for q in range(2 * self.contacts):
+                    f: cython.Py_ssize_t = (q // 2) * w + 2 + 4 * j + 2 * (q % 2)
+                    re += (
+                        self.seen.dG_re[j, p, q] * self.force[f]
+                        - self.seen.dG_im[j, p, q] * self.force[f + 1]
+                    )
+                    im += (
+                        self.seen.dG_im[j, p, q] * self.force[f]
+                        + self.seen.dG_re[j, p, q] * self.force[f + 1]
+                    )
+                if j == self.seen.driven:
+                    re -= self.load * self.seen.dX_re[p]
+                    im -= self.load * self.seen.dX_im[p]
+                self.jacobian[row, n] = re
+                self.jacobian[row + 1, n] = im
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def measure(self, z: cython.double[::1]) -> cython.int:
+        """Displacements by their present size, tangential and normal of each contact; the frequency by its range."""
+        w: cython.Py_ssize_t = self.width
+        p: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        overall: cython.double = 0.0
+        for p in range(2 * self.contacts):
+            k: cython.Py_ssize_t = (p // 2) * w + p % 2
+            total: cython.double = z[k] * z[k]
+            for i in range(self.seen.count):
+                k = (p // 2) * w + 2 + 4 * i + 2 * (p % 2)
+                total += z[k] * z[k] + z[k + 1] * z[k + 1]
+            self.size[p] = sqrt(total)
+            self.largest[p] = max(self.largest[p], self.size[p])
+            overall = max(overall, self.largest[p])
+        many: cython.double = sqrt(2.0 * self.contacts)
+        for p in range(2 * self.contacts):
+            unit: cython.double = max(self.size[p], max(OWN_FLOOR * self.largest[p], OTHER_FLOOR * overall))
+            unit = unit * many if unit > 0.0 else many
+            self.scale[(p // 2) * w + p % 2] = unit
+            for i in range(self.seen.count):
+                k = (p // 2) * w + 2 + 4 * i + 2 * (p % 2)
+                self.scale[k] = self.scale[k + 1] = unit
+        self.scale[self.unknowns] = self.span
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, z: cython.double[::1]) -> cython.int:
+        """The margins of the contacts, one after the other."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        at: cython.Py_ssize_t = 0
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            law.bound(z, c * self.width)
+            for i in range(law.margins):
+                self.margin[at] = law.margin[i]
+                at += 1
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+        """Amplitudes of the degrees of freedom shown, and their growth."""
+        self.seen.at(z[self.unknowns])
+        self.forces_at(z, direction)
+        self.shown.at(self.load, self.now, self.rate, direction[self.unknowns])
+        self.output[:] = self.shown.amplitude
+        self.growth[:] = self.shown.growth
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces_at(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
+        """Forces at z, a last Newton step from where they were evaluated, and their rates."""
+        c: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        for c in range(self.contacts):
+            first = c * self.width
+            for i in range(self.width):
+                change: cython.double = 0.0
+                rate: cython.double = 0.0
+                for k in range(self.width):
+                    change += self.tangent[c, i, k] * (z[first + k] - self.evaluated[first + k])
+                    rate += self.tangent[c, i, k] * direction[first + k]
+                self.now[first + i] = self.force[first + i] + change
+                self.rate[first + i] = rate
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def refine(self, exact: cython.bint) -> cython.int:
+        """All contacts with their exact laws, or with what they have in the place of them."""
+        c: cython.Py_ssize_t
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            law.refine(exact)
+        return 0

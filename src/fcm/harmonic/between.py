@@ -1,0 +1,27 @@
+"""A problem on the way to another: the residual at some point is taken away by and by."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from fcm.continuation.problem import Problem
+
+
+@cython.cclass
+class Between(Problem):
+    """A problem of which a part of the residual that it has at some point is taken away."""
+
+    def __init__(self, inner: Problem) -> None:
+        Problem.__init__(self, inner.unknowns, 0, 0)
+        self.inner, self.taken, self.removed = inner, 0.0, np.zeros(inner.unknowns)
+        self.jacobian = inner.jacobian
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, z: cython.double[::1]) -> cython.int:
+        i: cython.Py_ssize_t
+        self.inner.evaluate(z)
+        for i in range(self.unknowns):
+            self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
+        return 0

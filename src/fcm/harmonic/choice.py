@@ -1,0 +1,100 @@
+"""As many harmonics as an accuracy takes, and those that it takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation.follow import Progress
+from fcm.harmonic.error import Errors, Reported, errors_along, reported
+from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import Traced, traced
+from fcm.scene.model import FloatArray
+
+ROUNDS = 8  # of tracing, estimating, choosing
+FIRST = 4  # harmonics that are added at most after the first round, and as many as there are after the others
+SPARE = 0.5  # of the accuracy, to which the harmonics left out are chosen to come
+UNKNOWN = 3.0  # times what harmonics do without feedback, what they do, as long as the estimate fails
+NOTHING = 1e-6  # of the greatest amplitude: degrees of freedom that move less have no peak
+WORK = 1e8  # evaluations times unknowns squared, about a minute, beyond which no more is tried
+
+
+@dataclass(frozen=True)
+class Accurate:
+    """A response, its errors, and whether they are below what was asked for.
+
+    shown, errors (path,) belong to the branches' paths; peak (dof,) is the relative error of the greatest amplitude
+    over all of them, and worst the greatest of these and of the errors of the folds. NaN where it cannot be told.
+    """
+
+    system: System
+    traced: Traced
+    shown: tuple[Reported, ...]
+    errors: tuple[Errors, ...]
+    peak: FloatArray
+    worst: float
+    reached: bool
+
+    @property
+    def work(self) -> float:
+        """Evaluations times unknowns squared."""
+        unknowns = len(self.system.scene.contacts) * (2.0 + 4.0 * len(self.system.harmonics))
+        return sum(path.evaluations for path in self.traced.branches.paths) * unknowns**2
+
+
+def accurate(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
+    """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
+
+    Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from its
+    true place than the accuracy (relative), the harmonics that would do most are added, and all is traced again,
+    from starts of its own: a branch of few harmonics may not exist with more. Whether the branches are complete is
+    another question, see their status.
+    """
+    for _ in range(ROUNDS):
+        found = estimated(system, accuracy, progress)
+        if found.reached or found.work > WORK:
+            return found
+        more = enlarged(found, accuracy)
+        if more == system.harmonics:
+            return found
+        system = system.with_harmonics(more)
+    return found
+
+
+def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
+    """The response of a system, with its errors."""
+    response = traced(system, progress)
+    paths = response.branches.paths
+    shown = tuple(reported(system, path) for path in paths)
+    errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))
+    if not paths:
+        none = np.full(len(system.scene.modal.dofs), np.nan)
+        return Accurate(system, response, shown, errors, none, np.nan, False)
+    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    which = heights.argmax(axis=0)
+    peak = np.array([errors[k].peak[d] for d, k in enumerate(which)])
+    height = heights.max(axis=0)
+    matter = peak[height > NOTHING * height.max()]
+    worst = float(np.concatenate((matter, *(one.fold for one in errors))).max(initial=0.0))
+    return Accurate(system, response, shown, errors, peak, worst, worst <= accuracy)
+
+
+def enlarged(found: Accurate, accuracy: float) -> tuple[int, ...]:
+    """The harmonics of a response and those that would do most, until what the others do is below the accuracy.
+
+    What harmonics do is more than they are, because they change the others: by how much is told by the error now.
+    """
+    share = np.max([one.share for one in found.errors], axis=0, initial=0.0)
+    total = share.sum()
+    if not total > 0.0:
+        return found.system.harmonics
+    gain = found.worst / total if np.isfinite(found.worst) else UNKNOWN
+    order = np.argsort(-share)
+    left = total - np.cumsum(share[order])
+    needed = 1 + int(np.count_nonzero(gain * left > SPARE * accuracy))
+    has = len(found.system.harmonics)
+    count = min(needed, max(FIRST, has), HIGHEST - has)
+    chosen = order[:count][share[order[:count]] > 0.0]
+    return tuple(sorted({*found.system.harmonics, *(int(k) + 1 for k in chosen)}))

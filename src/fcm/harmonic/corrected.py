@@ -1,0 +1,105 @@
+"""The curve of a balance with more harmonics, point by point beside one with fewer."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Path
+from fcm.harmonic.corrector import Corrector
+from fcm.harmonic.further import HIGHEST, Further
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+EVERY = 16  # points from one that is displaced to the next, before it is known how they change
+OFF = 0.3  # of a displacement, by which it may be off where it is interpolated
+NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
+BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
+
+Indices = npt.NDArray[np.intp]
+
+
+class Corrected:
+    """From the points of a path to the corrected curve, relative: of the frequency, then of the amplitudes.
+
+    linear (point,): where no contact slips or separates, so that nothing is to be corrected.
+    share (point, harmonic): see `Further.shares`; at the points that were displaced, else zero.
+    """
+
+    def __init__(self, system: System, path: Path, amplitude: FloatArray) -> None:
+        self.path, self.amplitude = path, amplitude
+        self.further, self.corrector = Further(system), Corrector(system)
+        count, dofs = amplitude.shape
+        self.force, self.linear = self.further.forces(path.z)
+        self.share = np.zeros((count, HIGHEST))
+        self.change = np.zeros((count, 1 + dofs))
+        self.known = self.linear.copy()
+
+    def everywhere(self, places: Indices) -> FloatArray:
+        """Relative displacement (point, 1 + dof), interpolated between points at which it is found.
+
+        These are the places given, every so many points, those next to a linear part, and those between two of
+        them if the middle one is not what they lead to expect.
+        """
+        count = len(self.known)
+        turns = np.flatnonzero(np.diff(self.linear))
+        ends = np.array([0, count - 1])
+        first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
+        self.find(first)
+        before, after = first[:-1], first[1:]
+        while len(before):
+            wide = (after - before > 1) & ~(self.linear[before] & self.linear[after])
+            before, after = before[wide], after[wide]
+            middle = (before + after) // 2
+            self.find(middle)
+            more = self.unforeseen(before, middle, after)
+            before, after = (
+                np.concatenate((before[more], middle[more])),
+                np.concatenate((middle[more], after[more])),
+            )
+        for place in places.tolist():
+            self.bridge(place)
+        found = np.flatnonzero(self.known)
+        return np.array([np.interp(np.arange(count), found, column) for column in self.change[found].T]).T
+
+    def shares(self, places: Indices, size: FloatArray) -> FloatArray:
+        """Greatest share (harmonic,), at some points, of sizes (dof,)."""
+        sizes = np.tile(size, (len(places), 1))
+        most: FloatArray = self.further.shares(self.path.z[places], self.force[places], sizes).max(axis=0)
+        return most
+
+    def bridge(self, place: int) -> None:
+        """Where the corrected curve is missed, as it is at a corner that has moved: the mean of those beside it."""
+        if np.isfinite(self.change[place]).all():
+            return
+        beside = []
+        for step in (-1, 1):
+            ways = [place + step * k for k in BESIDE if 0 <= place + step * k < len(self.known)]
+            for way in ways:
+                self.find(np.array([way]))
+                if np.isfinite(self.change[way]).all():
+                    beside.append(self.change[way])
+                    break
+        if len(beside) == 2:
+            self.change[place] = 0.5 * (beside[0] + beside[1])
+
+    def unforeseen(self, before: Indices, middle: Indices, after: Indices) -> npt.NDArray[np.bool_]:
+        """Where a displacement is not what the two around it lead to expect."""
+        part = ((middle - before) / (after - before))[:, None]
+        found = self.change[middle]
+        expected = (1.0 - part) * self.change[before] + part * self.change[after]
+        off = np.abs(found - expected).max(axis=1)
+        differs = off > np.maximum(OFF * np.abs(found).max(axis=1), NOTHING)
+        mixed: npt.NDArray[np.bool_] = np.isnan(off) & ~(np.isnan(found[:, 0]) & np.isnan(expected[:, 0]))
+        return differs | mixed
+
+    def find(self, places: Indices) -> None:
+        """The displacements of some points, which are then known."""
+        places = places[~self.known[places]]
+        z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
+        self.share[places] = self.further.shares(z[places], self.force[places], now[:, 1:])
+        for i, before in zip(places.tolist(), now, strict=True):
+            found = self.corrector.displaced(z[i], self.path.direction[i], self.share[i])
+            if found is not None:
+                self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
+        self.known[places] = True

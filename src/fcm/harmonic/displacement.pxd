@@ -1,0 +1,24 @@
+from fcm.structure.receptance cimport Receptance
+
+cdef class Displacements:
+    cdef public Receptance seen
+    cdef public int dofs
+    cdef public int samples
+    cdef public double[:, ::1] shapes
+    cdef public double[:, ::1] static
+    cdef public double[:, ::1] re
+    cdef public double[:, ::1] im
+    cdef public double[:, ::1] d_re
+    cdef public double[:, ::1] d_im
+    cdef public double[::1] mean
+    cdef public double[::1] amplitude
+    cdef public double[::1] growth
+    cdef double[:, ::1] cosine
+    cdef double[:, ::1] sine
+    cpdef int at(self, double load, double[::1] force, double[::1] d_force, double d_omega) except -1
+    cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
+    cdef void single(self, Py_ssize_t d) noexcept
+    cdef void several(self, Py_ssize_t d) noexcept
+    cdef double refined(self, Py_ssize_t d, double theta) noexcept
+    cdef double value(self, Py_ssize_t d, double theta) noexcept
+    cdef double rate(self, Py_ssize_t d, double theta) noexcept

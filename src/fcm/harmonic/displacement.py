@@ -1,0 +1,188 @@
+"""Displacements of the degrees of freedom that are reported, and how fast they grow along a curve."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+from cython.cimports.libc.math import cos, fabs, hypot, sin
+
+from fcm.structure.receptance import Receptance
+
+SAMPLES = 12  # for each period of the highest harmonic, among which the extremes are sought
+REFINED = 4  # Newton steps from the greatest sample to the extreme
+
+
+@cython.cclass
+class Displacements:
+    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates; mean (dof,).
+
+    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate.
+    """
+
+    def __init__(
+        self,
+        seen: Receptance,
+        shapes: npt.NDArray[np.float64],
+        flexibility: npt.NDArray[np.float64],
+    ) -> None:
+        count, dofs = seen.count, shapes.shape[1]
+        self.seen, self.dofs = seen, dofs
+        self.shapes = np.ascontiguousarray(shapes)
+        self.static = np.ascontiguousarray(shapes.T @ flexibility @ np.asarray(seen.shapes))
+        self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
+        self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
+        self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
+        harmonics = np.asarray(seen.harmonics)
+        self.samples = int(SAMPLES * harmonics[count - 1])
+        theta = 2.0 * np.pi * np.arange(self.samples) / self.samples
+        self.cosine, self.sine = np.cos(np.outer(theta, harmonics)), np.sin(np.outer(theta, harmonics))
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def at(
+        self,
+        load: cython.double,
+        force: cython.double[::1],
+        d_force: cython.double[::1],
+        d_omega: cython.double,
+    ) -> cython.int:
+        """From the contact forces (unknown,), laid out as the unknowns, and their rates; the receptance is at omega."""
+        j: cython.int
+        d: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
+        for d in range(self.dofs):
+            total: cython.double = 0.0
+            for p in range(self.seen.ports):
+                total -= self.static[d, p] * force[(p // 2) * w + p % 2]
+            self.mean[d] = total
+        for j in range(self.seen.count):
+            self.harmonic(j, load, force, d_force, d_omega)
+        for d in range(self.dofs):
+            if self.seen.count == 1:
+                self.single(d)
+            else:
+                self.several(d)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def harmonic(
+        self,
+        j: cython.int,
+        load: cython.double,
+        force: cython.double[::1],
+        d_force: cython.double[::1],
+        d_omega: cython.double,
+    ) -> cython.void:
+        """Amplitudes of one harmonic, mode by mode."""
+        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
+        i: cython.Py_ssize_t
+        d: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        driven: cython.double = load if j == self.seen.driven else 0.0
+        for d in range(self.dofs):
+            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        for i in range(self.seen.modes):
+            f_re: cython.double = driven * self.seen.force_re[i]
+            f_im: cython.double = driven * self.seen.force_im[i]
+            g_re: cython.double = 0.0
+            g_im: cython.double = 0.0
+            for p in range(self.seen.ports):
+                k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                f_re -= self.seen.shapes[i, p] * force[k]
+                f_im -= self.seen.shapes[i, p] * force[k + 1]
+                g_re -= self.seen.shapes[i, p] * d_force[k]
+                g_im -= self.seen.shapes[i, p] * d_force[k + 1]
+            c_re: cython.double = self.seen.c_re[j, i]
+            c_im: cython.double = self.seen.c_im[j, i]
+            s_re: cython.double = self.seen.s_re[j, i] * d_omega
+            s_im: cython.double = self.seen.s_im[j, i] * d_omega
+            q_re: cython.double = c_re * f_re - c_im * f_im
+            q_im: cython.double = c_re * f_im + c_im * f_re
+            r_re: cython.double = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
+            r_im: cython.double = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
+            for d in range(self.dofs):
+                shape: cython.double = self.shapes[i, d]
+                self.re[j, d] += shape * q_re
+                self.im[j, d] += shape * q_im
+                self.d_re[j, d] += shape * r_re
+                self.d_im[j, d] += shape * r_im
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def single(self, d: cython.Py_ssize_t) -> cython.void:
+        """One harmonic: its size."""
+        size: cython.double = hypot(self.re[0, d], self.im[0, d])
+        self.amplitude[d] = size
+        self.growth[d] = 0.0
+        if size > 0.0:
+            self.growth[d] = self.re[0, d] / size * self.d_re[0, d] + self.im[0, d] / size * self.d_im[0, d]
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def several(self, d: cython.Py_ssize_t) -> cython.void:
+        """Several: the greatest and the least displacement, from the samples next to them."""
+        k: cython.Py_ssize_t
+        j: cython.int
+        highest: cython.Py_ssize_t = 0
+        lowest: cython.Py_ssize_t = 0
+        most: cython.double = -1e300
+        least: cython.double = 1e300
+        for k in range(self.samples):
+            x: cython.double = 0.0
+            for j in range(self.seen.count):
+                x += self.re[j, d] * self.cosine[k, j] - self.im[j, d] * self.sine[k, j]
+            if x > most:
+                most, highest = x, k
+            if x < least:
+                least, lowest = x, k
+        step: cython.double = 6.283185307179586 / self.samples
+        top: cython.double = self.refined(d, highest * step)
+        bottom: cython.double = self.refined(d, lowest * step)
+        self.amplitude[d] = 0.5 * (self.value(d, top) - self.value(d, bottom))
+        self.growth[d] = 0.5 * (self.rate(d, top) - self.rate(d, bottom))
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def refined(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
+        """The extreme next to an angle."""
+        count: cython.int
+        j: cython.int
+        step: cython.double = 6.283185307179586 / self.samples
+        first: cython.double = theta
+        for count in range(REFINED):
+            slope: cython.double = 0.0
+            curvature: cython.double = 0.0
+            for j in range(self.seen.count):
+                h: cython.double = self.seen.harmonics[j]
+                c: cython.double = cos(h * theta)
+                s: cython.double = sin(h * theta)
+                slope -= h * (self.re[j, d] * s + self.im[j, d] * c)
+                curvature -= h * h * (self.re[j, d] * c - self.im[j, d] * s)
+            if curvature == 0.0 or fabs(slope) > fabs(curvature) * step:
+                return first
+            theta -= slope / curvature
+        return theta
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def value(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
+        j: cython.int
+        x: cython.double = 0.0
+        for j in range(self.seen.count):
+            h: cython.double = self.seen.harmonics[j]
+            x += self.re[j, d] * cos(h * theta) - self.im[j, d] * sin(h * theta)
+        return x
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def rate(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
+        j: cython.int
+        x: cython.double = 0.0
+        for j in range(self.seen.count):
+            h: cython.double = self.seen.harmonics[j]
+            x += self.d_re[j, d] * cos(h * theta) - self.d_im[j, d] * sin(h * theta)
+        return x

@@ -1,0 +1,136 @@
+r"""How wrong a curve of a balance is by the harmonics that it leaves out, with their feedback on the others.
+
+At some points of the curve the balance with more harmonics is solved in the plane normal to the curve, so that
+nothing special happens at folds: these points are displaced to the corrected curve. In between the displacement
+is interpolated. The error of an amplitude is its difference to the corrected curve at the same frequency; that of
+a peak, the difference of the heights; that of a fold, the difference of the frequencies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation import Mark, Path
+from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.shifted import Beside
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+CHANCE = 0.1  # of the typical error of the degrees of freedom: one that is less is so by chance, at a change of sign
+
+
+@dataclass(frozen=True)
+class Reported:
+    """What is reported along a path, and its growth along the path's direction: (point, dof)."""
+
+    amplitude: FloatArray
+    growth: FloatArray
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Of a path; relative; NaN where the method cannot tell.
+
+    amplitude (point, dof): by how much the corrected curve differs at the same frequency.
+    truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
+    peak (dof,): of the height of the greatest amplitude.
+    fold (fold,): of the frequencies of the folds, in their order.
+    share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and folds, of
+    the greatest amplitude of the degree of freedom to which it matters most.
+    """
+
+    amplitude: FloatArray
+    truncation: FloatArray
+    peak: FloatArray
+    fold: FloatArray
+    share: FloatArray
+
+
+def reported(system: System, path: Path) -> Reported:
+    """Amplitudes along a path."""
+    problem = system.balance()
+    amplitude = np.empty((len(path.z), problem.outputs))
+    growth = np.empty_like(amplitude)
+    for i, (z, direction) in enumerate(zip(path.z, path.direction, strict=True)):
+        problem.evaluate(z)
+        problem.report(z, direction)
+        amplitude[i], growth[i] = problem.output, problem.growth
+    return Reported(amplitude, growth)
+
+
+def errors_along(system: System, path: Path, shown: Reported | None = None) -> Errors:
+    """Errors of the points of a path of a system's balance.
+
+    Parameters
+    ----------
+    shown : Reported, optional
+        Along the path, if it is known.
+    """
+    shown = shown or reported(system, path)
+    tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
+    folds = path.where(Mark.FOLD)
+    turns = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
+    corrected = Corrected(system, path, shown.amplitude)
+    if corrected.linear.all():
+        none = np.zeros_like(shown.amplitude)
+        return Errors(none, none[:, 0], none[0], np.zeros(len(folds)), np.zeros(HIGHEST))
+    change = corrected.everywhere(turns)
+    error = _at_frequency(path, shown, change[:, 0], change[:, 1:])
+    typical = np.median(error, axis=1, keepdims=True)
+    error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
+    inside = (tops > 0) & (tops < len(path.z) - 1)
+    error[tops[inside], d[inside]] = _heights(shown, change[:, 1:], tops)[inside]
+    size = shown.amplitude.max(axis=1)
+    return Errors(
+        amplitude=error,
+        truncation=(error * shown.amplitude).max(axis=1) / np.where(size > 0.0, size, 1.0),
+        peak=error[tops, d],
+        fold=np.abs(change[folds, 0]),
+        share=corrected.shares(turns, shown.amplitude.max(axis=0)),
+    )
+
+
+def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude: FloatArray) -> FloatArray:
+    """Relative difference of the amplitudes to those of the corrected curve at the same frequencies."""
+    rate = path.direction[:, -1]
+    place = _places(path)
+    moved = path.parameter * (1.0 + frequency)
+    value = shown.amplitude * (1.0 + amplitude)
+    beside = Beside(place, moved, rate + _slope(place, moved - path.parameter))
+    out = np.empty_like(value)
+    slope = shown.growth + _slope(place, value - shown.amplitude)
+    beside.values(np.ascontiguousarray(path.parameter), np.sign(rate), value, slope, out)
+    scale = np.where(shown.amplitude > 0.0, shown.amplitude, 1.0)
+    error: FloatArray = np.abs(out - shown.amplitude) / scale
+    return error
+
+
+def _places(path: Path) -> FloatArray:
+    """Lengths along the path, in the unit of its directions."""
+    unit = np.full(path.z.shape[1], np.abs(path.z[:, :-1]).max(initial=1e-300))
+    unit[-1] = np.ptp(path.parameter) or 1.0
+    chord = np.linalg.norm(np.diff(path.z, axis=0) / unit, axis=1)
+    speed = np.linalg.norm(path.direction / unit, axis=1)
+    return np.concatenate(([0.0], np.cumsum(2.0 * chord / (speed[1:] + speed[:-1]))))
+
+
+def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
+    """Rate of change along the path, from differences; points may coincide."""
+    step = np.diff(place)
+    step = np.where(step > 0.0, step, 1.0).reshape(-1, *(1,) * (values.ndim - 1))
+    pieces = np.diff(values, axis=0) / step
+    return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))
+
+
+def _heights(shown: Reported, amplitude: FloatArray, tops: Indices) -> FloatArray:
+    """Relative change of the greatest amplitudes (dof,)."""
+    d = np.arange(len(tops))
+    corrected = shown.amplitude * (1.0 + amplitude)
+    known = np.isfinite(corrected[tops, d])
+    greatest = np.where(np.isfinite(corrected), corrected, 0.0).max(axis=0)
+    now = shown.amplitude[tops, d]
+    change: FloatArray = np.abs(greatest - now) / np.where(now > 0.0, now, 1.0)
+    return np.where(known, change, np.nan)

@@ -1,0 +1,14 @@
+from fcm.contact.periodic.forces cimport PeriodicContact
+from fcm.structure.receptance cimport Receptance
+
+cdef class Finer:
+    cdef public Receptance seen
+    cdef public PeriodicContact kernel
+    cdef readonly int contacts, width, wide
+    cdef readonly double[::1] x
+    cdef readonly double shift
+    cdef int[::1] place
+    cdef double[:, ::1] contact, force
+    cpdef int at(self, double[::1] z) except -1
+    cdef void unknowns(self, double[::1] z) noexcept
+    cdef void answer(self, Py_ssize_t h) noexcept

@@ -1,0 +1,85 @@
+r"""What harmonics that a balance leaves out would do, were there no feedback.
+
+The exact friction and normal forces of a motion of few harmonics have all harmonics; what one of them does is
+its coefficient times the receptance of the structure at its frequency,
+
+    X_h = -G(h omega) F_h
+
+so that it is the structure as much as the contact that decides which harmonics matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+HIGHEST = 50  # harmonic that is looked at
+MIXED = 2  # `PeriodicContact.kind` of a contact that slips or separates
+LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
+LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
+
+
+class Further:
+    """The harmonics of the exact forces of motions of a system's balance."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.kernel = PeriodicContact(list(system.harmonics), list(range(1, HIGHEST + 1)))
+
+    def forces(self, z: FloatArray) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.bool_]]:
+        """Of motions (point, unknown + 1), the frequency last: (point, harmonic, port), and where they are linear.
+
+        Linear (point,) is a motion in which no contact slips or separates: its forces have no further harmonic.
+        """
+        contacts = self.system.scene.contacts
+        out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
+        linear = np.ones(len(z), dtype=np.bool_)
+        motions = np.ascontiguousarray(z[:, :-1]).reshape(len(z), len(contacts), -1)
+        kernel = self.kernel
+        forces = np.asarray(kernel.forces)[2:].view(np.complex128).reshape(HIGHEST, 2)
+        for j, c in enumerate(contacts):
+            for i in range(len(z)):
+                kernel.at(motions[i, j], c.mu, c.k_u, c.k_v, c.n_0, 0.0, False)
+                if kernel.kind == MIXED:
+                    linear[i] = False
+                out[i, :, 2 * j : 2 * j + 2] = forces
+        return out, linear
+
+    def shares(self, z: FloatArray, force: npt.NDArray[np.complex128], amplitude: FloatArray) -> FloatArray:
+        """Share of the amplitude (point, dof) that each harmonic outside the balance would have: (point, harmonic).
+
+        The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
+        """
+        linear = self.system.linear
+        others = np.ones(HIGHEST, dtype=np.bool_)
+        others[np.array(self.system.harmonics) - 1] = False
+        h = 1.0 + np.flatnonzero(others)
+        w = (z[:, -1:] * h)[..., None]
+        dynamic = (linear.natural - w) * (linear.natural + w) + 2j * linear.damping * linear.natural * w
+        modal = force[:, others] @ linear.ports.T / np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
+        size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
+        answer = np.abs(modal @ linear.dofs)
+        share = np.zeros((len(z), HIGHEST))
+        share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
+        return share
+
+
+def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:
+    """Unknowns (unknown + 1,) of a balance as those of one with more harmonics, which are zero."""
+    width, wide = 2 + 4 * len(harmonics), 2 + 4 * len(more)
+    contacts = (len(z) - 1) // width
+    out = np.zeros(contacts * wide + 1)
+    blocks = out[:-1].reshape(contacts, wide)
+    old = z[:-1].reshape(contacts, width)
+    blocks[:, :2] = old[:, :2]
+    for j, h in enumerate(harmonics):
+        at = 2 + 4 * more.index(h)
+        blocks[:, at : at + 4] = old[:, 2 + 4 * j : 6 + 4 * j]
+    out[-1] = z[-1]
+    return out

@@ -1,0 +1,13 @@
+cdef class Law:
+    cdef public int width
+    cdef public int margins
+    cdef public double mu
+    cdef public double k_u
+    cdef public double k_v
+    cdef public double n_0
+    cdef public double[::1] force
+    cdef public double[:, ::1] tangent
+    cdef public double[::1] margin
+    cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef int refine(self, bint exact) except -1
+    cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1

@@ -1,0 +1,8 @@
+from fcm.continuation.problem cimport Problem
+from fcm.harmonic.balance cimport Balance
+
+cdef class Level(Problem):
+    cdef public Balance balance
+    cdef public double omega
+    cdef double[::1] z
+    cdef void place(self, double[::1] z) noexcept

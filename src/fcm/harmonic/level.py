@@ -1,0 +1,68 @@
+"""The level of the forces as the parameter: all amplitudes times lambda, at one frequency.
+
+Rest is the solution at lambda = 0. The curve from there passes lambda = 1 at every solution that hangs together
+with it, also at those that no sweep of the frequency from an end of the range comes to.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from fcm.continuation.problem import Problem
+from fcm.harmonic.balance import Balance
+
+LEAST = cython.declare(cython.double, 0.1)  # levels are measured by themselves, and below this by this
+
+
+@cython.cclass
+class Level(Problem):
+    """A balance at omega, followed in the level of its forces."""
+
+    def __init__(self, balance: Balance, omega: cython.double) -> None:
+        Problem.__init__(self, balance.unknowns, balance.margins, 0)
+        self.balance, self.omega = balance, omega
+        self.z = np.zeros(balance.unknowns + 1)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def evaluate(self, z: cython.double[::1]) -> cython.int:
+        b: Balance = self.balance
+        n: cython.Py_ssize_t = self.unknowns
+        j: cython.Py_ssize_t = 2 + 4 * b.seen.driven
+        row: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        self.place(z)
+        b.evaluate(self.z)
+        self.residual[:] = b.residual
+        self.jacobian[:, :n] = b.jacobian[:, :n]
+        self.jacobian[:, n] = 0.0
+        for p in range(2 * b.contacts):
+            row = (p // 2) * b.width + j + 2 * (p % 2)
+            self.jacobian[row, n] = -b.seen.X_re[p]
+            self.jacobian[row + 1, n] = -b.seen.X_im[p]
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def measure(self, z: cython.double[::1]) -> cython.int:
+        self.place(z)
+        self.balance.measure(self.z)
+        self.scale[:] = self.balance.scale
+        self.scale[self.unknowns] = max(abs(z[self.unknowns]), LEAST)
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, z: cython.double[::1]) -> cython.int:
+        self.place(z)
+        self.balance.bound(self.z)
+        self.margin[:] = self.balance.margin
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def place(self, z: cython.double[::1]) -> cython.void:
+        self.z[:] = z
+        self.z[self.unknowns] = self.omega
+        self.balance.load = z[self.unknowns]

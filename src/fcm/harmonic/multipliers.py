@@ -1,0 +1,131 @@
+r"""Floquet multipliers of a balanced solution, and what they say of its stability.
+
+The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the motion.
+Its motion is the `Finer` one; that of the harmonics balanced alone serves to tell how sure the verdict is. Both
+are motions that are not quite periodic solutions of the structure, so a real multiplier passes +1 beside the fold
+of the curve of solutions. The parity of the balance's determinant is that of the number of real multipliers
+above +1, in the limit of many harmonics, and changes exactly at the folds: it decides.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import lapack
+
+from fcm.harmonic.finer import Finer, beyond
+from fcm.harmonic.monodromy import Monodromy
+from fcm.harmonic.sequence import Sequence
+from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, either, even
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+FEW = 24  # modes; with more, those far above the excitation follow without delay
+FAR = 6.0  # times the excitation, and FURTHER times the highest harmonic
+FURTHER = 1.5
+NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
+
+
+class Multipliers:
+    """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
+
+    def __init__(self, system: System, highest: float) -> None:
+        linear = system.linear
+        self.contacts = len(system.scene.contacts)
+        contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
+        harmonics = [int(h) for h in system.harmonics]
+        finer = beyond(harmonics)
+        far = np.zeros(linear.natural.size, dtype=bool)
+        if far.size > FEW:
+            far = linear.natural > highest * max(FAR, FURTHER * max(harmonics))
+        soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
+        parts = (linear.ports[~far], linear.natural[~far], linear.damping[~far], soft)
+        self.adrift = int(np.count_nonzero(linear.adrift))
+        self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
+        self.fine = Monodromy(*parts, Sequence(contact, finer))
+        self.plain = Monodromy(*parts, Sequence(contact, harmonics))
+
+    def of(self, z: FloatArray) -> list[complex] | None:
+        """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
+        self.finer.at(z)
+        return self._values(self.fine, z[-1]) if self.fine.sequence.look(self.finer.x) else None
+
+    def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
+        """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
+        fine, plain, omega = self.fine.sequence, self.plain.sequence, float(z[-1])
+        self.finer.at(z)
+        if not (plain.look(z) and fine.look(self.finer.x)):
+            return UNKNOWN
+        if plain.moving + plain.held + fine.moving + fine.held == 0:
+            return PASSIVE
+        values, coarse = self._values(self.fine, omega), self._values(self.plain, omega)
+        if values is None or coarse is None:
+            return UNKNOWN
+        found = even(Spectrum.of(values), Spectrum.of(coarse), turning)
+        return either(found, self._resting(omega)) if fine.held else found
+
+    def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
+        """Of the motion that was looked at."""
+        monodromy.follow(omega)
+        matrix = monodromy.matrix()
+        if not np.isfinite(matrix).all():
+            return None
+        real, imaginary, _, _, failed = lapack.dgeev(matrix, compute_vl=0, compute_vr=0, overwrite_a=1)
+        if failed:
+            return None
+        values = [complex(re, im) for re, im in zip(real.tolist(), imaginary.tolist(), strict=True)]
+        for _ in range(2 * self.adrift):
+            nearest = min(values, key=_from_one)
+            if _from_one(nearest) < NEUTRAL:
+                values.remove(nearest)
+        return values
+
+    def _resting(self, omega: float) -> Verdict:
+        """With the sliders that an extreme of a limit holds left where they are."""
+        sequence = self.fine.sequence
+        sequence.yielding = False
+        sequence.look(self.finer.x)
+        values = self._values(self.fine, omega) if sequence.moving else []
+        sequence.yielding = True
+        return UNKNOWN if values is None else Spectrum.of(values).verdict()
+
+
+def _from_one(value: complex) -> float:
+    return abs(value - 1.0)
+
+
+def multipliers(system: System, z: FloatArray) -> ComplexArray:
+    """Floquet multipliers of a solution, the greatest first.
+
+    Parameters
+    ----------
+    system : System
+    z : (unknown + 1,)
+        A point of a path: displacements of the contacts, and the frequency [rad/s].
+
+    Returns
+    -------
+    (multiplier,) complex array
+        By how much small disturbances of the motion grow within one period: of the modal displacements and
+        velocities, and of what the contacts that stick at its beginning remember. Contacts that never slip remember
+        for ever, which is not listed. Empty where a number is not finite.
+
+    Notes
+    -----
+    Of a structure with more than 24 modes those whose frequency is above 6 times the excitation and 1.5 times
+    the highest harmonic of the balance follow the contacts without delay, and have none; their share of
+    the flexibility is then wrong by (omega_disturbance / omega_mode)^2.
+
+    Examples
+    --------
+    >>> import fcm, numpy as np
+    >>> from fcm.harmonic.start import solutions
+    >>> system = System(next(fcm.load_scene("yang1998-n5").each_curve()), (1, 2, 3))
+    >>> rest, *_ = solutions(system, 1.21).solutions
+    >>> bool(abs(multipliers(system, rest)).max() < 1.0)
+    True
+    """
+    values = Multipliers(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
+    return np.array(sorted(values or [], key=abs, reverse=True), dtype=np.complex128)

@@ -1,0 +1,150 @@
+"""What is reported of the points of traced paths: displacements, loops, states, energies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.loop import sequences
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.measures import Measures
+from fcm.continuation import Path
+from fcm.harmonic.system import System
+from fcm.scene.model import Contact, FloatArray
+
+SMALLEST = 1e-150  # amplitudes below this count as this in a division
+OPEN, STUCK = 0, 4  # of a whole cycle, as in `fcm.contact.periodic`
+LETTERS = {0: "E", 1: "P", -1: "N", 2: "S"}
+
+IntArray = npt.NDArray[np.intp]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Record:
+    """Points of paths one after the other; x(theta) = mean + Re sum_j X_j exp(i h_j theta)."""
+
+    path: IntArray  # (point,) number of the path
+    z: FloatArray  # (point, unknown + 1)
+    mark: npt.NDArray[np.int64]  # (point,)
+    X: ComplexArray  # (point, harmonic, dof)
+    mean: FloatArray  # (point, dof)
+    amplitude: FloatArray  # (point, dof) half the peak-to-peak
+    force: FloatArray  # (point, unknown) of the contacts, laid out as the unknowns
+    tangent: FloatArray  # (point, unknown + 1) along the path
+    orientation: FloatArray  # (point,)
+    shift: FloatArray  # (point,) from the table to the closed form, relative to the unknowns' size
+
+
+def recorded(system: System, paths: Sequence[Path]) -> Record:
+    """The points of paths."""
+    z = np.concatenate([path.z for path in paths])
+    balance = system.balance()
+    still = np.zeros(z.shape[1])
+    shown, points = balance.shown, z.shape[0]
+    X = np.empty((points, len(system.harmonics), shown.dofs), dtype=np.complex128)
+    mean, amplitude = np.empty((points, shown.dofs)), np.empty((points, shown.dofs))
+    force = np.empty((points, balance.unknowns))
+    for i in range(points):
+        balance.evaluate(z[i])
+        balance.report(z[i], still)
+        X[i].real, X[i].imag = shown.re, shown.im
+        mean[i], amplitude[i], force[i] = shown.mean, shown.amplitude, balance.force
+    number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
+    names = ("mark", "direction", "orientation", "shift")
+    mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
+    # a unit of the unknowns is their size times the root of their number
+    shift = shift * np.sqrt(2.0 * len(system.scene.contacts))
+    return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, shift)
+
+
+def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Amplitudes (point, harmonic, dof) and means (point, dof) at points z (point, unknown + 1)."""
+    balance = system.balance()
+    X = np.empty((z.shape[0], len(system.harmonics), balance.shown.dofs), dtype=np.complex128)
+    mean = np.empty((z.shape[0], balance.shown.dofs))
+    for i in range(z.shape[0]):
+        balance.evaluate(z[i])
+        balance.report(z[i], np.zeros(z.shape[1]))
+        X[i].real, X[i].imag, mean[i] = balance.shown.re, balance.shown.im, balance.shown.mean
+    return X, mean
+
+
+def loops(system: System, z: FloatArray) -> FloatArray:
+    """(point, contact, 5): n0_bar, b_bar, phi of the fundamental's loop, its a, and the force k_u a."""
+    first = 2 + 4 * system.harmonics.index(1)
+    out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
+    for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
+        U, V = x[:, first] + 1j * x[:, first + 1], x[:, first + 2] + 1j * x[:, first + 3]
+        a = np.abs(U)
+        stiffness = contact.k_u if contact.k_u > 0.0 else 1.0
+        ratio = contact.mu / (stiffness * np.maximum(a, SMALLEST))
+        out[:, i, 0] = ratio * (contact.n_0 + contact.k_v * x[:, 1])
+        out[:, i, 1] = ratio * contact.k_v * np.abs(V)
+        out[:, i, 2] = np.angle(V * np.conj(U))
+        out[:, i, 3], out[:, i, 4] = a, contact.k_u * a
+    return out
+
+
+def states(system: System, z: FloatArray) -> npt.NDArray[np.str_]:
+    """What each contact does over a cycle, such as "SPEN", (point, contact).
+
+    A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE".
+    """
+    single = system.harmonics == (1,)
+    each = [
+        _single(contact, x) if single else _several(system, contact, x)
+        for contact, x in zip(system.scene.contacts, _blocks(system, z), strict=True)
+    ]
+    return np.stack(each, axis=1) if each else np.empty((z.shape[0], 0), dtype="<U6")
+
+
+def _several(system: System, contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
+    words = []
+    for kernel in _cycles(system, contact, x):
+        cycle = kernel.cycle
+        shown = [LETTERS[cycle.state[i]] for i in range(cycle.pieces)]
+        words.append({OPEN: "S", STUCK: "E"}.get(kernel.kind) or "".join(shown))
+    return np.array(words)
+
+
+def _cycles(system: System, contact: Contact, x: FloatArray) -> Iterator[PeriodicContact]:
+    """The cycle of a contact at each point, one after the other in the same place."""
+    kernel = PeriodicContact(list(system.harmonics), list(system.harmonics))
+    for motion in np.ascontiguousarray(x):
+        kernel.at(motion, contact.mu, contact.k_u, contact.k_v, contact.n_0, 0.0, False)
+        yield kernel
+
+
+def cycles(system: System, z: FloatArray) -> FloatArray:
+    """What each contact bears over a cycle, (point, contact, 4).
+
+    Greatest normal and greatest friction force, the way of the slip, and the energy that friction takes.
+    """
+    out = np.zeros((z.shape[0], len(system.scene.contacts), 4))
+    for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
+        measures = None
+        for k, kernel in enumerate(_cycles(system, contact, x)):
+            measures = measures or Measures(kernel.cycle)
+            measures.take(contact.k_u)
+            normal = max(measures.greatest_load, 0.0)
+            out[k, i] = normal, measures.greatest_friction, measures.slip_path, measures.dissipation
+    return out
+
+
+def _single(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
+    U, V = x[:, 2] + 1j * x[:, 3], x[:, 4] + 1j * x[:, 5]
+    load, variation = contact.n_0 + contact.k_v * x[:, 1], contact.k_v * np.abs(V)
+    if contact.mu * contact.k_u == 0.0:
+        return np.where(np.abs(load) < variation, "SE", np.where(load > 0.0, "E", "S"))
+    ratio = contact.mu / (contact.k_u * np.maximum(np.abs(U), SMALLEST))
+    return sequences(ratio * load, ratio * variation, np.angle(V * np.conj(U)))
+
+
+def _blocks(system: System, z: FloatArray) -> FloatArray:
+    """Unknowns of each contact, (contact, point, width)."""
+    blocks = z[:, :-1].reshape(z.shape[0], len(system.scene.contacts), -1)
+    return blocks.swapaxes(0, 1)

@@ -1,0 +1,152 @@
+"""The states of all contacts over one period of a motion: which changes, into what, in their order."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+from cython.cimports.libc.math import fabs
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
+    from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+else:
+    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
+    from fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+
+FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside those of a cycle
+
+
+@cython.cclass
+class Sequence:
+    """`look` at a motion finds its events; number `order[i]` is the i-th of them.
+
+    Parameters
+    ----------
+    contact : (contact, 4)
+        mu, k_u, k_v, n_0.
+    harmonics : list of int
+        Of the motions; unknowns as in `law`.
+
+    Attributes
+    ----------
+    angle, whose, into : (event,)
+        When, which contact, and into which state: those of a `Cycle`, or FREE.
+    along : (event,)
+        Where a slider comes to rest, its place varies as k_u u + along mu k_v v.
+    state, remembers : (contact,)
+        Before the first event, and whether the slider's place is one of the disturbances then.
+    moving, held : int
+        Contacts that slip or open and close; and those that never do, but for an extreme of a limit that holds
+        the slider.
+    yielding : bool
+        Whether such a slider follows that limit. It does when it is pushed, and stays where it is when not.
+    """
+
+    def __init__(self, contact: npt.NDArray[np.float64], harmonics: list[int]) -> None:
+        contacts = contact.shape[0]
+        self.contacts, self.width = contacts, 2 + 4 * len(harmonics)
+        self.contact = np.ascontiguousarray(contact)
+        self.motion = Motion(harmonics)
+        self.cycle = Cycle(self.motion)
+        most = contacts * (self.cycle.event.shape[0] + 1)
+        self.angle, self.along = np.zeros(most), np.zeros(most)
+        self.whose, self.into, self.order = (np.zeros(most, dtype=np.intc) for _ in range(3))
+        self.state, self.remembers = np.zeros(contacts, dtype=np.intc), np.zeros(contacts, dtype=np.intc)
+        self.events = self.moving = self.held = 0
+        self.yielding = True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def look(self, x: cython.double[::1]) -> cython.bint:
+        """Find the events of the motion x; false where a number is not finite."""
+        c: cython.int
+        self.events, self.moving, self.held = 0, 0, 0
+        for c in range(self.contacts):
+            if not self.contact_cycle(x, c):
+                return False
+        self.sort()
+        self.begin()
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def contact_cycle(self, x: cython.double[::1], c: cython.int) -> cython.bint:
+        """The events of one contact; the state of one that has none."""
+        p: cython.int
+        e: cython.int
+        kind: cython.int
+        state: cython.int
+        mu: cython.double = self.contact[c, 0]
+        k_u: cython.double = self.contact[c, 1]
+        rubs: cython.bint = mu > 0.0 and k_u > 0.0
+        first: cython.Py_ssize_t = c * self.width
+        kind = self.motion.load(x, first, mu, k_u, self.contact[c, 2], self.contact[c, 3])
+        kind = self.cycle.solve(kind, -k_u * x[first] / self.motion.scale)
+        self.remembers[c] = 0
+        if kind == UNKNOWN:
+            return False
+        if kind == OPEN or kind == STUCK:
+            self.state[c] = SEPARATION if kind == OPEN else STICK if rubs else FREE
+            if kind == STUCK and rubs and self.cycle.cause[0] != 0:
+                self.held += 1
+                if self.yielding:
+                    e = self.cycle.event[0]
+                    self.occurs(self.cycle.event_angle[e], c, STICK, self.limit_at(0))
+            return True
+        self.moving += 1
+        for p in range(self.cycle.pieces):
+            state = self.cycle.state[p]
+            if not rubs and state != SEPARATION:
+                state = FREE
+            self.occurs(self.cycle.begin[p], c, state, self.limit_at(p) if state == STICK else 0.0)
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def limit_at(self, p: cython.int) -> cython.double:
+        """`along` of a stick. After a separation w = u where the load vanishes, an instant that moves by -dn / n'."""
+        e: cython.int = self.cycle.event[p]
+        if self.cycle.cause[p] != SEPARATION:
+            return -1.0 if self.cycle.cause[p] == POSITIVE else 1.0
+        # the limits are never steeper than the motion here, or it would not stick
+        load: cython.double = self.motion.ratio * self.cycle.load_rate[e]
+        if fabs(self.cycle.motion_rate[e]) < load:
+            return -self.cycle.motion_rate[e] / load
+        return -1.0 if self.cycle.motion_rate[e] > 0.0 else 1.0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def occurs(self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double) -> cython.void:
+        """One more event."""
+        i: cython.int = self.events
+        while angle < 0.0:
+            angle += TWO_PI
+        while angle >= TWO_PI:
+            angle -= TWO_PI
+        self.angle[i], self.whose[i], self.into[i], self.along[i] = angle, c, into, along
+        self.events += 1
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def sort(self) -> cython.void:
+        """`order`: the events by their angles; those of one contact at one angle as they were."""
+        i: cython.int
+        j: cython.int
+        for i in range(self.events):
+            j = i
+            while j > 0 and self.angle[self.order[j - 1]] > self.angle[i]:
+                self.order[j] = self.order[j - 1]
+                j -= 1
+            self.order[j] = i
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def begin(self) -> cython.void:
+        """The states before the first event: those after the last of each contact."""
+        i: cython.int
+        c: cython.int
+        for i in range(self.events):
+            c = self.whose[self.order[i]]
+            self.state[c] = self.into[self.order[i]]
+            self.remembers[c] = self.state[c] == STICK

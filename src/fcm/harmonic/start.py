@@ -1,0 +1,125 @@
+r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
+
+At both ends of the range, and at the resonances inside it that the structure has with its contacts all stuck and
+all open, the level is followed from nearly nothing until it is well beyond every level at which a contact can
+change what it does. Every passing of the level 1 is a solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation import Path, Status, follow
+from fcm.continuation.newton import Newton
+from fcm.harmonic.level import Level
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
+BEYOND = 3.0  # times the level at which the last contact changes what it does
+GREATEST = 1e4  # level
+STEP = 0.2  # longest, along the curve of a level
+BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
+
+
+@dataclass(frozen=True)
+class Found:
+    """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end."""
+
+    omega: float
+    solutions: tuple[FloatArray, ...]
+    complete: bool
+
+
+def solutions(system: System, omega: float) -> Found:
+    """All solutions at omega that hang together with rest."""
+    path = level_curve(system, omega, (0.0, highest(system, omega)))
+    at = np.flatnonzero(path.parameter == 1.0)
+    found = [np.append(path.z[i, :-1], omega) for i in at]
+    if not found:
+        found = list(_from_linear(system, omega))
+    return Found(omega, tuple(found), path.status is Status.COMPLETE)
+
+
+def level_curve(system: System, omega: float, span: tuple[float, float]) -> Path:
+    """Response at omega against the level of the forces, from rest."""
+    path = None
+    for weak in WEAK:
+        low = max(span[0], weak)
+        for x in linear_responses(system, omega, low):
+            path = follow(
+                Level(system.balance(), omega), np.append(x, low), (low, span[1]), True, STEP, (1.0,)
+            )
+            if path.z.shape[0]:
+                return path
+    assert path is not None
+    return path
+
+
+def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
+    """Unknowns with the contacts as they are at rest, then all stuck, then all open."""
+    seen = system.balance().seen
+    seen.at(omega)
+    j = seen.driven
+    G = np.asarray(seen.G_re)[j] + 1j * np.asarray(seen.G_im)[j]
+    X = level * (np.asarray(seen.X_re) + 1j * np.asarray(seen.X_im))
+    closed = np.repeat([c.n_0 > 0.0 for c in system.scene.contacts], 2)
+    for share in (closed, np.ones_like(closed), np.zeros_like(closed)):
+        ports = np.linalg.solve(np.eye(X.size) + G * (system.springs(stuck=True) * share), X)
+        yield _unknowns(ports, len(system.harmonics), j)
+
+
+def _unknowns(ports: FloatArray, harmonics: int, driven: int) -> FloatArray:
+    x = np.zeros((ports.size // 2, 2 + 4 * harmonics))
+    pairs = ports.reshape(-1, 2)
+    first = 2 + 4 * driven
+    x[:, first : first + 4] = np.stack(
+        (pairs[:, 0].real, pairs[:, 0].imag, pairs[:, 1].real, pairs[:, 1].imag), axis=1
+    )
+    return x.ravel()
+
+
+def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
+    """Solutions that Newton's method finds from linear responses, where no level could be followed."""
+    newton = Newton(system.balance())
+    row = np.zeros(newton.problem.unknowns + 1)
+    row[-1] = 1.0
+    for x in linear_responses(system, omega, 1.0):
+        z = np.append(x, omega)
+        newton.problem.measure(z)
+        newton.scale[:] = newton.problem.scale
+        newton.z[:], newton.row[:] = z, row
+        if newton.correct(1.0):
+            yield np.array(newton.z)
+
+
+def highest(system: System, omega: float) -> float:
+    """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
+    levels = [1.0]
+    for number, x in enumerate(linear_responses(system, omega, 1.0)):
+        if number == 0:
+            continue
+        blocks = x.reshape(len(system.scene.contacts), -1)
+        first = 2 + 4 * system.harmonics.index(1)
+        for contact, block in zip(system.scene.contacts, blocks, strict=True):
+            U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
+            variation, load = contact.k_v * abs(V), abs(contact.n_0)
+            slip = [abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0)]
+            levels += [load / variation] if variation > 0.0 else []
+            levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
+    return min(BEYOND * max(levels), GREATEST)
+
+
+def resonances(system: System) -> list[float]:
+    """Natural frequencies within the range, with all contacts stuck and with all open, in order."""
+    low, high = system.scene.frequency_range
+    linear = system.linear
+    found: set[float] = set()
+    for stuck in (True, False):
+        stiffness = np.diag(linear.natural**2) + (linear.ports * system.springs(stuck)) @ linear.ports.T
+        natural = np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0)) * (1.0 + BESIDE)
+        found.update(float(w) for w in natural if low < w < high)
+    return sorted(found)

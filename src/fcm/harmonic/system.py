@@ -1,0 +1,69 @@
+"""A scene (of one curve) as a balance of some harmonics."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fcm.contact.closed_form import ClosedForm
+from fcm.contact.law import Law as Coefficients
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.displacement import Displacements
+from fcm.harmonic.law import Law
+from fcm.harmonic.periodic import Periodic
+from fcm.harmonic.single import SingleHarmonic
+from fcm.scene.model import FloatArray, Scene
+from fcm.structure.linear import Linear, linear_of
+from fcm.table.lookup import Table
+
+
+@dataclass(frozen=True)
+class System:
+    """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
+
+    With one harmonic the curves can be followed by a table: each point is then corrected with the closed form,
+    unless that is left out.
+    """
+
+    scene: Scene
+    harmonics: tuple[int, ...] = (1,)
+    table: Table | None = None
+    corrected: bool = True
+    linear: Linear = field(init=False)
+    coarse: Coefficients = field(init=False)  # the table's
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "linear", linear_of(self.scene))
+        object.__setattr__(self, "coarse", ClosedForm() if self.table is None else self.table.law())
+
+    def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
+        """The same with other harmonics."""
+        other = copy(self)
+        object.__setattr__(other, "harmonics", harmonics)
+        return other
+
+    def balance(self) -> Balance:
+        """A problem of its own, to be followed in the frequency."""
+        low, high = self.scene.frequency_range
+        seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
+        shown = Displacements(seen, self.linear.dofs, self.linear.flexibility)
+        balance = Balance(seen, self.laws(), shown, self.linear.counted, high - low)
+        balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
+        return balance
+
+    def laws(self) -> list[Law]:
+        """The contacts."""
+        contacts = self.scene.contacts
+        if self.harmonics != (1,):
+            kernel = PeriodicContact(list(self.harmonics), list(self.harmonics))
+            return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+        exact = ClosedForm() if self.corrected else self.coarse
+        return [SingleHarmonic(exact, self.coarse, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+
+    def springs(self, stuck: bool) -> FloatArray:
+        """Stiffnesses of all contacts, (port,): all stuck, or all open."""
+        k = [k for c in self.scene.contacts for k in (c.k_u if c.mu > 0.0 else 0.0, c.k_v)]
+        return np.array(k) * float(stuck)

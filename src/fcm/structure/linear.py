@@ -1,0 +1,76 @@
+"""A scene's structure as arrays: modes of mass 1, on the contacts' ports and on the degrees of freedom."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Scene
+from fcm.structure.receptance import Receptance
+from fcm.structure.rigid import settled
+
+
+@dataclass(frozen=True)
+class Linear:
+    """The structure without its contacts; ports are u_1, v_1, u_2, v_2, ... of the contacts."""
+
+    natural: FloatArray  # (mode,) [rad/s]
+    damping: FloatArray  # (mode,) ratio
+    ports: FloatArray  # (mode, port)
+    dofs: FloatArray  # (mode, dof)
+    force: npt.NDArray[np.complex128]  # (mode,) of x = Re(X exp(i omega t))
+    flexibility: FloatArray  # (mode, mode) displacements under mean forces
+    counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
+    adrift: npt.NDArray[np.bool_]  # (mode,) rigid-body modes that no closed contact holds
+
+    def receptance(self, harmonics: FloatArray) -> Receptance:
+        """The structure seen from its ports at some harmonics."""
+        static = self.ports.T @ self.flexibility @ self.ports
+        return Receptance(self.ports, self.natural, self.damping, self.force, static, harmonics)
+
+
+def linear_of(scene: Scene) -> Linear:
+    """The structure of a scene (of one curve)."""
+    modal, adrift = settled(scene)
+    unit = 1.0 / np.sqrt(modal.mass)[:, None]
+    directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    ports = modal.shapes @ np.array(directions, dtype=np.float64).reshape(len(directions), len(modal.dofs)).T
+    total = np.zeros(len(modal.dofs), dtype=np.complex128)
+    for force in scene.forces:
+        total += force.direction * force.amplitude * np.exp(1j * (force.phase - 0.5 * np.pi))
+    rigid = modal.frequency == 0.0
+    k_v = np.array([c.k_v if rigid.any() else 0.0 for c in scene.contacts])
+    ports = ports * unit
+    return Linear(
+        natural=modal.frequency,
+        damping=modal.damping,
+        ports=ports,
+        dofs=modal.shapes * unit,
+        force=(modal.shapes @ total) * unit[:, 0],
+        flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
+        counted=k_v,
+        adrift=adrift,
+    )
+
+
+def _flexibility(
+    natural: FloatArray, ports: FloatArray, k_v: FloatArray, adrift: npt.NDArray[np.bool_]
+) -> FloatArray:
+    """Of the modes with the normal springs that are counted to them; modes adrift stay where they are.
+
+    Without stiffness of its own a rigid-body mode has no flexibility. Then the normal springs of the contacts
+    are counted to the structure, and taken off the contacts' forces again: the same equation, with terms that
+    are finite as long as the closed contacts hold the structure.
+    """
+    if not (natural == 0.0).any():
+        return np.diag(natural**-2)
+    normal = np.where(adrift[:, None], 0.0, ports[:, 1::2])
+    matrix = np.diag(natural**2) + (normal * k_v) @ normal.T
+    at = np.flatnonzero(adrift)
+    matrix[at, at] = 1.0
+    unit = 1.0 / np.sqrt(matrix.diagonal())
+    inverse: FloatArray = np.linalg.inv(matrix * unit[:, None] * unit) * unit[:, None] * unit
+    inverse[at, at] = 0.0
+    return inverse

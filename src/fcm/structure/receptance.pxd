@@ -1,0 +1,30 @@
+cdef class Receptance:
+    cdef public int modes
+    cdef public int ports
+    cdef public int count
+    cdef public double omega
+    cdef public double[::1] harmonics
+    cdef public double[::1] natural
+    cdef public double[::1] rate
+    cdef public double[:, ::1] shapes
+    cdef public double[::1] force_re
+    cdef public double[::1] force_im
+    cdef public double[:, ::1] static
+    cdef public double[:, ::1] c_re
+    cdef public double[:, ::1] c_im
+    cdef public double[:, ::1] s_re
+    cdef public double[:, ::1] s_im
+    cdef public double[:, :, ::1] G_re
+    cdef public double[:, :, ::1] G_im
+    cdef public double[:, :, ::1] dG_re
+    cdef public double[:, :, ::1] dG_im
+    cdef public double[::1] X_re
+    cdef public double[::1] X_im
+    cdef public double[::1] dX_re
+    cdef public double[::1] dX_im
+    cdef public int driven
+    cpdef int at(self, double omega) except -1
+    cdef void compliances(self) noexcept
+    cdef void sums(self, int j) noexcept
+    cdef int large_sums(self) except -1
+    cdef void external(self) noexcept

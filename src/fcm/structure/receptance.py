@@ -1,0 +1,149 @@
+r"""The structure seen from its contacts: receptances at every harmonic of a frequency, modes summed out.
+
+With modes of mass 1, shapes P on the ports (u_1, v_1, u_2, v_2, ...) and x = Re(X exp(i h omega t)),
+
+    G(h omega) = sum_i P_i P_i^T c_i,    c_i = 1 / (w_i^2 - (h omega)^2 + 2 i zeta_i w_i h omega)
+
+and the derivatives by omega.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+
+LARGE = 4000  # products of a sum over the modes from which on BLAS is faster
+LEAST_DAMPING = 1e-9  # twice the damping ratio of an undamped mode exactly at its own frequency
+
+
+@cython.cclass
+class Receptance:
+    """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (port,) the answer to the
+    external forces, which act at the harmonic number `driven` of the list; c, s (harmonic, mode) the
+    compliances of the modes and their derivatives; static (port, port) for mean forces."""
+
+    def __init__(
+        self,
+        shapes: npt.NDArray[np.float64],
+        natural: npt.NDArray[np.float64],
+        damping: npt.NDArray[np.float64],
+        force: npt.NDArray[np.complex128],
+        static: npt.NDArray[np.float64],
+        harmonics: npt.NDArray[np.float64],
+    ) -> None:
+        modes, ports = shapes.shape
+        count = len(harmonics)
+        self.modes, self.ports, self.count = modes, ports, count
+        self.harmonics = np.array(harmonics, dtype=np.float64)
+        self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
+        self.shapes, self.static = np.ascontiguousarray(shapes), np.ascontiguousarray(static)
+        self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
+        self.c_re, self.c_im = np.zeros((count, modes)), np.zeros((count, modes))
+        self.s_re, self.s_im = np.zeros((count, modes)), np.zeros((count, modes))
+        self.G_re, self.G_im = np.zeros((count, ports, ports)), np.zeros((count, ports, ports))
+        self.dG_re, self.dG_im = np.zeros((count, ports, ports)), np.zeros((count, ports, ports))
+        self.X_re, self.X_im = np.zeros(ports), np.zeros(ports)
+        self.dX_re, self.dX_im = np.zeros(ports), np.zeros(ports)
+        where = [j for j in range(count) if harmonics[j] == 1.0]
+        self.driven = where[0] if where else 0
+        self.omega = -1.0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def at(self, omega: cython.double) -> cython.int:
+        """Fill the arrays for a frequency."""
+        j: cython.int
+        if omega == self.omega:
+            return 0
+        self.omega = omega
+        self.compliances()
+        if self.modes * self.ports * self.ports > LARGE:
+            self.large_sums()
+        else:
+            for j in range(self.count):
+                self.sums(j)
+        self.external()
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def compliances(self) -> cython.void:
+        j: cython.int
+        i: cython.Py_ssize_t
+        for j in range(self.count):
+            h: cython.double = self.harmonics[j]
+            w: cython.double = h * self.omega
+            for i in range(self.modes):
+                # the difference of squares as a product: exact next to an undamped resonance
+                re: cython.double = (self.natural[i] - w) * (self.natural[i] + w)
+                im: cython.double = self.rate[i] * w
+                if re == 0.0 and im == 0.0:  # nothing damps a mode that is excited at its own frequency
+                    im = LEAST_DAMPING * w * w
+                size: cython.double = re * re + im * im
+                c_re: cython.double = re / size
+                c_im: cython.double = -im / size
+                # dc = -c^2 d(1/c) = c^2 h (2 w - i rate)
+                self.c_re[j, i] = c_re
+                self.c_im[j, i] = c_im
+                q_re: cython.double = h * (c_re * c_re - c_im * c_im)
+                q_im: cython.double = h * 2.0 * c_re * c_im
+                self.s_re[j, i] = 2.0 * w * q_re + self.rate[i] * q_im
+                self.s_im[j, i] = 2.0 * w * q_im - self.rate[i] * q_re
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def sums(self, j: cython.int) -> cython.void:
+        """Over the modes, of one harmonic; receptances are symmetric."""
+        k: cython.Py_ssize_t
+        m: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        for k in range(self.ports):
+            for m in range(k + 1):
+                G_re: cython.double = 0.0
+                G_im: cython.double = 0.0
+                dG_re: cython.double = 0.0
+                dG_im: cython.double = 0.0
+                for i in range(self.modes):
+                    weight: cython.double = self.shapes[i, k] * self.shapes[i, m]
+                    G_re += weight * self.c_re[j, i]
+                    G_im += weight * self.c_im[j, i]
+                    dG_re += weight * self.s_re[j, i]
+                    dG_im += weight * self.s_im[j, i]
+                self.G_re[j, k, m] = self.G_re[j, m, k] = G_re
+                self.G_im[j, k, m] = self.G_im[j, m, k] = G_im
+                self.dG_re[j, k, m] = self.dG_re[j, m, k] = dG_re
+                self.dG_im[j, k, m] = self.dG_im[j, m, k] = dG_im
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def large_sums(self) -> cython.int:
+        shapes = np.asarray(self.shapes)
+        for j in range(self.count):
+            np.matmul(shapes.T * np.asarray(self.c_re)[j], shapes, out=np.asarray(self.G_re)[j])
+            np.matmul(shapes.T * np.asarray(self.c_im)[j], shapes, out=np.asarray(self.G_im)[j])
+            np.matmul(shapes.T * np.asarray(self.s_re)[j], shapes, out=np.asarray(self.dG_re)[j])
+            np.matmul(shapes.T * np.asarray(self.s_im)[j], shapes, out=np.asarray(self.dG_im)[j])
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def external(self) -> cython.void:
+        """The answer of the ports to the external forces."""
+        j: cython.int = self.driven
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        for k in range(self.ports):
+            self.X_re[k] = self.X_im[k] = self.dX_re[k] = self.dX_im[k] = 0.0
+        for i in range(self.modes):
+            f_re: cython.double = self.force_re[i]
+            f_im: cython.double = self.force_im[i]
+            q_re: cython.double = self.c_re[j, i] * f_re - self.c_im[j, i] * f_im
+            q_im: cython.double = self.c_re[j, i] * f_im + self.c_im[j, i] * f_re
+            d_re: cython.double = self.s_re[j, i] * f_re - self.s_im[j, i] * f_im
+            d_im: cython.double = self.s_re[j, i] * f_im + self.s_im[j, i] * f_re
+            for k in range(self.ports):
+                self.X_re[k] += self.shapes[i, k] * q_re
+                self.X_im[k] += self.shapes[i, k] * q_im
+                self.dX_re[k] += self.shapes[i, k] * d_re
+                self.dX_im[k] += self.shapes[i, k] * d_im

@@ -1,0 +1,47 @@
+"""Rigid-body modes: which of them the contacts hold when they are closed, and which are adrift.
+
+A rigid-body mode has no stiffness of its own. In the mean only normal forces answer its displacement, for
+friction depends on motion and not on place. So the rigid-body modes are turned, among themselves, into
+those that move some contact along its normal, and those that move none. The latter are adrift: no
+mean force depends on where they are, and what pushes them on average pushes them on and on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray, Modal, Scene
+
+BoolArray = npt.NDArray[np.bool_]
+
+ROUNDING = 1e-13  # relative: a sum of products this small is zero
+HELD = 1e-9  # relative normal motion at the contacts below which a rigid-body motion is not held by them
+
+
+def settled(scene: Scene) -> tuple[Modal, BoolArray]:
+    """The modes with rigid-body modes turned into held ones and such as are adrift, and which are (mode,)."""
+    modal = scene.modal
+    adrift = np.zeros(modal.frequency.size, dtype=bool)
+    rigid = np.flatnonzero(modal.frequency == 0.0)
+    if rigid.size == 0:
+        return modal, adrift
+    unit = modal.shapes[rigid] / np.sqrt(modal.mass[rigid])[:, None]  # of modal mass 1
+    turn, size, _ = np.linalg.svd(_normal_motion(scene, unit))
+    held = int(np.count_nonzero(size > HELD * size.max(initial=0.0)))
+    shapes, mass = modal.shapes.copy(), modal.mass.copy()
+    shapes[rigid], mass[rigid] = turn.T @ unit, 1.0
+    adrift[rigid[held:]] = True
+    return replace(modal, shapes=shapes, mass=mass), adrift
+
+
+def _normal_motion(scene: Scene, shapes: FloatArray) -> FloatArray:
+    """Motion of shapes (mode, dof) along the normals of the contacts that have a normal stiffness."""
+    normals = [contact.normal for contact in scene.contacts if contact.k_v > 0.0]
+    directions = np.array(normals).reshape(len(normals), shapes.shape[1]).T
+    motion = shapes @ directions
+    motion[np.abs(motion) <= ROUNDING * (np.abs(shapes) @ np.abs(directions))] = 0.0
+    moved: FloatArray = motion
+    return moved
