@@ -6,6 +6,8 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
@@ -28,10 +30,13 @@ def reached(messages: Messages, scene: str, resolution: Resolution, progress: Pr
     from fcm.scene import load_scene
 
     reach = Reach(resolution)
-    response = trace(load_scene(scene), table=reach, progress=progress)
+    response = trace(load_scene(scene), "closed-form", progress=progress, harmonics=1)
     if response.interrupted:
         raise KeyboardInterrupt
     messages.clear()
+    for curve in response.curves:
+        loops = curve.loop[np.isfinite(curve.frequency)].reshape(-1, curve.loop.shape[-1])
+        reach.note(*loops[:, :3].T)
     part = reach.part()
     if part is None:
         raise TableError(f"{scene}: no contact slips, or opens in a part of its cycle, so it needs no table")

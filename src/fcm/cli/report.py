@@ -44,9 +44,11 @@ def _greatest(curves: Sequence[Curve]) -> list[str]:
 def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
     of_length = f" [{length}]" if length else ""
-    peaks = [text for dof in dofs for text in (f"peak {dof}{of_length}", f"at {unit}")]
-    header = [*names, *peaks, "points", "time [s]", f"folds at {unit}", ""]
-    lines = [aligned([header, *(_curve_row(curve, dofs) for curve in curves)], left=2)]
+    peaks = [text for dof in dofs for text in (f"peak {dof}{of_length}", f"at {unit}", "error")]
+    balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
+    header = [*names, *peaks, *balanced, "points", "time [s]", f"folds at {unit}", ""]
+    rows = [_curve_row(curve, dofs, bool(balanced)) for curve in curves]
+    lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
         lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks")
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
@@ -59,12 +61,14 @@ def _at_edge(curve: Curve, dof: str) -> bool:
     return bool((curve["peak"].get(dof) or {}).get("at_edge"))
 
 
-def _curve_row(curve: Curve, dofs: list[str]) -> list[str]:
+def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
     cells = swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
         at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
-        cells += [number(peak.get("amplitude")), at]
+        cells += [number(peak.get("amplitude")), at, short(peak.get("error"))]
+    if balanced:
+        cells.append(counted(curve["harmonics"]) if "harmonics" in curve else "-")
     folds = "  ".join(number(fold) for fold in curve["folds"]) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
@@ -122,6 +126,16 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     )
 
 
+def short_of_accuracy(summary: Mapping[str, Any]) -> str:
+    """How many curves do not have the accuracy that was asked for, and why the first has not; empty if all have."""
+    short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
+    if not short:
+        return ""
+    count = len(summary["curves"])
+    which = "the curve has" if count == 1 else f"{len(short)} of {count} curves have"
+    return f"{which} not the accuracy that was asked for: {short[0]}"
+
+
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early; empty if none."""
     curves = summary["curves"]
@@ -139,6 +153,22 @@ def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
 
 def _worst(curves: Sequence[Curve], key: str) -> float | None:
     return max((curve[key] for curve in curves if curve.get(key) is not None), default=None)
+
+
+def short(value: float | None) -> str:
+    """An error, two digits, or a dash where it is not known."""
+    return "-" if value is None else f"{value:.1e}"
+
+
+def counted(harmonics: Sequence[int]) -> str:
+    """Harmonics as a range and those beyond it.
+
+    >>> counted([1]), counted([1, 2, 3]), counted([1, 2, 3, 9])
+    ('1', '1-3', '1-3,9')
+    """
+    last = next(i for i in range(len(harmonics), 0, -1) if list(harmonics[:i]) == list(range(1, i + 1)))
+    first = "1" if last == 1 else f"1-{last}"
+    return ",".join([first, *(str(h) for h in harmonics[last:])])
 
 
 def number(value: float | None) -> str:

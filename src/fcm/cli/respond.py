@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import exact, schedule
+from fcm.cli import balance, exact, schedule
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
-from fcm.cli.report import all_lost_to_defects, cost_and_error, incomplete
+from fcm.cli.report import all_lost_to_defects, cost_and_error, incomplete, short_of_accuracy
 
 if TYPE_CHECKING:
     from fcm.response import Response
@@ -42,6 +42,16 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 @click.option(
     "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
     help="Harmonic balance with coefficients of a table or in closed form, or exact periodic solutions.",
+)  # fmt: skip
+@click.option(
+    "--harmonics", metavar="H", callback=balance.harmonics,
+    help="Harmonics of the balance: up to a number from 1 to 50, or some such as 1,2,3,9.  "
+    "[default: the scene's, or as --accuracy]",
+)  # fmt: skip
+@click.option(
+    "--accuracy", type=float, metavar="E", callback=balance.accuracy,
+    help="As many harmonics as it takes for peaks and folds that are right to this, relative.  "
+    "[default: the scene's, or 0.01]",
 )  # fmt: skip
 @click.option(
     "--at", multiple=True, metavar="F", callback=exact.frequencies,
@@ -81,6 +91,8 @@ def respond(
     history_csv: Path | None,
     to_json: bool,
     method: str,
+    harmonics: tuple[int, ...] | None,
+    accuracy: float | None,
     at: tuple[float, ...] | None,
     table: str | None,
     max_step: float | None,
@@ -106,6 +118,7 @@ def respond(
         write_comparison(messages, compared, table, tolerance, output, to_json)
         return
     exact.check_options(method, at)
+    balance.check_options(harmonics, accuracy, method, table)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
     if resume and output is None and csv is None and history_csv is None:
@@ -115,7 +128,8 @@ def respond(
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
-    options = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
+    options: dict[str, Any] = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
+    options |= {"harmonics": harmonics, "accuracy": accuracy}
     outputs = Outputs(messages, output, csv, history_csv)
     with outputs.kept(resume) as checkpoint:
         if method == "exact" and (loaded.has_range or at):
@@ -201,6 +215,8 @@ def _close(messages: Messages, result: dict[str, Any], defects: list[str]) -> No
         messages.info(f"left out: {text}")
     if result["curves"]:
         messages.info(cost_and_error(result))
+    if short := short_of_accuracy(result):
+        messages.warning(short)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))

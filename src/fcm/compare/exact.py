@@ -1,4 +1,4 @@
-"""Lines of the exact periodic motion: the fundamental of each orbit, its peaks located between points."""
+"""Lines of the exact periodic motion: half the peak-to-peak of each orbit, its peaks located between points."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fcm.compare.lines import Line
+from fcm.compare.lines import Line, line_of
 from fcm.motion import SimulationError, State
 from fcm.orbit import harmonic_state, periodic
-from fcm.response.path import Progress
 from fcm.response.result import Curve
+from fcm.run import Progress
 from fcm.scene.model import Scene
 from fcm.simulate import trace_exact
 
@@ -53,8 +53,8 @@ class _Limit:
 
 def _line(scene: Scene, curve: Curve) -> Line:
     if curve.orbits is None or curve.points == 0:
-        return Line(curve.frequency, curve.amplitude, curve.peaks, curve.folds, curve.complete, curve.reason)
-    amplitude = curve.orbits.fundamental
+        return line_of(curve)
+    amplitude = curve.amplitude
     peaks = {name: _peak(scene, curve, amplitude[:, j], j) for j, name in enumerate(scene.modal.dofs)}
     return Line(
         curve.frequency, amplitude, peaks, curve.folds, curve.complete, curve.reason, {}, curve.orbits.periods
@@ -72,7 +72,7 @@ def _peak(scene: Scene, curve: Curve, amplitude: np.ndarray, dof: int) -> tuple[
 
     def below(omega: float) -> float:
         try:
-            found = float(periodic(scene, omega, guess).measure.fundamental[dof])
+            found = float(periodic(scene, omega, guess).measure.amplitude[dof])
         except SimulationError:
             return 0.0
         return -found if abs(found - at_point[0]) < JUMP * at_point[0] else 0.0
@@ -86,5 +86,5 @@ def _state(scene: Scene, curve: Curve, k: int) -> State:
     """The state of a point, as far as its fundamental and mean tell: a guess."""
     assert curve.orbits is not None
     return harmonic_state(
-        scene, float(curve.frequency[k]), curve.orbits.fundamental[k], curve.phase[k], curve.mean[k]
+        scene, float(curve.frequency[k]), curve.fundamental[k], curve.phase[k], curve.mean[k]
     )

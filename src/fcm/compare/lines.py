@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Line:
-    """One response curve: the amplitude of the fundamental against frequency.
+    """One response curve: half the peak-to-peak displacement against frequency.
 
     Branches that do not hang together follow one another, with a point of NaN between them.
     """
@@ -27,7 +27,7 @@ class Line:
     complete: bool
     reason: str = ""
     truncation: Mapping[str, float] = field(default_factory=dict)  # estimate at each peak [-]
-    periods: int = 0  # of the exact motion that were computed
+    evaluations: int = 0  # of the equations; periods of the exact motion
 
     @property
     def points(self) -> int:
@@ -49,5 +49,11 @@ def line_of(curve: Curve) -> Line:
         highest = np.nan_to_num(curve.amplitude, nan=-1.0).argmax(axis=0)
         estimate = {d: float(curve.truncation_error[k]) for d, k in zip(curve.peaks, highest, strict=True)}
     return Line(
-        curve.frequency, curve.amplitude, curve.peaks, curve.folds, curve.complete, curve.reason, estimate
-    )
+        curve.frequency, curve.amplitude, heights(curve), curve.folds, curve.complete, curve.reason,
+        estimate, curve.evaluations,
+    )  # fmt: skip
+
+
+def heights(curve: Curve) -> dict[str, tuple[float, float]]:
+    """Peaks without their errors."""
+    return {dof: (peak.amplitude, peak.frequency) for dof, peak in curve.peaks.items()}

@@ -94,7 +94,6 @@ def _run(out: Comparison, number: int, one: Run) -> Json:
         "processor_seconds": one.processor_seconds,
         "start_seconds": _number(start.total) if start else None,
         "table_seconds": _number(start.table) if start else None,
-        "calls": one.calls,
         "evaluations": one.evaluations,
         "against": {name: _split(values) for name, values in shown.items()},
     }
@@ -195,15 +194,10 @@ def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
         ),
         ("table_seconds", [s[1] for s in starts], {"long_name": "of it, to open the table", **seconds}),
         (
-            "calls",
-            [one.calls for one in runs],
-            {"long_name": "calls for friction coefficients, each for many points", "units": "1"},
-        ),
-        (
             "evaluations",
             [one.evaluations for one in runs],
             {
-                "long_name": "evaluations of these, each of one contact; of exact: periods of the motion",
+                "long_name": "evaluations of the balanced equations; of exact: periods of the motion",
                 "units": "1",
             },
         ),

@@ -42,12 +42,12 @@ def errors(summary: Summary) -> Rows:
 
 def costs(summary: Summary) -> Rows:
     """Of the same."""
-    header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "table [s]", "calls", "evaluations"]
+    header = ["left out", "points", "solve [s]", "CPU [s]", "start [s]", "table [s]", "evaluations"]
     rows = [["costs", *header]]
     for one in _at_own_step(summary):
         seconds = [f"{one[key]:.3f}" for key in ("seconds", "processor_seconds")]
         start = ["-" if one[key] is None else f"{one[key]:.2f}" for key in ("start_seconds", "table_seconds")]
-        counts = [str(one["calls"]), str(one["evaluations"])]
+        counts = [str(one["evaluations"])]
         rows.append([one["method"], _left_out(one, summary), str(one["points"]), *seconds, *start, *counts])
     return rows
 

@@ -25,12 +25,11 @@ class Row:
     complete: bool
     reason: str  # why it is not complete
     points: int
-    uncorrected: int
     seconds: float  # by the table, all included
     residual: float  # greatest along the curve, measured by what is allowed there
     tolerance: float  # at that point
     table: float  # greatest difference of peaks and folds by table and by closed form
-    without_table: bool  # the table was given up for the closed form, which is then compared with itself
+    without_table: int  # points to which the table led no way: found with the closed form alone
     condition: float
     exact: list[Beside] = field(default_factory=list)
 
@@ -68,12 +67,11 @@ def measured(name: str) -> Row:
         complete=by_table.complete and curve.complete,
         reason=by_table.reason or curve.reason,
         points=by_table.points,
-        uncorrected=by_table.uncorrected + curve.uncorrected,
+        without_table=int(np.isnan(by_table.table_error).sum() - np.isnan(by_table.frequency).sum()),
         seconds=seconds,
         residual=residual,
         tolerance=tolerance,
         table=difference(by_table, curve),
-        without_table=by_table.without_table,
         condition=condition_number(scene, curve),
         exact=beside_exact(scene, curve),
     )

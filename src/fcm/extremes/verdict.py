@@ -1,6 +1,6 @@
 """Whether a row of the catalogue passes, and in plain words why not. A row passes if all of this holds:
 
-- its curve is complete and every point of it was corrected; or it stops where the amplitude has no limit,
+- its curve is complete; or it stops where the amplitude has no limit,
   at a resonance that hardly anything damps;
 - at every point the full modal equations are balanced: what is left is below 1e-9 of the forces, or below
   what a change of the displacements by 1e-13 is worth, to which points are corrected;
@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from math import isfinite
 
+from fcm.continuation import Status
 from fcm.extremes.exact import Beside
 from fcm.extremes.residual import BALANCED
 from fcm.extremes.row import Row
-from fcm.response.path import REASONS, UNBOUNDED
 
 SAME = 1e-6  # peaks and folds by table and by closed form, relative
 TRUNCATIONS, LINEAR = 5.0, 1e-6  # of the estimated error; where the response is linear
@@ -33,9 +33,9 @@ def excess(point: Beside) -> float:
 
 
 def _incomplete(row: Row) -> str:
-    if not row.complete and not row.reason.endswith(REASONS[UNBOUNDED]):
+    if not row.complete and not row.reason.endswith(Status.UNBOUNDED.value):
         return f"not complete: {row.reason}"
-    return f"{row.uncorrected} points not corrected" if row.uncorrected else ""
+    return ""
 
 
 def _unbalanced(row: Row) -> str:

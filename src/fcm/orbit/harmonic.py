@@ -9,11 +9,6 @@ from fcm.contact import fourier_coefficients, hysteresis_loop, normal_coefficien
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
-from fcm.response.balance import Balance
-from fcm.response.displacement import displacements
-from fcm.response.law import ClosedForm
-from fcm.response.start import starting_points
-from fcm.response.structure import group_of, with_contact
 from fcm.scene.model import Contact, FloatArray, Scene
 
 
@@ -77,14 +72,16 @@ def balanced_state(scene: Scene, frequency: float) -> State | None:
     """A guess from the scene's own harmonic balance at a frequency [rad/s]; None if it has none there."""
     if not scene.modal.frequency.all():
         return None
-    balance = Balance(group_of([with_contact(scene)]), ClosedForm())
-    omega = np.array([frequency])
-    with np.errstate(all="ignore"):  # at a resonance without damping there is none
-        x, found = starting_points(balance, omega)
-        if not found[0]:
-            return None
-        X, mean = displacements(balance, x, omega)
-    return harmonic_state(scene, frequency, np.abs(X[0]), np.angle(X[0]), mean[0])
+    from fcm.harmonic.record import amplitudes_at
+    from fcm.harmonic.start import solutions
+    from fcm.harmonic.system import System as Balanced
+
+    balanced = Balanced(scene)
+    found = solutions(balanced, frequency).solutions
+    if not found:
+        return None
+    X, mean = amplitudes_at(balanced, found[0][None])
+    return harmonic_state(scene, frequency, np.abs(X[0, 0]), np.angle(1j * X[0, 0]), mean[0])
 
 
 def _modal(

@@ -32,8 +32,7 @@ ABOUT = (
     "“Solve” is the time of all curves together, on one core, in a program that has begun and has its table, "
     "and “CPU” the part of it in which the processor worked for it; “start” is the time of a program that "
     "begins as one with that method does and ends at once, “table” the part of it that opens the table. "
-    "Calls are the solver's, for friction coefficients, each for many points at once; evaluations are of the "
-    "coefficients of one contact, or of one period of the exact motion.",
+    "Evaluations are of the balanced equations, or periods of the exact motion.",
 )
 CAPTION = (
     "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point "

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fcm.response.result import Curve, Response
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS, ResponseError
 from fcm.scene.model import Scene
+from fcm.scene.rules import step_fault
 
 if TYPE_CHECKING:
     import xarray
@@ -16,7 +18,15 @@ if TYPE_CHECKING:
 __all__ = ["METHODS", "Curve", "Response", "ResponseError", "respond", "trace"]
 
 
-def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None = None) -> xarray.Dataset:
+def respond(
+    scene: Scene,
+    method: str = "table",
+    *,
+    at: Sequence[float] | None = None,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+    max_step: float | None = None,
+) -> xarray.Dataset:
     """Response curves of a scene, and the motion of its schedule, as the dataset of ``fcm respond``.
 
     Parameters
@@ -28,6 +38,13 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
         followed (its points are the same either way); or the exact periodic solutions, by shooting.
     at : sequence of float, optional
         With "exact": frequencies in the scene's unit, visited by an upward and then a downward sweep.
+    harmonics : int or sequence of int, optional
+        Harmonics of the balance: up to a number, or some that begin with 1; the scene's by default.
+    accuracy : float, optional
+        Instead: relative error of peaks and folds, for which as many harmonics are taken as that needs; the
+        scene's by default, and 1e-2 where it says neither.
+    max_step : float, optional
+        Longest step along a curve, relative to its extent; the scene's by default.
 
     Returns
     -------
@@ -53,7 +70,12 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
 
     scene = scene.in_use()
     check_solvable(scene)
-    response = _curves(scene, method, at)
+    if max_step is not None:
+        if fault := step_fault(max_step):
+            raise ResponseError(f"max_step {fault}")
+        curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
+        scene = replace(scene, max_step=max_step, curves=curves)
+    response = _curves(scene, method, at, harmonics, accuracy)
     response.notes, response.units = list(scene.notes), scene.units
     if scene.schedule:
         from fcm.motion import histories
@@ -62,7 +84,13 @@ def respond(scene: Scene, method: str = "table", *, at: Sequence[float] | None =
     return to_dataset(visible(response, scene))
 
 
-def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:
+def _curves(
+    scene: Scene,
+    method: str,
+    at: Sequence[float] | None,
+    harmonics: int | Sequence[int] | None,
+    accuracy: float | None,
+) -> Response:
     if method not in (*METHODS, "exact"):
         raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
     if at is not None and method != "exact":
@@ -70,7 +98,9 @@ def _curves(scene: Scene, method: str, at: Sequence[float] | None) -> Response:
     if at is None and not scene.has_range and scene.schedule:
         return Response.without_curves(scene)
     if method == "exact":
+        if harmonics is not None or accuracy is not None:
+            raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
         from fcm.simulate import trace_exact
 
         return trace_exact(scene, at)
-    return trace(scene, method)
+    return trace(scene, method, harmonics=harmonics, accuracy=accuracy)

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
-from fcm.response.path import Progress
 from fcm.response.result import NOT_BEGUN, Curve
-from fcm.run import Checkpoint, Compute, Lost, Results, fingerprint, place_for, sweep
+from fcm.run import Checkpoint, Compute, Lost, Progress, Results, fingerprint, place_for, sweep
 
 
 @dataclass

@@ -9,27 +9,31 @@ from typing import Any
 import numpy as np
 
 from fcm.response.jumps import Jump
-from fcm.response.law import Coefficients
-from fcm.response.result import DEFECT, Curve, Orbits
-from fcm.response.trace import trace_group
+from fcm.response.result import DEFECT, Curve, Orbits, Peak
+from fcm.response.trace import Wanted, traced_curve
 from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
-KINDS = (Curve, Orbits, Jump)  # what results consist of
-_BY_POINT = ("amplitude", "phase", "mean", "regime", "loop", "stable", "table_error", "truncation_error")
+KINDS = (Curve, Orbits, Jump, Peak)  # what results consist of
+_BY_POINT = (
+    *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
+    *("table_error", "error", "truncation_error"),
+)
 
 
 @dataclass(frozen=True)
 class Work:
     """What all groups are traced with."""
 
-    method: str
-    table: Coefficients | None
+    wanted: Wanted
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
-        whole = replace(group[0], curves=tuple(group))
-        return trace_group(whole, self.method, self.table, report).curves
+        curves = []
+        for number, scene in enumerate(group):
+            report(number / len(group), "")
+            curves.append(traced_curve(scene, self.wanted))
+        return curves
 
 
 def anonymous(scenes: Group) -> list[Scene]:
@@ -68,16 +72,19 @@ def lost_curve(scene: Scene, reason: str) -> Curve:
         parameters=dict(scene.parameters),
         frequency=none,
         amplitude=np.empty((0, len(dofs))),
+        fundamental=np.empty((0, len(dofs))),
         phase=np.empty((0, len(dofs))),
         mean=np.empty((0, len(dofs))),
         regime=np.empty((0, len(scene.contacts)), dtype="<U6"),
         loop=np.empty((0, len(scene.contacts), 5)),
-        stable=np.empty(0, dtype=bool),
+        cycle=np.empty((0, len(scene.contacts), 4)),
+        stable=none,
         table_error=none,
+        error=np.empty((0, len(dofs))),
         truncation_error=none,
         complete=False,
         reason=reason,
-        peaks=dict.fromkeys(dofs, (np.nan, np.nan)),
+        peaks=dict.fromkeys(dofs, Peak(np.nan, np.nan)),
         folds=[],
         seconds=0.0,
     )

@@ -3,21 +3,17 @@
 Without any effect are left out: modes that neither a force nor a contact moves, and contacts that carry
 nothing. Modes far above the range are replaced by few (`static_modes`) where that pays; what this changes
 is measured afterwards with all modes, and if it is more than the tolerance they are put back.
-
-Contacts that are foreseen to stay open or stuck all along have no unknowns (`foreseen`), which is checked.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
-from fcm.response.foreseen import OPEN, STUCK, States, foreseen
 from fcm.response.sentences import counted, has_friction, named
 from fcm.response.static_modes import with_static_modes
-from fcm.response.structure import Spring
 from fcm.scene.model import Contact, Modal, Scene
 
 TOLERANCE = 1e-5  # of the response, for modes that are replaced
@@ -34,14 +30,12 @@ class Lighter:
     contacts: tuple[int, ...]  # which of the contacts are traced, with unknowns of their own
     sentences: tuple[str, ...]  # what was left out without any effect, and why
     above: float | None = None  # [rad/s] modes above are replaced by few
-    states: States = field(default_factory=dict)  # contacts that are foreseen to stay stuck or open
     whole: bool = False  # nothing is to be left out
 
     @property
     def idle_table(self) -> bool:
         """Whether no contact needs friction coefficients."""
-        contacts = [c for s in self.curves for c in s.contacts if not isinstance(c, Spring)]
-        return not (self.whole or any(has_friction(c) for c in contacts))
+        return not (self.whole or any(has_friction(c) for s in self.curves for c in s.contacts))
 
 
 def keep_all(curves: tuple[Scene, ...]) -> Lighter:
@@ -49,10 +43,10 @@ def keep_all(curves: tuple[Scene, ...]) -> Lighter:
     return Lighter(curves, curves, curves, tuple(range(len(curves[0].contacts))), (), whole=True)
 
 
-def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, foresee: bool = True) -> Lighter:
+def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, highest: int = 1) -> Lighter:
     """The scenes without what they do not need; a tolerance of 0 leaves out only what has no effect.
 
-    Unless foresee is false, contacts are without unknowns that are foreseen to stay stuck or open.
+    highest : the greatest harmonic of the response, which modes that are far above are far above, too.
     """
     needed = tuple(i for i in range(len(curves[0].contacts)) if any(_carries(s, i) for s in curves))
     lighter = tuple(_with_contacts(s, needed) for s in curves)
@@ -62,40 +56,20 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, foresee: 
         lighter = _with_modals(lighter, {id(s.modal): _some_modes(s.modal, moved) for s in lighter})
         what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
         sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
-    found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance)
-    found = _without_unknowns(found) if foresee else found
+    found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance, highest)
     return replace(found, sentences=(*found.sentences, *_parts_of_contacts(found)))
 
 
-def _static(lighter: Lighter, tolerance: float) -> Lighter:
+def _static(lighter: Lighter, tolerance: float, highest: int) -> Lighter:
     """Modes far above the range replaced, where every curve has the same structure."""
     curves = lighter.curves
     if len(_different(curves)) > 1:
         return lighter
-    found = with_static_modes(_stiffest(curves), tolerance)
+    found = with_static_modes(_stiffest(curves), tolerance, highest)
     if found is None:
         return lighter
     modal, above = found
     return replace(lighter, curves=tuple(replace(s, modal=modal) for s in curves), above=above)
-
-
-def _without_unknowns(lighter: Lighter) -> Lighter:
-    """Contacts that are foreseen to stay stuck are springs, and those that stay open are not there."""
-    states = foreseen(lighter.curves)
-    if not states:
-        return lighter
-    curves = tuple(replace(s, contacts=_as_foreseen(s.contacts, states)) for s in lighter.curves)
-    contacts = tuple(number for i, number in enumerate(lighter.contacts) if i not in states)
-    numbered = {lighter.contacts[i]: state for i, state in states.items()}
-    return replace(lighter, curves=curves, contacts=contacts, states=numbered)
-
-
-def _as_foreseen(contacts: tuple[Contact, ...], states: States) -> tuple[Contact, ...]:
-    return tuple(
-        Spring(**vars(c)) if states.get(i) == STUCK else c
-        for i, c in enumerate(contacts)
-        if states.get(i) != OPEN
-    )
 
 
 def _stiffest(curves: tuple[Scene, ...]) -> Scene:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.contact.limits import FloatArray
-from fcm.response.structure import ComplexArray, group_of, modal_compliance, receptance, to_ports
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
+from fcm.structure.linear import linear_of
 
+ComplexArray = npt.NDArray[np.complex128]
 SPREAD = 24  # frequencies of the range at which linear responses are looked at, besides resonances
 BESIDE = 1e-7  # relative distance from a resonance, where nothing is infinite
 
@@ -26,19 +27,21 @@ def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
 
 def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
     """Natural frequencies with springs (2 contacts,) for contacts."""
-    group, modal = group_of([scene]), scene.modal
-    ports = group.ports[0] / np.sqrt(group.mass[0])[:, None]
-    square = np.linalg.eigvalsh(np.diag(modal.frequency**2) + (ports * springs) @ ports.T)
+    linear = linear_of(scene)
+    square = np.linalg.eigvalsh(np.diag(linear.natural**2) + (linear.ports * springs) @ linear.ports.T)
     return np.asarray(np.sqrt(np.maximum(square, 0.0)), dtype=np.float64)
 
 
 def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> ComplexArray:
     """Amplitudes (frequency, dof) with springs (2 contacts,) for contacts."""
-    group = group_of([scene])
-    compliance, _ = modal_compliance(group, omega)
-    matrix = np.eye(springs.size) + receptance(group, compliance) * springs[:, None]
-    external = to_ports(group, compliance * group.force)
+    linear = linear_of(scene)
+    natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
+    w = omega[:, None]
+    compliance = 1.0 / ((natural - w) * (natural + w) + 1j * rate * w)
+    G = np.einsum("ip,wi,iq->wpq", linear.ports, compliance, linear.ports, optimize=True)
+    external = (compliance * linear.force) @ linear.ports
+    matrix = np.eye(springs.size) + G * springs
     ports = np.linalg.solve(matrix, external[..., None])[..., 0]
-    load = group.force - (springs * ports) @ group.ports[0].T
-    response: ComplexArray = (compliance * load) @ group.shapes[0]
+    load = linear.force - (springs * ports) @ linear.ports.T
+    response: ComplexArray = (compliance * load) @ linear.dofs
     return response

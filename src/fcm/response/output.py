@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
-ORBIT_KINDS = ("fundamental", "cycle_least", "cycle_greatest", "family_least", "family_greatest")
+ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
     ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
@@ -33,9 +33,14 @@ LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, me
     ("spring_force", "k_u a, by which the loop's forces are divided", {}),
 )
 
+CYCLE = (  # of Curve.cycle
+    ("greatest_normal_force", "greatest normal force of the cycle"),
+    ("greatest_friction_force", "greatest friction force of the cycle"),
+    ("slip_path", "way of the slider in slip, in a cycle"),
+    ("dissipated_energy", "energy that friction takes in a cycle"),
+)
+
 EXACT = {  # meanings that differ where the curves are of exact periodic solutions
-    "amplitude": "half the peak-to-peak displacement",
-    "phase": "phase of the fundamental, as fundamental * sin(omega t + phase)",
     "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
     "S separation",
     "table_error": "0: no table was used",
@@ -43,7 +48,6 @@ EXACT = {  # meanings that differ where the curves are of exact periodic solutio
     "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle",
 }
 ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
-    "fundamental": (("dof",), {"long_name": "amplitude of the fundamental"}),
     "closure_error": (
         (),
         {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
@@ -149,30 +153,60 @@ def _point_fields(response: Response) -> dict[str, Field]:
 
     excitation = "excitation frequency"
     points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=cf_unit)
-    points("amplitude", lambda c: c.amplitude, ("dof",), long_name="amplitude of the fundamental")
-    phase = "phase of the fundamental, as amplitude * sin(omega t + phase)"
+    points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
+    points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
+    phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"
     points("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
     points("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
     states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
     points("regime", lambda c: c.regime, ("contact",), long_name=states)
     for i, (name, meaning, units) in enumerate(LOOP):
         points(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
+    for i, (name, meaning) in enumerate(CYCLE):
+        points(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
     shift = (
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
     points("table_error", lambda c: c.table_error, (), long_name=shift, units="1")
-    left = "response to harmonics 2 to 8 of the contact forces, relative to the fundamental"
-    points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
-    hill = "1 where small disturbances die out, by Hill's method on the balanced equations"
     points(
-        "stable", lambda c: np.where(np.isnan(c.frequency), np.nan, c.stable), (), long_name=hill, units="1"
+        "error", lambda c: c.error, ("dof",), long_name="estimated error of amplitude, relative", units="1"
     )
+    left = "estimated shift of the response by the harmonics that were left out, relative"
+    points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
+    dies = "1 where small disturbances of the motion die out, 0 where not, missing where that is not known"
+    points("stable", lambda c: c.stable, (), long_name=dies, units="1")
+    if any(c.harmonic is not None for c in curves):
+        out |= _harmonic_fields(curves)
     if response.method == "exact":
         for name, meaning in EXACT.items():
             out[name].attrs["long_name"] = meaning
         for name, (dims, attrs) in ORBITS.items():
             points(name, partial(_of_orbits, name=name), dims, **attrs)
     out |= _curve_fields(response, cf_unit)
+    return out
+
+
+def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
+    """Amplitude and phase of each harmonic, by its number; NaN for those that a curve has not."""
+    numbers = sorted({h for curve in curves for h in curve.harmonics})
+    dims = ("curve", "point", "harmonic", "dof")
+    X = _padded([_by_number(curve, numbers) for curve in curves])
+    sine = "as harmonic_amplitude * sin(harmonic omega t + harmonic_phase)"
+    return {
+        "harmonic": Field(("harmonic",), np.array(numbers), {"long_name": "number of the harmonic"}),
+        "harmonic_amplitude": Field(dims, np.abs(X), {"long_name": "amplitude of the harmonic"}),
+        "harmonic_phase": Field(dims, np.angle(X), {"long_name": f"phase, {sine}", "units": "radian"}),
+    }
+
+
+def _by_number(curve: Curve, numbers: Sequence[int]) -> npt.NDArray[np.complex128]:
+    """(point, harmonic, dof) of one curve."""
+    points, dofs = curve.fundamental.shape
+    out = np.full((points, len(numbers), dofs), np.nan, dtype=np.complex128)
+    if curve.harmonic is None:
+        out[:, numbers.index(1)] = curve.fundamental * np.exp(1j * curve.phase)
+    else:
+        out[:, [numbers.index(h) for h in curve.harmonics]] = curve.harmonic
     return out
 
 
@@ -193,10 +227,14 @@ def _of_loop(curve: Curve, column: int) -> FloatArray:
     return curve.loop[..., column]
 
 
+def _of_cycle(curve: Curve, column: int) -> FloatArray:
+    return curve.cycle[..., column]
+
+
 def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 2)
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
     folds = _padded([in_unit(c.folds, unit) for c in curves])
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof, by_fold = ("curve", "dof"), ("curve", "fold")
@@ -206,6 +244,11 @@ def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
             by_dof,
             in_unit(peaks[..., 1], unit),
             {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
+        ),
+        "peak_error": Field(
+            by_dof,
+            peaks[..., 2],
+            {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
         ),
         "fold_frequency": Field(
             by_fold,
@@ -225,7 +268,7 @@ def _padded(parts: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     longest = max((part.shape[0] for part in parts), default=0)
     text = bool(parts) and parts[0].dtype.kind == "U"
     tail = parts[0].shape[1:] if parts else ()
-    kind = np.result_type("<U6", *parts) if text else np.float64
+    kind = np.result_type("<U6" if text else np.float64, *parts)
     out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype=kind)
     for row, part in zip(out, parts, strict=True):
         row[: part.shape[0]] = part
@@ -247,7 +290,7 @@ def _kind(response: Response) -> str:
     kinds = []
     if response.curves:
         exact = "exact periodic solutions between transitions, by shooting"
-        balance = f"single-harmonic balance, method {response.method}"
+        balance = f"harmonic balance, method {response.method}"
         kinds.append(exact if response.method == "exact" else balance)
     if response.histories is not None:
         kinds.append("exact simulation of a schedule")
@@ -303,9 +346,10 @@ def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
-    kinds = ("amplitude", "phase", "mean", *(ORBIT_KINDS if exact else ()))
+    kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
     unit = f" [{response.units[0]}]" if response.units[0] else ""
-    columns = [f"{kind} {dof}{'' if kind == 'phase' else unit}" for dof in response.dofs for kind in kinds]
+    bare = ("phase", "error")
+    columns = [f"{kind} {dof}{'' if kind in bare else unit}" for dof in response.dofs for kind in kinds]
     regimes = [f"regime {name}" for name in response.contacts]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -324,14 +368,14 @@ def write_csv(response: Response, path: str | Path) -> None:
         for number, c in enumerate(response.curves):
             orbits = c.orbits
             own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
-            parts = (c.amplitude, c.phase, c.mean, *own)
+            parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
             frequency = in_unit(c.frequency, response.frequency_unit)
             values = np.stack(parts, axis=2).reshape(c.frequency.size, len(columns))
             for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
                     [number, c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
                     + [repr(float(value)) for value in values[k]]
-                    + [*c.regime[k].tolist(), int(c.stable[k])]
+                    + [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
                     + ([] if orbits is None else _of_orbit(orbits, int(k)))
                 )

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.contact.limits import FloatArray
-from fcm.response.balance import Balance
-from fcm.response.displacement import displacements
-from fcm.response.foreseen import States, room
-from fcm.response.law import UNKNOWNS, ClosedForm, Law
+from fcm.continuation.newton import Newton
+from fcm.harmonic.record import amplitudes_at, cycles, loops, states
+from fcm.harmonic.system import System
 from fcm.response.leave_out import Lighter
-from fcm.response.newton import amplitudes, correct, scales
-from fcm.response.points import extent
-from fcm.response.regimes import regimes
 from fcm.response.result import Curve, Response
-from fcm.response.segment import correct_exactly
-from fcm.response.structure import IntArray, group_of
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 
+IntArray = npt.NDArray[np.intp]
 MOST_CHECKED = 200  # points at which the response is compared with that of all modes
 EACH_CHECKED = 8  # points of one curve, besides its peaks
 
@@ -30,15 +25,6 @@ def restored(response: Response, lighter: Lighter) -> Response:
         for curve, scene in zip(response.curves, full, strict=True):
             _put_back(curve, scene, list(lighter.contacts))
     return response
-
-
-def least_room(curve: Curve, scene: Scene, states: States) -> dict[int, float]:
-    """Of contacts foreseen to be stuck or open, how far they are from not being so, at the least."""
-    at = np.flatnonzero(np.isfinite(curve.frequency))
-    x = _unknowns(curve, scene, at)
-    u, v, v_mean = x[..., 0] + 1j * x[..., 1], x[..., 2] + 1j * x[..., 3], x[..., 4]
-    each = {i: room(scene.contacts[i], state, u[:, i], v[:, i], v_mean[:, i]) for i, state in states.items()}
-    return {i: float(spare.min(initial=np.inf)) for i, spare in each.items()}
 
 
 def checked(response: Response, lighter: Lighter) -> float:
@@ -54,29 +40,39 @@ def checked(response: Response, lighter: Lighter) -> float:
 
 
 def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
-    """Give a curve the loops and regimes of the contacts that were not traced."""
+    """Give a curve the loops and states of the contacts that were not traced, which carry nothing."""
     if curve.points == 0:
-        traced, curve.loop, curve.regime = [], curve.loop[:, :0], curve.regime[:, :0]
+        traced = []
+        curve.loop, curve.regime, curve.cycle = curve.loop[:, :0], curve.regime[:, :0], curve.cycle[:, :0]
     at = np.flatnonzero(np.isfinite(curve.frequency))
-    group = group_of([scene])
-    law = Law(group.mu, group.k_u, group.k_v, group.n_0, ClosedForm())
     loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
-    regime = np.full(loop.shape[:2], "", dtype=curve.regime.dtype)
-    x = _unknowns(curve, scene, at)
-    loop[at], regime[at] = law.loops(x), regimes(law, x)
-    loop[:, traced], regime[:, traced] = curve.loop, curve.regime
-    curve.loop, curve.regime = loop, regime
+    regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
+    system, z = System(scene), unknowns(curve, scene, at, (1,))
+    loop[at], regime[at] = loops(system, z), states(system, z)
+    cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
+    cycle[at] = cycles(system, z)
+    loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
+    curve.loop, curve.regime, curve.cycle = loop, regime, cycle
 
 
-def _unknowns(curve: Curve, scene: Scene, at: IntArray) -> FloatArray:
-    """Unknowns of all contacts at points of a curve, from its displacements, (point, contact, 5)."""
-    X = curve.amplitude[at] * np.exp(1j * curve.phase[at])
-    x = np.empty((at.size, len(scene.contacts), UNKNOWNS))
+def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:
+    """(point, harmonic, dof) of x = mean + Re sum X exp(i h theta)."""
+    if curve.harmonic is not None:
+        return curve.harmonic[at] / 1j
+    X: npt.NDArray[np.complex128] = curve.fundamental[at] * np.exp(1j * curve.phase[at]) / 1j
+    return X[:, None, :]
+
+
+def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """z (point, unknown + 1) of all contacts at points of a curve, from its displacements."""
+    X = _amplitudes(curve, at)[:, : len(harmonics)]
+    x = np.empty((at.size, len(scene.contacts), 2 + 4 * len(harmonics)))
     for i, contact in enumerate(scene.contacts):
-        u, v = X @ contact.tangential, X @ contact.normal
-        x[:, i, :4] = np.column_stack((u.real, u.imag, v.real, v.imag))
-        x[:, i, 4] = curve.mean[at] @ contact.normal
-    return x
+        for part, direction in enumerate((contact.tangential, contact.normal)):
+            amplitude = X @ direction
+            x[:, i, part] = curve.mean[at] @ direction
+            x[:, i, 2 + 2 * part :: 4], x[:, i, 3 + 2 * part :: 4] = amplitude.real, amplitude.imag
+    return np.column_stack((x.reshape(at.size, -1), curve.frequency[at]))
 
 
 def _sample(curve: Curve, count: int) -> IntArray:
@@ -95,19 +91,28 @@ def _spread(count: int, most: int) -> IntArray:
 
 def _shift(curve: Curve, scene: Scene, at: IntArray) -> float:
     """Greatest relative shift of points by a correction with all modes, along the normal of the curve."""
-    balance = Balance(group_of([scene]), ClosedForm())
-    x = _unknowns(curve, scene, at).reshape(at.size, -1)
-    z = np.column_stack((x, curve.frequency[at]))
-    scale = scales(x, amplitudes(x), extent(balance, np.zeros(at.size, dtype=np.intp)))
-    row = np.zeros_like(z)
-    row[:, -1] = 1.0
-    row = correct(balance, z, scale, row, iterations=1).tangent  # the tangent, to first order
-    usable = np.isfinite(row).all(axis=1)  # not so in a fold itself
-    row[~usable] = np.eye(z.shape[1])[-1]
-    new = correct_exactly(balance, z, scale, row)
-    X, _ = displacements(balance, new.z[:, :-1], new.z[:, -1])
-    before = curve.amplitude[at] * np.exp(1j * curve.phase[at])
-    # what the correction moved along the frequency counts as well, relative to the range
-    moved = np.abs(new.z - z)[:, -1] / scale[:, -1]
-    shift = np.abs(X - before).max(axis=1) / np.abs(X).max(axis=1) + moved
-    return float(np.where(new.converged, shift, np.inf)[usable].max(initial=0.0))
+    system = System(scene, curve.harmonics)
+    newton = Newton(system.balance())
+    low, high = scene.frequency_range
+    worst = 0.0
+    for z, before in zip(unknowns(curve, scene, at, curve.harmonics), _amplitudes(curve, at), strict=True):
+        moved = _corrected(newton, z)
+        if moved is None:
+            return np.inf
+        X = amplitudes_at(system, moved[None])[0][0]
+        change = np.abs(X - before).max() / np.abs(X).max()
+        # what the correction moved along the frequency counts as well, relative to the range
+        worst = max(worst, float(change + abs(moved[-1] - z[-1]) / (high - low)))
+    return worst
+
+
+def _corrected(newton: Newton, z: FloatArray) -> FloatArray | None:
+    """The point of the curve in the plane through z normal to it."""
+    newton.problem.measure(z)
+    newton.scale[:] = newton.problem.scale
+    newton.z[:] = z
+    newton.row[:] = np.eye(z.size)[-1]
+    if newton.look():
+        newton.row[:] = newton.tangent
+    newton.z[:] = z
+    return np.array(newton.z) if newton.correct(1.0) else None

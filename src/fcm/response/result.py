@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -21,11 +21,18 @@ INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the c
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
 
 
+class Peak(NamedTuple):
+    """The greatest amplitude of a degree of freedom on a curve."""
+
+    amplitude: float
+    frequency: float  # [rad/s]
+    error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
+
+
 @dataclass
 class Orbits:
     """What only the points of an exact curve have; see `fcm.simulate.trace_exact`."""
 
-    fundamental: FloatArray  # (point, dof) amplitude of the fundamental
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
     repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if it does not
@@ -46,22 +53,27 @@ class Curve:
 
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) [rad/s]
-    amplitude: FloatArray  # (point, dof)
-    phase: FloatArray  # (point, dof) [rad], of amplitude * sin(omega t + phase)
+    amplitude: FloatArray  # (point, dof) half the peak-to-peak displacement
+    fundamental: FloatArray  # (point, dof) amplitude of the first harmonic
+    phase: FloatArray  # (point, dof) [rad], of fundamental * sin(omega t + phase)
     mean: FloatArray  # (point, dof)
     regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
     loop: FloatArray  # (point, contact, 5) n0_bar, b_bar, phi, tangential amplitude a, force k_u a
-    stable: npt.NDArray[np.bool_]  # (point,) by Hill's method on the balanced equations
+    cycle: FloatArray  # (point, contact, 4) greatest normal and friction force, slip, energy in a cycle
+    stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN where it is not known
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
-    truncation_error: FloatArray  # (point,) response to the loop's harmonics 2, 3, ... by that to its first
+    error: FloatArray  # (point, dof) of amplitude, estimated, relative
+    truncation_error: FloatArray  # (point,) the greatest of these that matters, see `fcm.harmonic.error`
     complete: bool
     reason: str  # why it is not complete, else ''
-    peaks: dict[str, tuple[float, float]]  # of each dof: amplitude, frequency [rad/s]
+    peaks: dict[str, Peak]  # of each dof
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
-    uncorrected: int = 0  # points that stay as they were traced, because their last correction failed
-    without_table: bool = False  # traced again with the closed form, because the table led away from it
-    orbits: Orbits | None = None  # of the exact motion; amplitude is then half the peak-to-peak
+    short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
+    evaluations: int = 0  # of the equations, to follow it
+    harmonics: tuple[int, ...] = ()  # of the balance
+    harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
+    orbits: Orbits | None = None  # of the exact motion
 
     @property
     def points(self) -> int:
@@ -82,7 +94,7 @@ class Curve:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
         if self.orbits is not None and self.orbits.jumps is not None:
             return self.orbits.jumps
-        return jumps(self.frequency, self.amplitude, self.stable)
+        return jumps(self.frequency, self.amplitude, self.stable != 0.0)  # what is unknown is no jump
 
     def _jump(self, jump: Jump, unit: str) -> dict[str, Any]:
         return {
@@ -92,13 +104,14 @@ class Curve:
             "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
         }
 
-    def _peak(self, amplitude: float, frequency: float, unit: str) -> dict[str, Any]:
+    def _peak(self, peak: Peak, unit: str) -> dict[str, Any]:
         """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
         known = self.frequency[np.isfinite(self.frequency)]
-        at_edge = self.complete and known.size > 1 and frequency in (known.min(), known.max())
+        at_edge = self.complete and known.size > 1 and peak.frequency in (known.min(), known.max())
         return {
-            "amplitude": amplitude,
-            "frequency": float(in_unit(frequency, unit)),
+            "amplitude": peak.amplitude,
+            "frequency": float(in_unit(peak.frequency, unit)),
+            "error": peak.error,
             "at_edge": bool(at_edge),
         }
 
@@ -109,10 +122,12 @@ class Curve:
             "points": self.points,
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
-            "peak": {d: self._peak(*peak, unit) for d, peak in self.peaks.items()},
+            **({"harmonics": list(self.harmonics)} if self.harmonics else {}),
+            **({"short_of_accuracy": self.short_of} if self.short_of else {}),
+            "peak": {d: self._peak(peak, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
             "jumps": [self._jump(jump, unit) for jump in self.jumps()],
-            "stable": bool(self.stable[np.isfinite(self.frequency)].all()),
+            "stable": bool((self.stable[np.isfinite(self.frequency)] == 1.0).all()),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
             **({} if self.orbits is None else self._of_orbits(self.orbits)),

@@ -24,7 +24,7 @@ INDEPENDENT = 1e-10  # relative size below which a static response is a combinat
 MARGIN = 0.5  # of the tolerance, for the estimate that decides
 
 
-def with_static_modes(scene: Scene, tolerance: float) -> tuple[Modal, float] | None:
+def with_static_modes(scene: Scene, tolerance: float, highest: int = 1) -> tuple[Modal, float] | None:
     """Fewer modes for the scene, and the frequency above which they are replaced; None if it does not pay.
 
     The error is estimated on the structure with all contacts open, and with all of them stuck.
@@ -34,7 +34,7 @@ def with_static_modes(scene: Scene, tolerance: float) -> tuple[Modal, float] | N
         return None
     directions = _directions(scene)
     for factor in ABOVE:
-        limit = factor * scene.frequency_range[1]
+        limit = factor * highest * scene.frequency_range[1]
         fewer = condensed(modal, directions, modal.frequency > limit)
         if fewer.frequency.size > PAYS * modal.frequency.size:
             return None

@@ -4,34 +4,35 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from fcm.response import sentences
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
-from fcm.response.foreseen import ENOUGH
 from fcm.response.groups import Work
-from fcm.response.law import UNKNOWNS, ClosedForm, Coefficients
 from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
-from fcm.response.path import Progress
-from fcm.response.put_back import checked, least_room, restored
+from fcm.response.put_back import checked, restored
 from fcm.response.result import Response
-from fcm.response.structure import unknown_contacts
-from fcm.response.trace import METHODS, ResponseError
-from fcm.run import Checkpoint, fingerprint
+from fcm.response.trace import METHODS, ResponseError, Wanted, wanted_of
+from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.run.progress import part
 from fcm.scene.model import Scene
+from fcm.table import Table
 
-LARGEST_GROUP = 30  # curves; what an interruption costs at most, for a group is finished as a whole
-LARGEST_MATRICES = 20_000  # numbers in the Jacobians of a group
-FIRST, SECOND = 0.9, 0.95  # share of the bar at which the curves are traced, and checked and traced again
+BATCH = 10  # curves; what an interruption costs at most, for a batch is finished as a whole
+HIGHEST_EXPECTED = 9  # harmonic, where an accuracy decides
+FIRST = 0.9  # share of the bar at which the curves are traced; then they are checked
 
 
 def trace(
     scene: Scene,
     method: str = "table",
-    table: Coefficients | None = None,
+    table: Table | None = None,
     progress: Progress | None = None,
     *,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
     jobs: int = 1,
     tolerance: float | None = TOLERANCE,
     keep: Path | Checkpoint | None = None,
@@ -50,6 +51,11 @@ def trace(
         An open table; the shipped one by default.
     progress : optional
         Called now and then with the finished fraction and a text.
+    harmonics : int or sequence of int, optional
+        Harmonics of the balance: up to a number, or some that begin with 1; the scene's by default.
+    accuracy : float, optional
+        Instead, of the peaks and folds, relative: as many harmonics as that takes; the scene's, or 1e-2, where
+        there are no harmonics given.
     jobs : int
         Processes for the groups of curves; 0 for one on each core.
     tolerance : float, optional
@@ -75,7 +81,8 @@ def trace(
     begin = time.perf_counter()
     with checkpoint_of(keep, resume) as checkpoint:
         curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint)
-        response = _traced(_Sweep(scene, method, table, curves), tolerance, progress)
+        wanted = wanted_of(scene, harmonics, accuracy)
+        response = _traced(_Sweep(scene, method, table, wanted, curves), tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
     response.defects = curves.defects
@@ -88,72 +95,60 @@ def trace(
 def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance)
+    highest = max(sweep.wanted.harmonics or (HIGHEST_EXPECTED,))
+    lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance, highest)
     response, said = sweep.run(lighter, part(progress, 0.0, FIRST)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
         if 2.0 * shift <= tolerance or response.interrupted:
             said.append(sentences.on_modes(lighter, shift))
         else:  # the estimate was too good: with all modes after all
-            lighter = leave_out(curves, 0.0)
-            response = sweep.run(lighter, part(progress, FIRST, SECOND))
+            lighter = leave_out(curves, 0.0, highest)
+            response = sweep.run(lighter, part(progress, FIRST, 1.0))
     response = restored(response, lighter)
-    if lighter.states:
-        said += _as_foreseen(sweep, response, lighter, part(progress, SECOND, 1.0))
     if sweep.table_idle:
         said.append("the table: no contact needs it (no effect)")
-    response.left_out = [*said, *sentences.on_means(lighter), *sentences.on_points(response)]
+    response.left_out = [*said, *sentences.on_means(lighter)]
     return response
-
-
-def _as_foreseen(sweep: _Sweep, response: Response, lighter: Lighter, progress: Progress | None) -> list[str]:
-    """Solve curves again on which contacts did not stay as foreseen, with all of them; what is to be said."""
-    rooms = [least_room(*each, lighter.states) for each in zip(response.curves, lighter.full, strict=True)]
-    wrong = [i for i, room in enumerate(rooms) if min(room.values()) < ENOUGH]
-    if wrong:
-        again = leave_out(tuple(lighter.full[i] for i in wrong), 0.0, foresee=False)
-        for i, curve in zip(wrong, restored(sweep.run(again, progress), again).curves, strict=True):
-            response.curves[i] = curve
-    right = [room for i, room in enumerate(rooms) if i not in wrong]
-    return sentences.on_contacts(lighter, right, len(wrong))
 
 
 class _Sweep:
     """One after the other the sweeps of a run, each with less left out; one bar for all of them."""
 
-    def __init__(self, scene: Scene, method: str, table: Coefficients | None, curves: CurveSweep) -> None:
+    def __init__(
+        self, scene: Scene, method: str, table: Table | None, wanted: Wanted, curves: CurveSweep
+    ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
+        self.wanted = wanted
         self.table_idle = method == "table" and table is None  # until it is opened
         # of the table before it is used, for it counts its look-ups
         self.mark = b"" if curves.checkpoint is None else fingerprint(method, table)
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
-        groups = in_groups(lighter.curves)
-        work = Work(self.method, self._coefficients(lighter))
-        scene, contacts = self.scene, tuple(c.name for c in groups[0][0].contacts)
-        curves = self.curves.curves(work, groups, self.mark, progress)
+        batches = in_batches(lighter.curves)
+        work = Work(replace(self.wanted, table=self._table(lighter)))
+        scene, contacts = self.scene, tuple(c.name for c in batches[0][0].contacts)
+        curves = self.curves.curves(work, batches, self.mark, progress)
         return Response(scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit)
 
-    def _coefficients(self, lighter: Lighter) -> Coefficients | None:
+    def _table(self, lighter: Lighter) -> Table | None:
         """What the curves are followed with; a table only if a contact needs it."""
         if self.method != "table" or self.table is not None:
             return self.table
         if lighter.idle_table:
-            return ClosedForm()
+            return None
         self.table_idle = False
         return _shipped_table()
 
 
-def _shipped_table() -> Coefficients:
+def _shipped_table() -> Table:
     """The shipped table, opened once for all groups."""
     from fcm.table import open_table
 
     return open_table()
 
 
-def in_groups(curves: tuple[Scene, ...]) -> list[tuple[Scene, ...]]:
-    """The curves in groups that advance together; how many there are does not depend on the cores."""
-    unknowns = UNKNOWNS * max(unknown_contacts(curves[0]), 1)
-    size = max(min(LARGEST_GROUP, LARGEST_MATRICES // unknowns**2), 1)
-    return [curves[first : first + size] for first in range(0, len(curves), size)]
+def in_batches(curves: tuple[Scene, ...]) -> list[tuple[Scene, ...]]:
+    """The curves in batches; each curve is computed alone, so that no result depends on them."""
+    return [curves[first : first + BATCH] for first in range(0, len(curves), BATCH)]

@@ -1,93 +1,190 @@
-"""From a scene to its response: start, follow, correct with the closed form, assemble the results."""
+"""One curve of a scene: every branch of it traced, and its points recorded."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.response.assembly import Assembly
-from fcm.response.balance import Balance
-from fcm.response.branches import all_branches, outcome
-from fcm.response.changes import with_changes
-from fcm.response.crossings import with_stability
-from fcm.response.law import ClosedForm, Coefficients
-from fcm.response.newton import CLOSE
-from fcm.response.path import Progress
-from fcm.response.points import corrected, refined, with_folds
-from fcm.response.result import Curve, Response
-from fcm.response.structure import IntArray, group_of, with_contact
-from fcm.scene.model import Scene
+from fcm.continuation import Mark, Status
+from fcm.harmonic.choice import Accurate, accurate, estimated
+from fcm.harmonic.drift import REASONS, undetermined
+from fcm.harmonic.record import Record, cycles, loops, recorded, states
+from fcm.harmonic.stability import stability, with_points
+from fcm.harmonic.system import System
+from fcm.response.result import Curve, Peak
+from fcm.scene.model import FloatArray, Scene
+from fcm.scene.rules import harmonics_fault
+from fcm.table import Table
+from fcm.units import in_unit
 
-TO_BE_CORRECTED = 1e-6  # error of a traced point that the correction of the table's error removes as well
 METHODS = ("table", "closed-form")
+ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
+Rows = npt.NDArray[np.intp]
 
 
 class ResponseError(ValueError):
     """The calculation cannot be begun; the message says why."""
 
 
-def trace_group(
-    scene: Scene,
-    method: str = "table",
-    table: Coefficients | None = None,
-    progress: Progress | None = None,
-    exact: Coefficients | None = None,
-) -> Response:
-    """Trace the curves of a scene as one group; the arguments are those of `fcm.response.trace`.
+@dataclass(frozen=True)
+class Wanted:
+    """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
-    The points are solutions with the coefficients `exact`: by default the closed form.
+    With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to be
+    corrected, its points are solutions with the closed form.
     """
+
+    harmonics: tuple[int, ...] | None = (1,)
+    accuracy: float = ACCURACY
+    table: Table | None = None
+    corrected: bool = True
+
+
+def wanted_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: float | None) -> Wanted:
+    """What was asked for: by a caller, else by the scene, else the default accuracy.
+
+    Raises
+    ------
+    ResponseError
+        If both are given, or they are out of range.
+    """
+    if harmonics is not None and accuracy is not None:
+        raise ResponseError("harmonics and accuracy exclude one another: the second chooses the first")
+    if harmonics is None and accuracy is None:
+        harmonics, accuracy = scene.harmonics, scene.accuracy
+    if harmonics is None:
+        accuracy = ACCURACY if accuracy is None else accuracy
+        if not 0.0 < accuracy < 1.0:
+            raise ResponseError(f"accuracy is {accuracy:g}, but it is a relative error between 0 and 1")
+        return Wanted(None, accuracy)
+    chosen = tuple(range(1, harmonics + 1)) if isinstance(harmonics, int) else tuple(harmonics)
+    if fault := harmonics_fault(chosen):
+        raise ResponseError(f"harmonics: {fault}")
+    return Wanted(chosen)
+
+
+def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
+    """The response curve of a scene without a sweep."""
     begin = time.perf_counter()
-    curves = scene.each_curve()
-    group = group_of([with_contact(curve) for curve in curves])
-    exact_balance = Balance(group, exact or ClosedForm())
-    by_table = method == "table" and not isinstance(table, ClosedForm)
-    used = Balance(group, table or _default_table()) if by_table else exact_balance
-    steps = np.array([c.max_step for c in curves])
-    branches = all_branches(used, steps, progress, TO_BE_CORRECTED if by_table else CLOSE)
-    points, uncorrected = corrected(exact_balance, branches, len(curves))
-    if not by_table:
-        points.shift[:] = 0.0
-    points = with_folds(exact_balance, refined(exact_balance, with_changes(exact_balance, points)))
-    points, stable = with_stability(exact_balance, points)
-    results = Assembly(exact_balance, points, stable, branches).curves(curves, scene.modal.dofs)
-    if by_table:
-        stopped = np.array([not outcome(branches, i)[0] for i in range(len(curves))])
-        _without_table(scene, curves, results, np.flatnonzero((uncorrected > 0) | stopped), progress)
-    response = Response(
-        scene.title, scene.modal.dofs, tuple(c.name for c in scene.contacts), results, method,
-        scene.frequency_unit,
-    )  # fmt: skip
-    response.seconds = time.perf_counter() - begin
-    share = response.seconds / max(sum(c.points for c in results), 1)
-    for curve, number in zip(results, uncorrected, strict=True):
-        curve.seconds = share * curve.points  # curves advance together: each is charged by its points
-        curve.uncorrected = curve.uncorrected if curve.without_table else int(number)
-    return response
+    system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
+    if wanted.harmonics is None:
+        found = accurate(system, wanted.accuracy)
+    else:
+        found = estimated(system, np.inf)
+    if wanted.table is not None:
+        wanted.table.outside += getattr(system.coarse, "outside", 0)
+    if not found.traced.branches.paths:
+        from fcm.response.groups import lost_curve
+
+        return lost_curve(scene, "no solution was found at either end of the range; try another range")
+    curve = _curve(found)
+    if wanted.harmonics is None and not found.reached and curve.complete:
+        error = "an unknown one" if np.isnan(found.worst) else f"{found.worst:.1e}"
+        count = len(found.system.harmonics)
+        curve.short_of = f"with {count} harmonics an estimated error of {error} remains"
+    curve.seconds = time.perf_counter() - begin
+    return curve
 
 
-def _without_table(
-    scene: Scene,
-    curves: tuple[Scene, ...],
-    results: list[Curve],
-    again: IntArray,
-    progress: Progress | None,
-) -> None:
-    """Trace again, with the closed form, the curves that stop early or whose correction fails.
+def _curve(found: Accurate) -> Curve:
+    """What was traced as a curve: branches one after the other, with a row of NaN between them."""
+    found, parts = _with_stability(found)
+    system, paths = found.system, found.traced.branches.paths
+    points = recorded(system, paths)
+    scene, first = system.scene, system.harmonics.index(1)
+    rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
+    X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
+    reason, nowhere = _incomplete(found, points)
+    stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
+    error = np.concatenate([one.amplitude for one in found.errors])
+    return Curve(
+        parameters=dict(scene.parameters),
+        frequency=_pick(points.z[:, -1], rows),
+        amplitude=_pick(points.amplitude, rows),
+        fundamental=_pick(np.abs(X[:, first]), rows),
+        phase=_pick(np.angle(X[:, first]), rows),
+        mean=_pick(points.mean, rows),
+        regime=_pick(states(system, points.z), rows),
+        loop=_pick(loops(system, points.z), rows),
+        cycle=_pick(cycles(system, points.z), rows),
+        stable=_pick(stable, rows),
+        table_error=_pick(points.shift, rows),
+        error=_pick(error, rows),
+        truncation_error=_pick(np.concatenate([one.truncation for one in found.errors]), rows),
+        complete=not reason,
+        reason=reason,
+        peaks=_peaks(scene.modal.dofs, points, found.peak),
+        folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
+        seconds=0.0,
+        evaluations=sum(path.evaluations for path in paths),
+        harmonics=system.harmonics,
+        harmonic=_pick(X, rows) if len(system.harmonics) > 1 else None,
+    )
 
-    The force of a contact much stiffer than the structure carries the table's error multiplied.
-    """
-    if again.size == 0:
-        return
-    whole = replace(scene, curves=tuple(curves[i] for i in again))
-    for i, curve in zip(again, trace_group(whole, "closed-form", None, progress).curves, strict=True):
-        curve.without_table = True
-        results[i] = curve
+
+def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
+    """The same with points where stability changes between folds, and whether each point is stable."""
+    paths, errors, stable = [], [], []
+    for path, error in zip(found.traced.branches.paths, found.errors, strict=True):
+        judged = stability(found.system, path)
+        after = np.array([crossing.after for crossing in judged.crossings], dtype=np.intp)
+        paths.append(with_points(path, judged.crossings))
+        errors.append(
+            replace(
+                error,
+                amplitude=_between(error.amplitude, after),
+                truncation=_between(error.truncation, after),
+            )
+        )
+        stable.append(np.insert(judged.stable, after + 1, 1.0))  # a crossing counts to the stable side
+    branches = replace(found.traced.branches, paths=tuple(paths))
+    return replace(found, traced=replace(found.traced, branches=branches), errors=tuple(errors)), stable
 
 
-def _default_table() -> Coefficients:
-    from fcm.table import open_table
+def _between(values: FloatArray, after: Rows) -> FloatArray:
+    """With the means of neighbours inserted after some rows."""
+    means = 0.5 * (values[after] + values[np.minimum(after + 1, len(values) - 1)])
+    return np.insert(values, after + 1, means, axis=0)
 
-    return open_table()
+
+def _peaks(dofs: tuple[str, ...], points: Record, error: FloatArray) -> dict[str, Peak]:
+    """Where each degree of freedom is greatest: at a point, for every peak is one."""
+    highest = points.amplitude.argmax(axis=0)
+    return {
+        dof: Peak(float(points.amplitude[i, d]), float(points.z[i, -1]), float(error[d]))
+        for d, (dof, i) in enumerate(zip(dofs, highest, strict=True))
+    }
+
+
+def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bool_]]:
+    """Why a curve is not complete, empty if it is; and which of its points are no steady states (point,)."""
+    system, branches = found.system, found.traced.branches
+    scene, unit = system.scene, system.scene.frequency_unit
+    reasons = undetermined(system, points.z, points.force)
+    nowhere = np.logical_or.reduce([np.zeros(points.path.size, dtype=bool), *reasons.values()])
+    for why, which in reasons.items():
+        if which.any():
+            omega = in_unit(points.z[which, -1], unit)
+            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {REASONS[why]}", nowhere
+    status = branches.status
+    if status is Status.COMPLETE:
+        return "", nowhere
+    broken = next((path for path in branches.paths if path.status is status), None)
+    rigid = bool((system.linear.natural == 0.0).any()) and status is Status.STALLED
+    why = "; rigid-body modes are at rest only while closed contacts hold them" if rigid else ""
+    if broken is None:
+        return f"{status.value}{why}", nowhere
+    end = float(in_unit(broken.parameter[-1], scene.frequency_unit))
+    return f"stopped at {end:.8g} {scene.frequency_unit}: {status.value}{why}", nowhere
+
+
+def _pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
+    """Rows of a curve; where an index is -1, a gap: NaN or ''."""
+    out = values[rows]
+    out[rows < 0] = "" if values.dtype.kind == "U" else np.nan
+    return out

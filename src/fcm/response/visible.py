@@ -11,7 +11,8 @@ from fcm.response.result import Curve, Response
 from fcm.response.trace import ResponseError
 from fcm.scene.model import Scene
 
-POINTS = ("amplitude", "phase", "mean")  # of curves, arrays over the dofs
+POINTS = ("amplitude", "fundamental", "phase", "mean", "error")  # of curves, arrays over the dofs
+ORBITS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
 CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histories
 
 
@@ -42,11 +43,13 @@ def visible(response: Response, scene: Scene) -> Response:
 
 
 def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
-    orbits = None if curve.orbits is None else _at(curve.orbits, ("fundamental",), shown)
+    orbits = None if curve.orbits is None else _at(curve.orbits, ORBITS, shown)
     if orbits is not None and orbits.jumps is not None:
         orbits = replace(orbits, jumps=[_at(jump, ("before", "after"), shown) for jump in orbits.jumps])
     found: Curve = _at(curve, POINTS, shown)
-    return replace(found, peaks={name: curve.peaks[name] for name in dofs}, orbits=orbits)
+    harmonic = None if curve.harmonic is None else curve.harmonic[..., shown]
+    peaks = {name: curve.peaks[name] for name in dofs}
+    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic)
 
 
 def _record(record: Any, shown: Any) -> Any:

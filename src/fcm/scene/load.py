@@ -30,6 +30,7 @@ from fcm.scene.parts import (
     force_of,
     read_contacts,
     read_forces,
+    read_harmonics,
     read_response,
     read_units,
     response_table,
@@ -100,6 +101,7 @@ def scene_from_dict(
     unit = _unit(top)
     response = response_table(top)
     ends, step = read_response(top, response, unit)
+    harmonics, accuracy = read_harmonics(response)
     parts, reported, notes = _parts(top, Files(Path(folder), largest_file), unit, response, ends)
     schedule, start = read_schedule(top, unit), read_start(top, parts)
     swept = read_sweep(top, parts)
@@ -114,6 +116,8 @@ def scene_from_dict(
         units=units,
         frequency_range=ends,
         max_step=step,
+        harmonics=harmonics,
+        accuracy=accuracy,
         frequency_unit=unit,
         schedule=schedule,
         start=start,

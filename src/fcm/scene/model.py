@@ -87,6 +87,8 @@ class Scene:
     forces: tuple[Force, ...]
     frequency_range: tuple[float, float]  # [rad/s], NO_RANGE if there is only a schedule
     max_step: float  # longest step along a curve, relative to the curve's own extent
+    harmonics: tuple[int, ...] | None = None  # of the balance, if the scene says so
+    accuracy: float | None = None  # that is to choose them, if the scene says so
     frequency_unit: str = "rad/s"  # the unit of the scene's file and of results: "rad/s" or "Hz"
     schedule: tuple[Phase, ...] = ()
     start: Start | None = None  # of the schedule; None is rest

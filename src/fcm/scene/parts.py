@@ -5,13 +5,21 @@ from __future__ import annotations
 from math import nan
 from typing import Any
 
-from fcm.scene.errors import quoted
+from fcm.scene.errors import quoted, shown
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.node_pairs import along, read_direction, read_pairs, read_shares
-from fcm.scene.rules import FRACTION, POSITIVE, RULES, SHORTEST_STEP, step_fault
+from fcm.scene.rules import (
+    FRACTION,
+    MOST_HARMONICS,
+    POSITIVE,
+    RULES,
+    SHORTEST_STEP,
+    harmonics_fault,
+    step_fault,
+)
 from fcm.scene.section import Section
 
 Dofs = Names | None
@@ -158,3 +166,22 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
         what = f"its ends differ by {(high - low) / high:.0e} of themselves, and must by {NARROWEST:g}"
         section.wrong("frequency", f"is too narrow to follow a curve through: {what} or more")
     return (low, high), step
+
+
+def read_harmonics(section: Section | None) -> tuple[tuple[int, ...] | None, float | None]:
+    """The harmonics of the balance, and the accuracy that is to choose them; None for what is not given."""
+    if section is None:
+        return None, None
+    accuracy = section.number("accuracy", FRACTION) if "accuracy" in section.data else None
+    if "harmonics" not in section.data:
+        return None, accuracy
+    given = section.data["harmonics"]
+    chosen = tuple(given) if isinstance(given, list) else (1,)
+    if isinstance(given, int) and not isinstance(given, bool) and 0 < given <= MOST_HARMONICS:
+        chosen = tuple(range(1, given + 1))
+    elif not isinstance(given, list) or harmonics_fault(chosen):
+        wanted = f"a number from 1 to {MOST_HARMONICS}, or a list of them such as [1, 2, 3, 9]"
+        section.wrong("harmonics", f"must be {wanted}, rising, the first of them 1; is {shown(given)}")
+    if accuracy is not None:
+        section.wrong("accuracy", "chooses the harmonics; give it or harmonics, not both")
+    return chosen, accuracy

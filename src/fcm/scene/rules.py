@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil, inf, isfinite
 from numbers import Real
 
@@ -15,6 +17,7 @@ from fcm.scene.model import FloatArray, Scene
 IndexArray = npt.NDArray[np.intp]
 
 LARGEST = 1e100  # magnitudes beyond this overflow when three of them are multiplied
+MOST_HARMONICS = 50
 SMALLEST = 1e-100  # of those that are divided by
 
 
@@ -71,6 +74,17 @@ def step_fault(step: float) -> str:
         f"must be at least {SHORTEST_STEP:g}, is {shown(step)}, by which a curve has at least "
         f"{1.0 / step:.0e} points"
     )
+
+
+def harmonics_fault(harmonics: Sequence[int]) -> str:
+    """What is wrong with the harmonics of a balance; empty if nothing is."""
+    whole = all(
+        isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= MOST_HARMONICS for h in harmonics
+    )
+    rising = all(a < b for a, b in pairwise(harmonics))
+    if harmonics and whole and rising and harmonics[0] == 1:
+        return ""
+    return f"whole numbers from 1 to {MOST_HARMONICS}, rising, the first of them 1"
 
 
 def least_points(scene: Scene) -> int:

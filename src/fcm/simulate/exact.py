@@ -13,10 +13,9 @@ import numpy as np
 from fcm.motion.errors import SimulationError
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group
-from fcm.response.path import Progress
 from fcm.response.result import INTERRUPTED, Curve, Response
 from fcm.response.trace import ResponseError
-from fcm.run import Checkpoint, Interrupted, Report, fingerprint
+from fcm.run import Checkpoint, Interrupted, Progress, Report, fingerprint
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
 from fcm.simulate.explore import Explorer

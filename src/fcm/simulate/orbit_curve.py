@@ -12,7 +12,7 @@ from fcm.contact.limits import FloatArray
 from fcm.motion.errors import SimulationError
 from fcm.orbit.family import family
 from fcm.response.groups import lost_curve
-from fcm.response.result import Curve, Orbits
+from fcm.response.result import Curve, Orbits, Peak
 from fcm.scene.model import Scene
 from fcm.simulate.branch import Branch
 from fcm.simulate.sample import Sample
@@ -49,17 +49,19 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
         empty,
         frequency=frequency,
         amplitude=amplitude,
+        fundamental=_rows(points, "fundamental", empty),
         phase=_rows(points, "phase", empty),
         mean=_rows(points, "mean", empty),
         regime=_regimes(points, len(scene.contacts)),
         loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
-        stable=np.array([p is not None and p.stable for p in points], dtype=bool),
+        cycle=np.full((len(points), *empty.cycle.shape[1:]), np.nan),
+        stable=np.array([np.nan if p is None else float(p.stable) for p in points]),
         table_error=zero,
+        error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
         peaks={d: _peak(amplitude[:, i], frequency) for i, d in enumerate(empty.peaks)},
         orbits=Orbits(
-            _rows(points, "fundamental", empty),
             _numbers(points, "residual"),
             np.full(len(points), "", dtype="<U4"),
             _numbers(points, "repeats"),
@@ -120,8 +122,8 @@ def _short(states: str) -> str:
     return states if len(states) <= LONGEST_REGIME else states[: LONGEST_REGIME - 3] + "..."
 
 
-def _peak(amplitude: FloatArray, frequency: FloatArray) -> tuple[float, float]:
+def _peak(amplitude: FloatArray, frequency: FloatArray) -> Peak:
     if not np.isfinite(amplitude).any():
-        return np.nan, np.nan
+        return Peak(np.nan, np.nan)
     at = int(np.nanargmax(amplitude))
-    return float(amplitude[at]), float(frequency[at])
+    return Peak(float(amplitude[at]), float(frequency[at]), 0.0)

@@ -95,24 +95,15 @@ def _uniform(random: np.random.Generator, count: int, nodes: Range, of: int) -> 
 
 
 class Reach:
-    """The closed form in the place of a table, noting where in the charts of a resolution it is asked."""
+    """Where in the charts of a resolution a table is asked."""
 
     def __init__(self, resolution: Resolution) -> None:
         self.resolution = resolution
         self.looked_up = 0
         self._low, self._high = np.full((2, 3), np.inf), np.full((2, 3), -np.inf)
 
-    def gradients(
-        self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
-    ) -> tuple[FloatArray, FloatArray]:
-        """Coefficients and derivatives as `fcm.fourier_gradients` gives them."""
-        from fcm.contact.fourier import fourier_gradients  # which look-up does not need
-
-        arrays = np.broadcast_arrays(*(np.asarray(a, dtype=np.float64) for a in (n0_bar, b_bar, phi)))
-        self._note(*(a.reshape(-1) for a in arrays))
-        return fourier_gradients(*arrays)
-
-    def _note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
+    def note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
+        """Look-ups at points (point,)."""
         place = locate(np.stack((n0, b, phi)), self.resolution)
         self.looked_up += n0.size
         first_slip = self.resolution[0] - 1 + NODES_BETWEEN

@@ -1,0 +1,44 @@
+"""``--harmonics`` and ``--accuracy``: how many harmonics a balance has, or what decides it."""
+
+from __future__ import annotations
+
+import click
+
+WRONG = "is not a number of harmonics from 1 to 50, nor some of them such as 1,2,3,9"
+
+
+def harmonics(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tuple[int, ...] | None:
+    """The harmonics named by an option; None without it."""
+    if text is None:
+        return None
+    from fcm.scene.rules import harmonics_fault
+
+    try:
+        numbers = tuple(int(word) for word in text.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{text!r} {WRONG}.") from None
+    chosen = tuple(range(1, numbers[0] + 1)) if len(numbers) == 1 else numbers
+    if fault := harmonics_fault(chosen[:51]):
+        raise click.BadParameter(f"{text!r} {WRONG}: {fault}.")
+    return chosen
+
+
+def accuracy(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
+    """The accuracy asked for, a relative error; None without it."""
+    if value is not None and not 0.0 < value < 1.0:
+        raise click.BadParameter(f"{value:g} is not a relative error between 0 and 1.")
+    return value
+
+
+def check_options(
+    chosen: tuple[int, ...] | None, error: float | None, method: str, table: str | None
+) -> None:
+    """A usage error if these options exclude one another, or mean nothing with the method."""
+    if chosen is not None and error is not None:
+        raise click.UsageError("--accuracy chooses the harmonics; give it or --harmonics, not both.")
+    if method == "exact" and (chosen is not None or error is not None):
+        raise click.UsageError(
+            "--harmonics and --accuracy are of no use with --method exact: it has them all."
+        )
+    if table is not None and chosen is not None and chosen != (1,):
+        raise click.UsageError("--table is of no use with more than one harmonic: their forces are exact.")
