@@ -76,9 +76,10 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
-    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least",
+    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
+    "harmonic_amplitude", "slip_path",
 )  # fmt: skip
-FORCES = ("spring_force",)
+FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
 
 
 class Field(NamedTuple):
