@@ -25,8 +25,9 @@ WORK = 1e8  # evaluations times unknowns squared, about a minute, beyond which n
 class Accurate:
     """A response, its errors, and whether they are below what was asked for.
 
-    shown, errors (path,) belong to the branches' paths; peak (dof,) is the relative error of the greatest amplitude
-    over all of them, and worst the greatest of these and of the errors of the folds. NaN where it cannot be told.
+    shown, errors (path,) belong to the branches' paths; peak (dof,) is the relative error of the greatest
+    amplitude over all of them, and worst the greatest of these and of the errors of the folds. NaN where it
+    cannot be told.
     """
 
     system: System
@@ -47,10 +48,10 @@ class Accurate:
 def accurate(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
-    Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from its
-    true place than the accuracy (relative), the harmonics that would do most are added, and all is traced again,
-    from starts of its own: a branch of few harmonics may not exist with more. Whether the branches are complete is
-    another question, see their status.
+    Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from
+    its true place than the accuracy (relative), the harmonics that would do most are added, and all is
+    traced again, from starts of its own: a branch of few harmonics may not exist with more. Whether the
+    branches are complete is another question, see their status.
     """
     for _ in range(ROUNDS):
         found = estimated(system, accuracy, progress)
@@ -82,9 +83,10 @@ def estimated(system: System, accuracy: float, progress: Progress | None = None)
 
 
 def enlarged(found: Accurate, accuracy: float) -> tuple[int, ...]:
-    """The harmonics of a response and those that would do most, until what the others do is below the accuracy.
+    """The harmonics of a response and those that would do most, until the others do less than the accuracy.
 
-    What harmonics do is more than they are, because they change the others: by how much is told by the error now.
+    What harmonics do is more than they are, because they change the others: by how much is told by the
+    error now.
     """
     share = np.max([one.share for one in found.errors], axis=0, initial=0.0)
     total = share.sum()

@@ -38,8 +38,8 @@ class Corrected:
     def everywhere(self, places: Indices) -> FloatArray:
         """Relative displacement (point, 1 + dof), interpolated between points at which it is found.
 
-        These are the places given, every so many points, those next to a linear part, and those between two of
-        them if the middle one is not what they lead to expect.
+        These are the places given, every so many points, those next to a linear part, and those between two
+        of them if the middle one is not what they lead to expect.
         """
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
@@ -69,7 +69,7 @@ class Corrected:
         return most
 
     def bridge(self, place: int) -> None:
-        """Where the corrected curve is missed, as it is at a corner that has moved: the mean of those beside it."""
+        """Where the corrected curve is missed, as at a corner that has moved: the mean of those beside it."""
         if np.isfinite(self.change[place]).all():
             return
         beside = []
@@ -90,8 +90,9 @@ class Corrected:
         expected = (1.0 - part) * self.change[before] + part * self.change[after]
         off = np.abs(found - expected).max(axis=1)
         differs = off > np.maximum(OFF * np.abs(found).max(axis=1), NOTHING)
-        mixed: npt.NDArray[np.bool_] = np.isnan(off) & ~(np.isnan(found[:, 0]) & np.isnan(expected[:, 0]))
-        return differs | mixed
+        lost, missing = np.isnan(found[:, 0]), np.isnan(expected[:, 0])
+        more: npt.NDArray[np.bool_] = differs | (lost != missing)
+        return more
 
     def find(self, places: Indices) -> None:
         """The displacements of some points, which are then known."""

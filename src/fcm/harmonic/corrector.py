@@ -12,7 +12,7 @@ from fcm.scene.model import FloatArray
 
 FURTHER = 8  # harmonics beyond those of the balance: those that would do most
 LEAST = 0.01  # of what the first of them would do; what does less is not taken
-COVERED = 0.9  # of what the best of them do, by which a set that is there already is good enough
+COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
 FAR = 0.5  # a displacement of this part of the solution's size is not believed
 TURNED = 0.7  # nor a curve that goes another way, by the cosine of the angle
 GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
@@ -23,28 +23,30 @@ class Corrector:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.known: dict[tuple[int, ...], Newton] = {}
+        self.known: dict[tuple[int, ...], tuple[Newton, Between]] = {}
 
     def displaced(self, z: FloatArray, direction: FloatArray, share: FloatArray) -> FloatArray | None:
-        """Frequency and amplitudes (1 + dof,) of the corrected curve, in the plane through z normal to the curve.
+        """Frequency and amplitudes (1 + dof,) of the corrected curve in the plane normal to the curve at z.
 
-        direction is that of the curve at z, share (harmonic,) what each harmonic left out would do there. None if
-        no harmonic does anything; NaN if the corrected curve is not found, or too far to be believed.
+        direction is that of the curve at z, share (harmonic,) what each harmonic left out would do there.
+        None if no harmonic does anything; NaN if the corrected curve is not found, or too far to be
+        believed.
         """
         more = self.chosen(share)
         if more == self.system.harmonics:
             return None
         if more not in self.known:
-            self.known[more] = Newton(Between(self.system.with_harmonics(more).balance()))
-        newton = self.known[more]
-        problem = newton.problem.inner
+            between = Between(self.system.with_harmonics(more).balance())
+            self.known[more] = Newton(between), between
+        newton, between = self.known[more]
+        problem = between.inner
         guess = padded(z, self.system.harmonics, more)
         problem.measure(guess)
         row = padded(direction, self.system.harmonics, more) / problem.scale
         row /= np.sqrt(row @ row)
         newton.scale[:], newton.row[:] = problem.scale, row
         found = np.full(1 + problem.outputs, np.nan)
-        if _corrected(newton, guess) and np.asarray(newton.tangent) @ row > TURNED:
+        if _corrected(newton, between, guess) and np.asarray(newton.tangent) @ row > TURNED:
             problem.report(newton.z, np.zeros_like(guess))
             found[0], found[1:] = newton.z[-1], problem.output
         return found
@@ -61,17 +63,17 @@ class Corrector:
         return tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
 
 
-def _corrected(newton: Newton, guess: FloatArray) -> bool:
+def _corrected(newton: Newton, between: Between, guess: FloatArray) -> bool:
     """Move a guess to the curve in the plane of the row: at once, or gradually."""
-    newton.problem.taken = 0.0
+    between.taken = 0.0
     newton.z[:] = guess
     if newton.correct(1.0):
         return bool(newton.moved <= FAR)
     newton.z[:] = guess
-    newton.problem.evaluate(guess)
-    newton.problem.removed[:] = newton.problem.residual
+    between.evaluate(guess)
+    between.removed[:] = between.residual
     for part in GRADUAL:
-        newton.problem.taken = 1.0 - part
+        between.taken = 1.0 - part
         if not newton.correct(1.0) or newton.moved > FAR:
             return False
     far = (np.asarray(newton.z) - guess) / newton.scale

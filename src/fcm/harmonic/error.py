@@ -1,9 +1,9 @@
 r"""How wrong a curve of a balance is by the harmonics that it leaves out, with their feedback on the others.
 
-At some points of the curve the balance with more harmonics is solved in the plane normal to the curve, so that
-nothing special happens at folds: these points are displaced to the corrected curve. In between the displacement
-is interpolated. The error of an amplitude is its difference to the corrected curve at the same frequency; that of
-a peak, the difference of the heights; that of a fold, the difference of the frequencies.
+At some points of the curve the balance with more harmonics is solved in the plane normal to the curve, so
+that nothing special happens at folds: these points are displaced to the corrected curve. In between the
+displacement is interpolated. The error of an amplitude is its difference to the corrected curve at the same
+frequency; that of a peak, the difference of the heights; that of a fold, the difference of the frequencies.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from fcm.harmonic.shifted import Beside
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
-CHANCE = 0.1  # of the typical error of the degrees of freedom: one that is less is so by chance, at a change of sign
+CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,8 @@ class Errors:
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     peak (dof,): of the height of the greatest amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
-    share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and folds, of
-    the greatest amplitude of the degree of freedom to which it matters most.
+    share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
+    folds, of the greatest amplitude of the degree of freedom to which it matters most.
     """
 
     amplitude: FloatArray

@@ -33,9 +33,10 @@ class Further:
         self.kernel = PeriodicContact(list(system.harmonics), list(range(1, HIGHEST + 1)))
 
     def forces(self, z: FloatArray) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.bool_]]:
-        """Of motions (point, unknown + 1), the frequency last: (point, harmonic, port), and where they are linear.
+        """Of motions (point, unknown + 1): (point, harmonic, port); and where they are linear.
 
-        Linear (point,) is a motion in which no contact slips or separates: its forces have no further harmonic.
+        Linear (point,) is a motion in which no contact slips or separates: its forces have no further
+        harmonic.
         """
         contacts = self.system.scene.contacts
         out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
@@ -52,7 +53,7 @@ class Further:
         return out, linear
 
     def shares(self, z: FloatArray, force: npt.NDArray[np.complex128], amplitude: FloatArray) -> FloatArray:
-        """Share of the amplitude (point, dof) that each harmonic outside the balance would have: (point, harmonic).
+        """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
 
         The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
         """

@@ -32,8 +32,9 @@ class Beside:
     ) -> None:
         """Values of the other curve, which are `value` at its points with rates `slope`, at given parameters.
 
-        parameter, forward (point,): of the first curve at its points, and the sign of its rate. Results (point,
-        value) in out: NaN where the other curve does not come to that parameter before it turns back.
+        parameter, forward (point,): of the first curve at its points, and the sign of its rate. Results
+        (point, value) in out: NaN where the other curve does not come to that parameter before it turns
+        back.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -81,14 +82,13 @@ class Beside:
     @cython.exceptval(check=False)
     def solve(self, k: cython.Py_ssize_t, wanted: cython.double) -> cython.bint:
         """Where on a piece the parameter is the one wanted, by halving."""
-        count: cython.int
         length: cython.double = self.place[k + 1] - self.place[k]
         before: cython.double = self.parameter[k]
         after: cython.double = self.parameter[k + 1]
         low: cython.double = 0.0
         high: cython.double = 1.0
         rising: cython.bint = after > before
-        for count in range(HALVINGS):
+        for _ in range(HALVINGS):
             self.at = 0.5 * (low + high)
             now: cython.double = cubic(
                 before, after, self.rate[k] * length, self.rate[k + 1] * length, self.at

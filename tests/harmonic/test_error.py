@@ -1,0 +1,85 @@
+"""Estimated errors beside the true ones."""
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Mark
+from fcm.harmonic.choice import estimated
+from fcm.harmonic.error import errors_along
+from fcm.harmonic.system import System
+
+from .calibration import points
+from .truth import scene
+
+EXACT_FOLDS = {5: (1.239829, 1.193559)}  # of the exact motion: `trace_exact`, to 1e-6
+
+
+def test_where_nothing_slips_or_opens_there_is_no_error():
+    for preload in (100, -60):
+        for harmonics in ((1,), (1, 2, 3)):
+            found = estimated(System(scene("yang1998", preload), harmonics), 0.0)
+            assert found.worst == 0.0
+            assert (found.errors[0].amplitude == 0.0).all()
+            assert (found.errors[0].truncation == 0.0).all()
+
+
+@pytest.mark.parametrize("preload", [5, 0, -5])
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
+def test_points_beside_the_exact_motion(preload, harmonics):
+    """Nine in ten within a factor of two, none low by more than three."""
+    pairs, _, _, exact = points(System(scene("yang1998", preload), harmonics), 20)
+    pairs = pairs[pairs.max(axis=1) > 1e-3]
+    assert len(pairs) > 5
+    assert exact > 10
+    ratio = pairs[:, 0] / pairs[:, 1]
+    assert np.mean((ratio > 0.5) & (ratio < 2.0)) >= 0.9
+    assert ratio.min() > 1.0 / 3.0
+
+
+@pytest.mark.parametrize("preload", [20, 10, 5, 2, 0, -5, -20])
+def test_peaks_beside_those_of_many_harmonics(preload):
+    system = System(scene("yang1998", preload))
+    many = estimated(system.with_harmonics(tuple(range(1, 22))), 0.0)
+    height = many.shown[0].amplitude.max(axis=0)
+    for harmonics in ((1,), (1, 2), (1, 2, 3)):
+        found = estimated(system.with_harmonics(harmonics), 0.0)
+        true = np.abs(height / found.shown[0].amplitude.max(axis=0) - 1.0)
+        for known, is_really in zip(found.peak, true, strict=True):
+            if is_really > 1e-3:
+                assert is_really / 2.0 < known < is_really * 2.0
+            else:
+                assert known < 3e-3
+
+
+def test_folds_beside_those_of_the_exact_motion():
+    found = estimated(System(scene("yang1998", 5)), 0.0)
+    (path,) = found.traced.branches.paths
+    folds = path.parameter[path.where(Mark.FOLD)]
+    true = np.abs(np.array(EXACT_FOLDS[5]) / folds - 1.0)
+    assert true.max() > 4e-3
+    assert found.errors[0].fold == pytest.approx(true, rel=0.5)
+
+
+def test_where_no_curve_of_more_harmonics_is_near_it_says_so():
+    """With one harmonic the closed branch of `isola` peaks at twice its true height."""
+    found = estimated(System(scene("isola")), 0.0)
+    assert np.isnan(found.worst)
+    assert np.isnan(found.peak).all()
+
+
+def test_errors_do_not_depend_on_the_direction():
+    """But for the points between which they are interpolated, and the harmonics shared between them."""
+    found = estimated(System(scene("gap5"), (1, 2, 3)), 0.0)
+    (path,) = found.traced.branches.paths
+    back = errors_along(found.system, path.backwards())
+    assert back.peak == pytest.approx(found.errors[0].peak, rel=0.1)
+    assert back.fold[::-1] == pytest.approx(found.errors[0].fold, rel=0.1)
+    for errors in (back, found.errors[0]):
+        assert (errors.truncation[np.isfinite(errors.truncation)] >= 0.0).all()
+
+
+def test_a_fold_at_a_corner_has_an_error_too():
+    found = estimated(System(scene("fam2"), (1, 2, 3, 4, 5)), 0.0)
+    (errors,) = found.errors
+    assert len(errors.fold) == 2
+    assert (errors.fold < 1e-4).all()

@@ -1,0 +1,60 @@
+"""What harmonics that are left out would do, and the unknowns of a balance that has them."""
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.choice import estimated
+from fcm.harmonic.further import Further, padded
+from fcm.harmonic.system import System
+
+from .truth import scene
+
+
+@pytest.fixture(scope="module")
+def response():
+    return estimated(System(scene("yang1998", -5), (1, 2, 3)), 0.0)
+
+
+def test_padding_keeps_the_motion(response):
+    """The balance of more harmonics has the same amplitudes at the padded unknowns."""
+    (path,) = response.traced.branches.paths
+    more = (1, 2, 3, 5, 9)
+    problem = response.system.with_harmonics(more).balance()
+    z = path.z[len(path.z) // 2]
+    wide = padded(z, (1, 2, 3), more)
+    problem.evaluate(wide)
+    residual = np.asarray(problem.residual).reshape(1, -1)
+    assert np.abs(residual[0, :14]).max() < 1e-8 * np.abs(z[:-1]).max()
+    assert np.abs(residual[0, 14:]).max() > 0.0
+    assert wide[-1] == z[-1]
+    assert np.count_nonzero(wide) == np.count_nonzero(z)
+
+
+def test_a_share_is_what_a_harmonic_then_has(response):
+    """The ninth meets the mode at 10 rad/s; its share before it is balanced is about its amplitude after."""
+    (path,) = response.traced.branches.paths
+    top = response.shown[0].amplitude[:, 1].argmax()
+    further = Further(response.system)
+    amplitude = response.shown[0].amplitude[top : top + 1]
+    force, linear = further.forces(path.z[top : top + 1])
+    share = further.shares(path.z[top : top + 1], force, amplitude)[0]
+    assert not linear[0]
+    assert (share[:3] == 0.0).all()
+    others = share[3:].copy()
+    assert others.argmax() + 4 == 9
+    with_ninth = estimated(response.system.with_harmonics((1, 2, 3, 9)), 0.0)
+    problem = with_ninth.system.balance()
+    highest = with_ninth.shown[0].amplitude[:, 1].argmax()
+    z = with_ninth.traced.branches.paths[0].z[highest]
+    problem.evaluate(z)
+    problem.report(z, np.zeros_like(z))
+    ninth = np.hypot(problem.shown.re, problem.shown.im)[3] / amplitude[0]
+    assert share[8] == pytest.approx(ninth.max(), rel=0.3)
+
+
+def test_a_contact_that_never_slips_or_opens_is_linear():
+    found = estimated(System(scene("yang1998", 100)), 0.0)
+    (path,) = found.traced.branches.paths
+    force, linear = Further(found.system).forces(path.z)
+    assert linear.all()
+    assert np.abs(force[:, 1:]).max() == 0.0
