@@ -1,8 +1,8 @@
 r"""A balanced motion with the harmonics that its own forces make beyond those that were balanced.
 
 The forces of the motion have all harmonics. What the structure answers to those that were left out,
-X_h = -G(h omega) F_h, without its feedback on the forces, brings the motion nearer to the true one: the multipliers
-about it err five to ten times less, and what it changes of them says how wrong they may be.
+X_h = -G(h omega) F_h, without its feedback on the forces, brings the motion nearer to the true one: the
+multipliers about it err five to ten times less, and what it changes of them says how wrong they may be.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def beyond(harmonics: list[int]) -> list[int]:
 
 @cython.cclass
 class Finer:
-    """`at` a point z of the balance fills x, the unknowns of the finer motion; contact (contact, 4) as in `Monodromy`.
+    """`at` a point z of the balance fills x, the unknowns of the finer motion; contact as in `Sequence`.
 
     shift is the greatest amplitude that was added, relative to the greatest that there was.
     """
@@ -51,8 +51,8 @@ class Finer:
         self.seen.at(z[self.contacts * self.width])
         for c in range(self.contacts):
             self.kernel.evaluate(
-                z, c * self.width, self.contact[c, 0], self.contact[c, 1], self.contact[c, 2], self.contact[c, 3],
-                0.0, False,
+                z, c * self.width,
+                self.contact[c, 0], self.contact[c, 1], self.contact[c, 2], self.contact[c, 3], 0.0, False,
             )  # fmt: skip
             for i in range(self.wide):
                 self.force[c, i] = self.kernel.forces[i]

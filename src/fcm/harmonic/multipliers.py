@@ -1,10 +1,10 @@
 r"""Floquet multipliers of a balanced solution, and what they say of its stability.
 
-The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the motion.
-Its motion is the `Finer` one; that of the harmonics balanced alone serves to tell how sure the verdict is. Both
-are motions that are not quite periodic solutions of the structure, so a real multiplier passes +1 beside the fold
-of the curve of solutions. The parity of the balance's determinant is that of the number of real multipliers
-above +1, in the limit of many harmonics, and changes exactly at the folds: it decides.
+The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
+motion. Its motion is the `Finer` one; that of the harmonics balanced alone tells how sure the verdict is.
+Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
+the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of the
+number of real multipliers above +1, and changes exactly at the folds: it decides.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.sequence import Sequence
 from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, either, even
+from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -41,11 +42,11 @@ class Multipliers:
         if far.size > FEW:
             far = linear.natural > highest * max(FAR, FURTHER * max(harmonics))
         soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
-        parts = (linear.ports[~far], linear.natural[~far], linear.damping[~far], soft)
+        stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
-        self.fine = Monodromy(*parts, Sequence(contact, finer))
-        self.plain = Monodromy(*parts, Sequence(contact, harmonics))
+        self.fine = Monodromy(stiffness, Sequence(contact, finer))
+        self.plain = Monodromy(stiffness, Sequence(contact, harmonics))
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
@@ -109,8 +110,8 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
     -------
     (multiplier,) complex array
         By how much small disturbances of the motion grow within one period: of the modal displacements and
-        velocities, and of what the contacts that stick at its beginning remember. Contacts that never slip remember
-        for ever, which is not listed. Empty where a number is not finite.
+        velocities, and of what the contacts that stick at its beginning remember. Contacts that never slip
+        remember for ever, which is not listed. Empty where a number is not finite.
 
     Notes
     -----

@@ -37,8 +37,8 @@ class Sequence:
     state, remembers : (contact,)
         Before the first event, and whether the slider's place is one of the disturbances then.
     moving, held : int
-        Contacts that slip or open and close; and those that never do, but for an extreme of a limit that holds
-        the slider.
+        Contacts that slip or open and close; and those that never do, but for an extreme of a limit that
+        holds the slider.
     yielding : bool
         Whether such a slider follows that limit. It does when it is pushed, and stays where it is when not.
     """
@@ -86,7 +86,7 @@ class Sequence:
         self.remembers[c] = 0
         if kind == UNKNOWN:
             return False
-        if kind == OPEN or kind == STUCK:
+        if kind in (OPEN, STUCK):
             self.state[c] = SEPARATION if kind == OPEN else STICK if rubs else FREE
             if kind == STUCK and rubs and self.cycle.cause[0] != 0:
                 self.held += 1
@@ -105,7 +105,7 @@ class Sequence:
     @cython.cfunc
     @cython.exceptval(check=False)
     def limit_at(self, p: cython.int) -> cython.double:
-        """`along` of a stick. After a separation w = u where the load vanishes, an instant that moves by -dn / n'."""
+        """`along` of a stick. After a separation w = u where the load vanishes: that moves by -dn / n'."""
         e: cython.int = self.cycle.event[p]
         if self.cycle.cause[p] != SEPARATION:
             return -1.0 if self.cycle.cause[p] == POSITIVE else 1.0
@@ -117,7 +117,9 @@ class Sequence:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def occurs(self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double) -> cython.void:
+    def occurs(
+        self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double
+    ) -> cython.void:
         """One more event."""
         i: cython.int = self.events
         while angle < 0.0:

@@ -80,8 +80,8 @@ class Spectrum:
 def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     """Verdict of two approximations to a spectrum whose number of real multipliers above 1 is even.
 
-    Where it is odd, the nearest to 1 is on the wrong side, if it is shifted enough from one to the other. At a
-    fold (turning) that one does not count.
+    Where it is odd, the nearest to 1 is on the wrong side, if it is shifted enough from one to the other. At
+    a fold (turning) that one does not count.
     """
     if fine.odd and plain.odd and not turning:
         off = abs(fine.nearest)

@@ -1,8 +1,8 @@
-"""Stability along a curve: it changes at folds, and where a flip or a pair of multipliers crosses the unit circle.
+"""Stability along a curve: it changes at folds, and where a flip or a pair crosses the unit circle.
 
 Between two folds the number of real multipliers above +1 is even or odd throughout, as the sign of the
-balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others decide,
-by their eigenvalues at the ends and at as many points between as it takes to see that the growth keeps its sign.
+balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others
+decide, at the ends and at as many points between as it takes to see that the growth keeps its sign.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Stability:
-    """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where the balance cannot tell."""
+    """stable (point,): 1 where small disturbances die out, 0 where one grows, nan where it cannot be told."""
 
     stable: FloatArray
     crossings: tuple[Crossing, ...]
@@ -61,8 +61,8 @@ class Stability:
 def stability(system: System, path: Path) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
-    A fold counts to the stable side. What is stable with the balanced harmonics and not with the next ones that
-    their forces make, or the other way round, is nan.
+    A fold counts to the stable side. What is stable with the balanced harmonics and not with the next ones
+    that their forces make, or the other way round, is nan.
     """
     return _Along(system, path).run()
 
@@ -97,15 +97,17 @@ class _Along:
             self._look(first, last)
             at = np.array(sorted(i for i in self.verdicts if first <= i <= last))
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
-            stable[first : last + 1] = known[_nearer(at, first, last)]  # those beside it agree, or are neighbours
+            stable[first : last + 1] = known[
+                _nearer(at, first, last)
+            ]  # those beside it agree, or are neighbours
             crossings += self._crossings(at)
         return Stability(stable, tuple(crossings), self.evaluations)
 
     def _even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
         sign = self.path.orientation * np.sign(self.path.direction[:, -1])
-        even: npt.NDArray[np.bool_] = sign > 0.0
-        return even | self.fold
+        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.fold
+        return even
 
     def _verdict(self, i: int) -> Verdict:
         if i not in self.verdicts:
@@ -119,7 +121,7 @@ class _Along:
         nodes = np.unique(np.linspace(first, last, parts + 1).astype(int)).tolist()
         for i in nodes:
             self._verdict(i)
-        for a, b in zip(nodes[:-1], nodes[1:], strict=True):
+        for a, b in itertools.pairwise(nodes):
             self._between(a, b)
 
     def _between(self, a: int, b: int) -> None:
@@ -145,7 +147,7 @@ class _Along:
                     yield found
 
     def _crossing(self, a: int) -> Crossing | None:
-        """Where the growth changes sign between point a and the next: by the secant, which may not stay (Illinois)."""
+        """Where the growth changes sign between point a and the next: by secants that close in (Illinois)."""
         curve = Between(self.system.balance(), self.path, a)
         low, high, last, found = 0.0, 1.0, 0, None
         before, after = (max(self.verdicts[i].growth, ENOUGH) for i in (a, a + 1))

@@ -1,0 +1,270 @@
+"""Stability of balanced solutions: against the exact motion's multipliers, and what must hold of any."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from fcm.continuation import Mark, Status, follow
+from fcm.harmonic import multipliers as module
+from fcm.harmonic.multipliers import Multipliers
+from fcm.harmonic.spectrum import Kind, Spectrum, even
+from fcm.harmonic.stability import multipliers, stability
+from fcm.harmonic.start import solutions
+from fcm.harmonic.system import System
+from fcm.motion import State, simulate
+from fcm.orbit import periodic
+from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
+
+from ..motion.cases import SCENES, one_mode, yang
+
+
+def system(scene, highest=1, span=None):
+    scene = scene if span is None else replace(scene, frequency_range=span)
+    return System(scene, tuple(range(1, highest + 1)))
+
+
+def only(scene, omega, highest):
+    """The balanced solution where there is one."""
+    found = solutions(system(scene, highest), omega)
+    assert found.complete
+    (z,) = found.solutions
+    return z
+
+
+def path(scene, highest, span):
+    of = system(scene, highest, span)
+    start = solutions(of, span[0]).solutions[0]
+    found = follow(of.balance(), start, span, True, scene.max_step)
+    assert found.status is Status.COMPLETE
+    return of, found
+
+
+def exact(scene, omega):
+    """Floquet's multipliers of the exact motion, without those of contacts that never slip."""
+    values = periodic(scene, omega).multipliers
+    return values[np.abs(values - 1.0) > 1e-9]
+
+
+def error(found, true):
+    """Greatest distance of the greater multipliers from those found."""
+    left = list(found)
+    greatest = 0.0
+    for value in true[np.abs(true) > 0.2]:
+        nearest = min(left, key=lambda x: abs(x - value))
+        left.remove(nearest)
+        greatest = max(greatest, abs(nearest - value))
+    return greatest
+
+
+@pytest.mark.parametrize(
+    ("scene", "omega"),
+    [
+        (SCENES["n_0 = 5"], 1.3),
+        (SCENES["n_0 = 0"], 1.1),
+        (SCENES["n_0 = -2"], 1.2),
+        (SCENES["one mode"], 1.1),
+        (SCENES["two contacts"], 1.3),
+        (SCENES["two contacts"], 2.3),
+        (yang(0.0), 0.745),  # where only an unstable motion has the forces' period
+        (yang(-2.0, mu=0.0), 1.2),  # impacts without friction
+        (yang(5.0, k_v=0.0), 1.2),  # a constant load
+    ],
+)
+def test_multipliers_come_to_those_of_the_exact_motion(scene, omega):
+    true = exact(scene, omega)
+    errors = [error(multipliers(system(scene, h), only(scene, omega, h)), true) for h in (1, 3, 9, 21)]
+    assert errors[0] < 0.5
+    assert errors[-1] < 1e-4
+    assert errors[-1] < 0.1 * max(errors[:2]) or errors[0] < 1e-8
+
+
+def test_a_linear_motion_has_the_multipliers_of_its_matrix():
+    scene, omega = yang(100.0), 0.9
+    contact, modal = scene.contacts[0], scene.modal
+    ports = modal.shapes @ np.array([contact.tangential, contact.normal]).T
+    stiffness = np.diag(modal.frequency**2) + ports @ np.diag([contact.k_u, contact.k_v]) @ ports.T
+    matrix = np.block(
+        [[np.zeros((2, 2)), np.eye(2)], [-stiffness, -np.diag(2.0 * modal.damping * modal.frequency)]]
+    )
+    true = np.linalg.eigvals(expm(matrix * 2.0 * np.pi / omega))
+    assert error(multipliers(system(scene), only(scene, omega, 1)), true) < 1e-11
+
+
+@pytest.mark.parametrize("n_0", [400.0, -60.0])
+def test_what_stays_stuck_or_open_is_stable_without_calculation(n_0, monkeypatch):
+    of, found = path(yang(n_0), 1, (0.9, 1.6))
+    monkeypatch.setattr(Multipliers, "_values", None)
+    assert (stability(of, found).stable == 1.0).all()
+
+
+@pytest.mark.parametrize("highest", [1, 3, 9])
+def test_stability_changes_at_the_folds_and_nowhere_else(highest):
+    of, found = path(yang(5.0), highest, (1.15, 1.3))
+    first, last = found.where(Mark.FOLD)
+    result = stability(of, found)
+    assert result.crossings == ()
+    expected = np.ones(found.z.shape[0])
+    expected[first + 1 : last] = 0.0
+    np.testing.assert_array_equal(result.stable, expected)
+
+
+def test_the_same_backwards():
+    of, found = path(yang(5.0), 3, (1.15, 1.3))
+    np.testing.assert_array_equal(stability(of, found.backwards()).stable[::-1], stability(of, found).stable)
+
+
+def test_the_determinant_of_a_path_from_within():
+    of = system(yang(5.0), 3, (1.15, 1.3))
+    start = solutions(of, 1.25).solutions[0]
+    found = follow(of.balance(), start, (1.15, 1.3), False, 0.05).backwards()
+    problem = of.balance()
+    for z, direction, orientation in zip(found.z, found.direction, found.orientation, strict=True):
+        problem.evaluate(z)
+        sign = np.linalg.slogdet(np.asarray(problem.jacobian)[:, :-1])[0]
+        assert abs(direction[-1]) < 1e-8 or sign == orientation * np.sign(direction[-1])
+
+
+def test_flips_are_where_the_exact_motion_has_them():
+    scene = yang(0.0)
+    of, found = path(scene, 5, (0.7, 0.82))
+    result = stability(of, found)
+    assert [crossing.kind for crossing in result.crossings] == [Kind.FLIP, Kind.FLIP]
+    for crossing, inwards in zip(result.crossings, (1.0, -1.0), strict=True):
+        assert 0.0 < found.parameter[crossing.after + 1] - crossing.frequency
+        assert abs(multipliers(of, crossing.z)[0] + 1.0) < 1e-6
+        for side in (-1.0, 1.0):
+            omega = crossing.frequency + side * inwards * 2e-3
+            assert periodic(scene, omega).stable == (side < 0.0)
+    between = (found.parameter > result.crossings[0].frequency) & (
+        found.parameter < result.crossings[1].frequency
+    )
+    assert between.any()
+    np.testing.assert_array_equal(result.stable, np.where(between, 0.0, 1.0))
+
+
+CHAOS = {
+    "modal": {
+        "dofs": ["x0", "x1", "x2", "x3"],
+        "frequency": [1.0, 1.62696, 4.23908],
+        "damping": [0.02276, 0.02928, 0.00643],
+        "shapes": [
+            [0.3077, 0.5392, -0.5561, -0.6345],
+            [0.5528, -0.6721, -0.6525, 0.2908],
+            [-0.3247, 0.4356, -0.6287, 0.622],
+        ],
+    },
+    "contact": [
+        {"name": "c", "tangential": "x0", "normal": "x1",
+         "mu": 0.925, "k_u": 39.978, "k_v": 34.4086, "n_0": 0.6462},
+    ],
+    "force": [{"dof": "x0", "amplitude": 0.884, "phase": 3.259}],
+    "response": {"frequency": [1.37, 1.38]},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("highest", [3, 9])
+def test_an_irregular_motion_is_near_no_stable_solution(highest):
+    scene, omega = scene_from_dict(CHAOS), 1.3773
+    of = system(scene, highest)
+    judge = Multipliers(of, omega)
+    found = solutions(of, omega).solutions
+    assert found
+    assert all(np.abs(judge.of(z)).max() > 1.05 for z in found)
+    motion = simulate(scene, omega, 320)
+    ends = np.array([measure.amplitude[0] for measure in motion.measures(last=40)])
+    assert np.ptp(ends) > 0.02 * ends.mean()
+
+
+def test_many_modes_that_follow_are_as_good_as_all(monkeypatch):
+    random = np.random.default_rng(3)
+    count = 40
+    frequency = np.concatenate(([1.0, 1.7], np.sort(random.uniform(4.0, 60.0, count - 2))))
+    shapes = np.concatenate(([[0.7, 0.7], [0.8, -0.6]], 0.5 * random.normal(size=(count - 2, 2))))
+    modal = Modal(("u", "v"), np.ones(count), frequency, np.full(count, 0.01), shapes)
+    contact = Contact("c", np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.4, 1.0, 1.0, 0.5)
+    scene = Scene("many", modal, (contact,), (Force(np.array([1.0, 0.0]), 0.3, 0.0),), (0.8, 1.2), 0.05)
+    z = only(scene, 1.1, 3)
+    few = multipliers(system(scene, 3), z)
+    monkeypatch.setattr(module, "FEW", count)
+    all_modes = multipliers(system(scene, 3), z)
+    assert few.size < 0.5 * all_modes.size
+    assert error(all_modes, few) < 5e-3
+
+
+def test_a_rigid_body_that_nothing_holds_is_no_instability():
+    free = one_mode(frequency=0.0, damping=0.0, shape=(1.0, 0.0))
+    z = only(free, 1.1, 3)
+    verdict = Multipliers(system(free, 3), 1.1).verdict(z)
+    assert verdict.stable == 1.0
+
+
+def test_what_is_not_finite_has_no_multipliers():
+    scene = yang(5.0)
+    z = only(scene, 1.3, 3)
+    z[1] = np.nan
+    assert multipliers(system(scene, 3), z).size == 0
+    assert math.isnan(Multipliers(system(scene, 3), 1.3).verdict(z).stable)
+
+
+PAIR = [0.6 + 0.9j, 0.6 - 0.9j]
+
+
+@pytest.mark.parametrize(
+    ("fine", "plain", "stable"),
+    [
+        ([0.9, 0.5], [0.9, 0.5], 1.0),
+        ([0.9, *PAIR], [0.8, *PAIR], 0.0),
+        ([0.9, -1.1], [0.9, -1.1], 0.0),
+        ([0.9, -1.1], [0.9, -0.9], math.nan),  # truncation decides
+        ([1.3, 1.2], [1.3, 1.2], 0.0),  # an even number
+        ([1.01, 0.5], [1.01, 0.5], 1.0),  # the fold is a little farther on, the balance says
+        ([1.10, 0.5], [1.16, 0.5], 1.0),  # as it may be
+        ([1.30, 0.5], [1.30, 0.5], math.nan),  # and cannot be
+        ([1.10, -1.2], [1.16, -1.2], 0.0),
+    ],
+)
+def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
+    found = even(*(Spectrum.of([complex(v) for v in values]) for values in (fine, plain)))
+    assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
+    assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
+
+
+def test_a_pair_and_a_flip_are_told_apart():
+    assert Spectrum.of([0.5 + 0j, *PAIR]).verdict().kind is Kind.PAIR
+    assert Spectrum.of([0.5 + 0j, -1.2 + 0j]).verdict().kind is Kind.FLIP
+
+
+def test_small_disturbances_grow_as_the_multipliers_say():
+    scene, omega = yang(5.0), 1.21  # where three solutions are, the middle one unstable
+    of = system(scene, 13)
+    for z in solutions(of, omega).solutions:
+        first = multipliers(of, z)[0]
+        orbit = periodic(scene, omega, _state(of, z))
+        ends = simulate(scene, omega, 6, replace(orbit.state, q=orbit.state.q * (1.0 + 1e-7))).end
+        left = np.abs(ends.q - orbit.state.q).max() / np.abs(1e-7 * orbit.state.q).max()
+        grows = abs(first) > 1.0
+        assert (left > 1.0) == grows
+
+
+def _state(of, z):
+    """The start of the balanced motion."""
+    balance, linear, omega = of.balance(), of.linear, z[-1]
+    balance.evaluate(z)
+    force = np.asarray(balance.force).reshape(balance.contacts, -1)
+    q = -linear.flexibility @ (linear.ports @ force[:, :2].ravel())
+    p = np.zeros_like(q)
+    friction = force[:, 0].copy()
+    for j, h in enumerate(of.harmonics):
+        f = force[:, 2 + 4 * j : 6 + 4 * j : 2] + 1j * force[:, 3 + 4 * j : 6 + 4 * j : 2]
+        external = linear.force if h == 1 else 0.0
+        wave = (external - linear.ports @ f.ravel()) / (
+            linear.natural**2 - (h * omega) ** 2 + 2j * linear.damping * linear.natural * h * omega
+        )
+        q, p = q + wave.real, p + (1j * h * omega * wave).real
+        friction += f[:, 0].real
+    return State(q, p, friction)
