@@ -41,7 +41,7 @@ def _peak(scene: Scene, curve: Curve) -> Peak:
     highest = int(curve.amplitude[:, 0].argmax())
     orbit = _climbed(scene, _start(scene, curve, highest))
     estimate = float(curve.truncation_error[highest])
-    return Peak(scene.contacts[0].n_0, curve.peaks["u"][0], orbit.measure.amplitude[0], estimate)
+    return Peak(scene.contacts[0].n_0, curve.peaks["u"].amplitude, orbit.measure.amplitude[0], estimate)
 
 
 def _start(scene: Scene, curve: Curve, at: int) -> Orbit:

@@ -33,7 +33,7 @@ def random_scene(seed: int) -> Scene:
         for _ in range(rng.integers(1, 3))
     )
     span = (float(rng.uniform(0.3, 0.8)), float(rng.uniform(1.3, 3.0)))
-    return Scene(f"random {seed}", modal, contacts, forces, span, 0.05)
+    return Scene(f"random {seed}", modal, contacts, forces, span, 0.05, harmonics=(1,))
 
 
 def _contact(rng: np.random.Generator, name: str, dofs: int) -> Contact:

@@ -6,9 +6,6 @@ import numpy as np
 import pytest
 
 from fcm.response import trace
-from fcm.response.balance import Balance
-from fcm.response.law import ClosedForm
-from fcm.response.structure import group_of
 from fcm.scene.model import Contact, Force, Modal, Scene
 
 DOFS = ("a", "b", "c")
@@ -21,7 +18,7 @@ def scene(contacts, damping=0.02, span=(0.6, 2.0), phase=0.4) -> Scene:
         DOFS, np.array([1.0, 0.8, 1.2, 1.0]), np.array([1.0, 1.6, 3.0, 7.0]), np.full(4, damping), shapes
     )
     forces = (Force(np.array([1.0, 0.0, 0.0]), 1.0, 0.0), Force(np.array([0.0, 1.0, 0.5]), 0.7, phase))
-    return Scene("four modes", modal, tuple(contacts), forces, span, 0.05)
+    return Scene("four modes", modal, tuple(contacts), forces, span, 0.05, harmonics=(1,))
 
 
 def contact(name, tangential, normal, **values) -> Contact:
@@ -59,7 +56,7 @@ def test_a_solution_balances_the_modes_with_the_marched_law(at):
     case = scene(TWO)
     curve = trace(case, "table").curves[0]
     k = int(at * curve.points)
-    X = curve.amplitude[k] * np.exp(1j * curve.phase[k])
+    X = curve.fundamental[k] * np.exp(1j * curve.phase[k])
     w, modal = curve.frequency[k], case.modal
     load = sum(f.direction * f.amplitude * np.exp(1j * f.phase) for f in case.forces).astype(complex)
     mean_load = np.zeros(3)
@@ -91,7 +88,7 @@ def check_linear(case, springs):
     curve = trace(case, "table").curves[0]
     assert curve.complete
     exact = linear_response(case, springs, curve.frequency)
-    assert curve.amplitude * np.exp(1j * curve.phase) == pytest.approx(exact, rel=1e-8, abs=1e-12)
+    assert curve.fundamental * np.exp(1j * curve.phase) == pytest.approx(exact, rel=1e-8, abs=1e-12)
 
 
 def test_stuck_contacts_are_springs():
@@ -117,19 +114,6 @@ def test_a_contact_without_stiffness_does_nothing():
     check_linear(scene([replace(c, k_u=0.0, k_v=0.0) for c in TWO]), [(np.zeros(3), 0.0)])
 
 
-def test_derivatives_against_central_differences():
-    balance = Balance(group_of([scene(TWO), scene([replace(c, n_0=2.0) for c in TWO])]), ClosedForm())
-    rng = np.random.default_rng(3)
-    x, w, h = rng.normal(size=(2, 10)), np.array([0.9, 1.7]), 1e-6
-    at = balance.evaluate(x, w)
-    for j in range(10):
-        step = h * np.eye(10)[j]
-        slope = (balance.evaluate(x + step, w).residual - balance.evaluate(x - step, w).residual) / (2 * h)
-        assert at.jacobian[:, :, j] == pytest.approx(slope, abs=1e-6)
-    slope = (balance.evaluate(x, w + h).residual - balance.evaluate(x, w - h).residual) / (2 * h)
-    assert at.by_omega == pytest.approx(slope, abs=1e-6)
-
-
 def test_one_of_two_equal_contacts_in_parallel_is_half_of_a_stiffer_one():
     """Two contacts of half the stiffness and preload at one place act as one."""
     whole = TWO[0]
@@ -137,4 +121,4 @@ def test_one_of_two_equal_contacts_in_parallel_is_half_of_a_stiffer_one():
     single = trace(scene([whole]), "closed-form").curves[0]
     double = trace(scene([replace(half, name="left"), replace(half, name="right")]), "closed-form").curves[0]
     for dof in DOFS:
-        assert double.peaks[dof] == pytest.approx(single.peaks[dof], rel=1e-8)
+        assert double.peaks[dof][:2] == pytest.approx(single.peaks[dof][:2], rel=1e-8)

@@ -11,7 +11,7 @@ from fcm.response import respond, trace
 
 def relative_motion(curve, contact):
     """Complex amplitudes of u and v across a contact, and the mean of v."""
-    X = curve.amplitude * np.exp(1j * curve.phase)
+    X = curve.fundamental * np.exp(1j * curve.phase)
     return X @ contact.tangential, X @ contact.normal, curve.mean @ contact.normal
 
 

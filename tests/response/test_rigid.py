@@ -23,7 +23,7 @@ def curve(modal, contact=CONTACT, forces=(("x", 1.0),), **more):
         "modal": modal,
         "contact": [CONTACT | contact] if contact else [],
         "force": [{"dof": dof, "amplitude": amplitude} for dof, amplitude in forces],
-        "response": {"frequency": [0.3, 1.7], "max_step": 0.2},
+        "response": {"frequency": [0.3, 1.7], "max_step": 0.2, "harmonics": 1},
     }
     scene = scene_from_dict(data | more)
     return scene, trace(scene, "closed-form").curves[0]
@@ -39,20 +39,20 @@ def test_a_mode_held_by_the_contact_is_the_limit_of_one_with_a_small_frequency(n
     assert rigid.folds == pytest.approx(nearly.folds, rel=1e-5)
     assert np.nanmax(np.abs(rigid.mean)) > 1.0  # the static balance has something to do
     for dof in "xy":
-        assert rigid.peaks[dof] == pytest.approx(nearly.peaks[dof], rel=1e-5)
+        assert rigid.peaks[dof][:2] == pytest.approx(nearly.peaks[dof][:2], rel=1e-5)
 
 
 def test_the_static_balance_is_that_of_the_exact_motion():
     """In the mean the normal force is the preload, and the friction vanishes: the mode takes up no force."""
     modal = BODY | {"frequency": [0.0, 2.0], "damping": [0.02, 0.02], "shapes": [[0.8, 0.3], [-0.3, 0.9]]}
     scene, found = curve(modal, {"n_0": 20.0}, (("x", 1.0), ("y", 0.5)))
-    at = int(found.amplitude[:, 0].argmax())
+    at = int(np.nanargmax(found.fundamental[:, 0]))
     orbit = periodic(scene, found.frequency[at])
     exact = orbit.measure
     error = 3.0 * found.truncation_error[at]
     assert set(found.regime[at]) == {"EPEN"} and 0.0 < error < 0.05
     assert found.stable[at] and orbit.stable  # slip resists a drift
-    assert found.amplitude[at] == pytest.approx(exact.fundamental, rel=error)
+    assert found.fundamental[at] == pytest.approx(exact.fundamental, rel=error)
     assert found.mean[at] == pytest.approx(exact.mean, rel=0.05)
 
 
@@ -66,9 +66,9 @@ def test_a_mass_on_a_friction_contact():
     assert found.amplitude[stuck, 0] == pytest.approx(
         1.0 / np.abs(1.0 - found.frequency[stuck] ** 2), rel=1e-9
     )
-    at = int(found.amplitude[:, 0].argmax())
+    at = int(np.nanargmax(found.fundamental[:, 0]))
     exact = periodic(scene, found.frequency[at]).measure
-    assert found.amplitude[at, 0] == pytest.approx(exact.fundamental[0], rel=3.0 * found.truncation_error[at])
+    assert found.fundamental[at, 0] == pytest.approx(exact.fundamental[0], rel=3.0 * found.truncation_error[at])
 
 
 def test_the_basis_of_rigid_modes_does_not_matter():
@@ -76,7 +76,7 @@ def test_the_basis_of_rigid_modes_does_not_matter():
     c, s = np.cos(0.7), np.sin(0.7)
     turned = BODY | {"shapes": [[c, s], [-s, c]], "mass": [4.0, 0.25]}
     turned["shapes"] = (np.sqrt([[4.0], [0.25]]) * turned["shapes"]).tolist()
-    below = {"response": {"frequency": [0.3, 0.8], "max_step": 0.2}}
+    below = {"response": {"frequency": [0.3, 0.8], "max_step": 0.2, "harmonics": 1}}
     for modal in (BODY, turned):
         _, found = curve(modal, {"n_0": 50.0}, (("x", 1.0), ("y", 0.5)), **below)
         assert found.complete and set(found.regime.ravel()) == {"E"}
@@ -87,9 +87,8 @@ def test_the_basis_of_rigid_modes_does_not_matter():
 def test_friction_that_pushes_one_way_has_no_steady_state():
     scene, found = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
     assert not found.complete
-    assert not trace(scene, "table").curves[0].without_table  # that is no fault of the table
     assert "one way on average along a rigid-body mode" in found.reason
-    _, stuck = curve(JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9]})
+    _, stuck = curve(JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9], "harmonics": 1})
     assert stuck.complete and set(stuck.regime.ravel()) == {"E"}
 
 
@@ -112,7 +111,7 @@ def test_a_range_that_begins_at_a_resonance_that_only_the_contact_damps():
     undamped = BODY | {"frequency": [1.0, 3.0]}
     starts = []
     for low in (1.0, 1.0 - 1e-7):
-        _, found = curve(undamped, response={"frequency": [low, 1.7], "max_step": 0.2})
+        _, found = curve(undamped, response={"frequency": [low, 1.7], "max_step": 0.2, "harmonics": 1})
         assert found.complete
         starts.append(found.amplitude[0, 0])
     assert starts[0] == pytest.approx(starts[1], rel=1e-5)

@@ -32,7 +32,7 @@ def scene():
 
 @pytest.fixture
 def small_groups(monkeypatch):
-    monkeypatch.setattr(sweep, "LARGEST_GROUP", 2)
+    monkeypatch.setattr(sweep, "BATCH", 2)
 
 
 @pytest.fixture(scope="module")
@@ -157,7 +157,7 @@ max_step = 0.2
 PROGRAM = """
 import sys
 import fcm.response.sweep as sweep
-sweep.LARGEST_GROUP = 5
+sweep.BATCH = 5
 from fcm.cli import main
 if __name__ == "__main__":
     main(sys.argv[1:], prog_name="fcm")
@@ -205,7 +205,7 @@ import fcm
 from deadly import Deadly
 from fcm.response import sweep
 
-sweep.LARGEST_GROUP = 1
+sweep.BATCH = 1
 scene = replace(fcm.load_scene("yang1998-n5"), max_step=0.3)
 curves = [replace(scene, contacts=(replace(scene.contacts[0], n_0=n),)) for n in (50.0, 1e12, 60.0)]
 response = sweep.trace(replace(scene, curves=tuple(curves)), table=Deadly(), jobs=2)

@@ -7,11 +7,6 @@ import pytest
 
 import fcm
 from fcm.response import trace
-from fcm.response.balance import Balance
-from fcm.response.branches import all_branches
-from fcm.response.law import ClosedForm
-from fcm.response.stability import growth_rates
-from fcm.response.structure import group_of
 
 from .random_scenes import random_scene
 
@@ -37,27 +32,6 @@ def test_the_part_between_the_folds_is_unstable(curves):
     assert np.all(~curve.stable[1:-1][falling[:-2] & falling[1:-1]])
     assert curve.stable[curve.frequency > upper + 1e-6].all()
     assert curve.stable[curve.frequency < lower - 1e-6].all()
-
-
-def test_a_linear_structure_decays_at_its_damping():
-    """With the contact open the slowest exponent is -zeta omega of the first mode."""
-    scene = fcm.load_scene("yang1998-n5")
-    scene = replace(scene, contacts=(replace(scene.contacts[0], n_0=-1e3),))
-    balance = Balance(group_of([scene]), ClosedForm())
-    omega = np.array([1.2])
-    x = balance.linear(omega, np.zeros((1, 1)))
-    rate = growth_rates(balance, np.column_stack((x, omega)))
-    assert rate == pytest.approx([-0.01], rel=1e-9)
-
-
-def test_real_exponent_and_jacobian_change_sign_together():
-    """Along the folded curve a point is stable where the determinant of the balance is positive."""
-    balance = Balance(group_of([fcm.load_scene("yang1998-n5")]), ClosedForm())
-    z = all_branches(balance, np.array([0.05]), None).trace.z
-    every = balance.take(np.zeros(z.shape[0], dtype=np.intp))
-    positive = np.linalg.det(every.evaluate(z[:, :-1], z[:, -1]).jacobian) > 0.0
-    assert np.array_equal(growth_rates(every, z) < 0.0, positive)
-    assert np.count_nonzero(np.diff(positive)) == 2
 
 
 def test_jumps_of_a_slow_sweep(curves):
@@ -91,7 +65,7 @@ def test_contacts_too_stiff_for_the_table_are_traced_without_it():
     scene = replace(random_scene(26), max_step=0.1)
     by_table, exact = trace(scene, "table"), trace(scene, "closed-form")
     one, other = by_table.curves[0], exact.curves[0]
-    assert one.without_table and any("stiff" in sentence for sentence in by_table.left_out)
+    assert one.complete and other.complete
     assert one.folds == pytest.approx(other.folds, rel=1e-6)
     for dof in one.peaks:
         assert one.peaks[dof][0] == pytest.approx(other.peaks[dof][0], rel=1e-6)

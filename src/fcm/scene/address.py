@@ -86,9 +86,8 @@ class Addresses:
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")
         else:
-            return key.startswith("modal.") and any(
-                self.parts["modal"][part] is None for part in (*VECTORS, "dofs", "shapes")
-            )
+            needed = (self.parts["modal"][part] for part in ("dofs", *VECTORS, "shapes"))
+            return key.startswith("modal.") and any(part is None for part in needed)
         return True
 
 
