@@ -68,7 +68,9 @@ def test_a_mass_on_a_friction_contact():
     )
     at = int(np.nanargmax(found.fundamental[:, 0]))
     exact = periodic(scene, found.frequency[at]).measure
-    assert found.fundamental[at, 0] == pytest.approx(exact.fundamental[0], rel=3.0 * found.truncation_error[at])
+    assert found.fundamental[at, 0] == pytest.approx(
+        exact.fundamental[0], rel=3.0 * found.truncation_error[at]
+    )
 
 
 def test_the_basis_of_rigid_modes_does_not_matter():
@@ -88,7 +90,9 @@ def test_friction_that_pushes_one_way_has_no_steady_state():
     scene, found = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
     assert not found.complete
     assert "one way on average along a rigid-body mode" in found.reason
-    _, stuck = curve(JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9], "harmonics": 1})
+    _, stuck = curve(
+        JENKINS, {"n_0": 500.0}, (("x", 0.01), ("y", 3.0)), response={"frequency": [0.3, 0.9], "harmonics": 1}
+    )
     assert stuck.complete and set(stuck.regime.ravel()) == {"E"}
 
 
