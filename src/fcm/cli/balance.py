@@ -30,6 +30,33 @@ def accuracy(_ctx: click.Context, _param: click.Parameter, value: float | None) 
     return value
 
 
+def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tuple[float, float] | None:
+    """The span of levels, FROM:TO; None without it."""
+    if text is None:
+        return None
+    try:
+        low, high = (float(part) for part in text.split(":"))
+    except ValueError:
+        raise click.BadParameter(f"{text!r}: give a span of levels FROM:TO, as in 0:2.") from None
+    if not 0.0 <= low < high < float("inf"):
+        raise click.BadParameter(f"{text!r}: the levels must rise, from 0 or more.")
+    return low, high
+
+
+def check_level(
+    span: tuple[float, float] | None, at: tuple[float, ...] | None, error: float | None, method: str
+) -> None:
+    """A usage error if a span of levels lacks its frequency, or is given with what means nothing then."""
+    if span is None:
+        return
+    if at is None:
+        raise click.UsageError("--level needs --at F, the frequency at which the level of the forces is raised.")
+    if method == "exact":
+        raise click.UsageError("--level is of no use with --method exact: levels are followed by the balance.")
+    if error is not None:
+        raise click.UsageError("--accuracy is of no use with --level: give --harmonics.")
+
+
 def check_options(
     chosen: tuple[int, ...] | None, error: float | None, method: str, table: str | None
 ) -> None:

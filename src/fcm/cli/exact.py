@@ -50,11 +50,11 @@ def _values(text: str) -> list[float]:
     return ends if len(parts) == 1 else [float(value) for value in np.linspace(ends[0], ends[1], count)]
 
 
-def check_options(method: str, at: tuple[float, ...] | None) -> None:
+def check_options(method: str, at: tuple[float, ...] | None, level: object = None) -> None:
     """A usage error if an option was given that has no meaning with the method."""
     if method != "exact":
-        if at is not None:
-            raise click.UsageError("--at needs --method exact: only exact motions are visited by sweeps.")
+        if at is not None and level is None:
+            raise click.UsageError("--at needs --method exact, whose motions are visited by sweeps, or --level.")
         return
     for name, why in (OF_NO_USE | ({"max_step": "no curve is followed"} if at else {})).items():
         context = click.get_current_context()

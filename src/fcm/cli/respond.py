@@ -54,6 +54,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "[default: the scene's, or 0.01]",
 )  # fmt: skip
 @click.option(
+    "--level", metavar="FROM:TO", callback=balance.level,
+    help="Follow the level of the forces instead, all amplitudes times this, at the frequency --at.",
+)  # fmt: skip
+@click.option(
     "--at", multiple=True, metavar="F", callback=exact.frequencies,
     help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
     "for more. With --method exact.",
@@ -93,6 +97,7 @@ def respond(
     method: str,
     harmonics: tuple[int, ...] | None,
     accuracy: float | None,
+    level: tuple[float, float] | None,
     at: tuple[float, ...] | None,
     table: str | None,
     max_step: float | None,
@@ -117,7 +122,8 @@ def respond(
         compared = _loaded(messages, scene, max_step, None, largest_file)
         write_comparison(messages, compared, table, tolerance, output, to_json)
         return
-    exact.check_options(method, at)
+    exact.check_options(method, at, level)
+    balance.check_level(level, at, accuracy, method)
     balance.check_options(harmonics, accuracy, method, table)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
@@ -134,16 +140,26 @@ def respond(
     with outputs.kept(resume) as checkpoint:
         if method == "exact" and (loaded.has_range or at):
             response = exact.traced(messages, loaded, at, jobs, checkpoint)
+        elif level is not None and at is not None:
+            response = _levels(loaded, at, level, harmonics)
         elif loaded.has_range:
             response = _traced(messages, loaded, method, table, {**options, "keep": checkpoint})
         else:
             response = _without_curves(loaded)
-        if loaded.schedule:
+        if loaded.schedule and level is None:
             response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)
         response.notes, response.units = list(loaded.notes), loaded.units
         result = outputs.write(response, to_json)
     _close(messages, result, response.defects)
+
+
+def _levels(
+    scene: Scene, at: tuple[float, ...], level: tuple[float, float], harmonics: tuple[int, ...] | None
+) -> Response:
+    from fcm.response.level import trace_levels
+
+    return trace_levels(scene, at, level, harmonics=harmonics)
 
 
 def announce(messages: Messages, scene: Scene, method: str, at: tuple[float, ...] | None) -> None:

@@ -213,7 +213,7 @@ class Balance(Problem):
         """Amplitudes of the degrees of freedom shown, and their growth."""
         self.seen.at(z[self.unknowns])
         self.forces_at(z, direction)
-        self.shown.at(self.load, self.now, self.rate, direction[self.unknowns])
+        self.shown.at(self.load, self.now, self.rate, z, direction)
         self.output[:] = self.shown.amplitude
         self.growth[:] = self.shown.growth
         return 0

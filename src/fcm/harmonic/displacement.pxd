@@ -6,6 +6,8 @@ cdef class Displacements:
     cdef public int samples
     cdef public double[:, ::1] shapes
     cdef public double[:, ::1] static
+    cdef public double[:, ::1] attached
+    cdef public int[::1] apart
     cdef public double[:, ::1] re
     cdef public double[:, ::1] im
     cdef public double[:, ::1] d_re
@@ -15,8 +17,9 @@ cdef class Displacements:
     cdef public double[::1] growth
     cdef double[:, ::1] cosine
     cdef double[:, ::1] sine
-    cpdef int at(self, double load, double[::1] force, double[::1] d_force, double d_omega) except -1
+    cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
+    cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
     cdef void single(self, Py_ssize_t d) noexcept
     cdef void several(self, Py_ssize_t d) noexcept
     cdef double refined(self, Py_ssize_t d, double theta) noexcept

@@ -10,6 +10,8 @@ from cython.cimports.libc.math import cos, fabs, hypot, sin
 from fcm.structure.receptance import Receptance
 
 SAMPLES = 12  # for each period of the highest harmonic, among which the extremes are sought
+ROUNDING = 1e-12  # relative: shapes this near are the same
+MOST = 10.0  # times a shape, of those that it is combined from
 REFINED = 4  # Newton steps from the greatest sample to the extreme
 
 
@@ -33,6 +35,7 @@ class Displacements:
         self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
+        self.attached, self.apart = _attached(np.asarray(seen.shapes), shapes)
         harmonics = np.asarray(seen.harmonics)
         self.samples = int(SAMPLES * harmonics[count - 1])
         theta = 2.0 * np.pi * np.arange(self.samples) / self.samples
@@ -45,9 +48,13 @@ class Displacements:
         load: cython.double,
         force: cython.double[::1],
         d_force: cython.double[::1],
-        d_omega: cython.double,
+        z: cython.double[::1],
+        direction: cython.double[::1],
     ) -> cython.int:
-        """From the contact forces (unknown,), laid out as the unknowns, and their rates; the receptance is at omega."""
+        """From the contact forces (unknown,), laid out as the unknowns, and their rates, with the receptance at
+        omega; but those that the contacts' displacements make up from these, z (unknown + 1,): forces that nearly
+        balance leave few digits of a small displacement.
+        """
         j: cython.int
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -58,8 +65,10 @@ class Displacements:
                 total -= self.static[d, p] * force[(p // 2) * w + p % 2]
             self.mean[d] = total
         for j in range(self.seen.count):
-            self.harmonic(j, load, force, d_force, d_omega)
+            self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
         for d in range(self.dofs):
+            if not self.apart[d]:
+                self.from_ports(d, z, direction)
             if self.seen.count == 1:
                 self.single(d)
             else:
@@ -110,6 +119,30 @@ class Displacements:
                 self.im[j, d] += shape * q_im
                 self.d_re[j, d] += shape * r_re
                 self.d_im[j, d] += shape * r_im
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def from_ports(
+        self, d: cython.Py_ssize_t, z: cython.double[::1], direction: cython.double[::1]
+    ) -> cython.void:
+        """A combination of the contacts' displacements."""
+        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
+        j: cython.int
+        p: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        self.mean[d] = 0.0
+        for j in range(self.seen.count):
+            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        for p in range(self.seen.ports):
+            share: cython.double = self.attached[p, d]
+            if share != 0.0:
+                self.mean[d] += share * z[(p // 2) * w + p % 2]
+                for j in range(self.seen.count):
+                    k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                    self.re[j, d] += share * z[k]
+                    self.im[j, d] += share * z[k + 1]
+                    self.d_re[j, d] += share * direction[k]
+                    self.d_im[j, d] += share * direction[k + 1]
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -186,3 +219,20 @@ class Displacements:
             h: cython.double = self.seen.harmonics[j]
             x += self.d_re[j, d] * cos(h * theta) - self.d_im[j, d] * sin(h * theta)
         return x
+
+
+def _attached(
+    ports: npt.NDArray[np.float64], dofs: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.intc]]:
+    """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
+
+    Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
+    nearly cancel.
+    """
+    shares = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0] if ports.size else np.zeros((ports.shape[1], dofs.shape[1]))
+    shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
+    size = np.abs(dofs).max(axis=0, initial=0.0)
+    off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
+    large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > MOST * size
+    apart = (off > ROUNDING * size) | large | (size == 0.0)
+    return np.ascontiguousarray(shares), apart.astype(np.intc)

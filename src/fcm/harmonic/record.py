@@ -73,6 +73,22 @@ def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArr
     return X, mean
 
 
+def recorded_at_levels(
+    system: System, z: FloatArray, level: FloatArray
+) -> tuple[ComplexArray, FloatArray, FloatArray]:
+    """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
+    balance = system.balance()
+    shown, points = balance.shown, z.shape[0]
+    X = np.empty((points, len(system.harmonics), shown.dofs), dtype=np.complex128)
+    mean, amplitude = np.empty((points, shown.dofs)), np.empty((points, shown.dofs))
+    for i in range(points):
+        balance.load = level[i]
+        balance.evaluate(z[i])
+        balance.report(z[i], np.zeros(z.shape[1]))
+        X[i].real, X[i].imag, mean[i], amplitude[i] = shown.re, shown.im, shown.mean, shown.amplitude
+    return X, mean, amplitude
+
+
 def loops(system: System, z: FloatArray) -> FloatArray:
     """(point, contact, 5): n0_bar, b_bar, phi of the fundamental's loop, its a, and the force k_u a."""
     first = 2 + 4 * system.harmonics.index(1)

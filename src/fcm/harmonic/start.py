@@ -44,14 +44,20 @@ def solutions(system: System, omega: float) -> Found:
     return Found(omega, tuple(found), path.status is Status.COMPLETE)
 
 
-def level_curve(system: System, omega: float, span: tuple[float, float]) -> Path:
+def level_curve(
+    system: System,
+    omega: float,
+    span: tuple[float, float],
+    step: float = STEP,
+    stations: tuple[float, ...] = (1.0,),
+) -> Path:
     """Response at omega against the level of the forces, from rest."""
     path = None
     for weak in WEAK:
         low = max(span[0], weak)
         for x in linear_responses(system, omega, low):
             path = follow(
-                Level(system.balance(), omega), np.append(x, low), (low, span[1]), True, STEP, (1.0,)
+                Level(system.balance(), omega), np.append(x, low), (low, span[1]), True, step, stations
             )
             if path.z.shape[0]:
                 return path

@@ -12,10 +12,13 @@ from fcm.plot.read import DrawnCurve, FloatArray, ends, wide
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 SHARES = (3.1, 1.0)  # heights of the curves and of the panel
 HEIGHT = 4.9  # [inch] of a figure with both
 RANGE = (1e-8, 1.0)  # of errors; the same in every picture, so that pictures can be compared
+FADED = "may err by more than 20 %"  # what is faded
+ALPHA = 0.3  # how much of it is left
 _BINS = 120  # over the frequencies
 _LEAST = 1e-30  # drawn in the place of 0, far below the panel
 _GREY = "0.8"
@@ -31,9 +34,6 @@ def draw_errors(
     figure: Figure, axes: Axes, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float
 ) -> None:
     """Lines for what the single harmonic leaves out of each curve; an area for the table, of all together."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     edges, table = _largest(curves)
     axes.stairs(np.maximum(table, _LEAST), edges, baseline=_LEAST, fill=True, color=_GREY)
     for curve, colour in zip(curves, colours, strict=True):
@@ -41,13 +41,31 @@ def draw_errors(
             error = np.maximum(curve.truncation_error, _LEAST)
             axes.plot(curve.frequency, error, color=colour, linewidth=width)
     _finish(axes)
+
+
+def name_errors(
+    figure: Figure, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float, faded: bool
+) -> None:
+    """What the lines and the area of the panel are, and why a part of a curve is faded."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
     names: dict[str, Line2D | Patch] = {
         "higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
     }
-    if (table > 0.0).any():
+    if faded:
+        names[FADED] = faded_line(colours[0], width)
+    if (_largest(curves)[1] > 0.0).any():
         of_all = " (largest of all)" if len(curves) > 1 else ""
         names[f"table, before correction{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
+
+
+def faded_line(colour: str, width: float) -> Line2D:
+    """As parts of curves are drawn whose error may be large."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], color=colour, linewidth=width, alpha=ALPHA)
 
 
 def _finish(axes: Axes) -> None:

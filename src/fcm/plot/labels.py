@@ -52,4 +52,6 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def frequency_label(unit: str) -> str:
+    if unit == "level":
+        return "Level of the forces"
     return "Frequency $f$ (Hz)" if unit == "Hz" else f"Frequency $\\omega$ ({unit})"

@@ -19,6 +19,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 _WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 _SWEPT = "swept value"  # how the description of a swept value begins
+LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
 
 
@@ -30,7 +31,7 @@ class DrawnCurve:
     """
 
     parameters: dict[str, float]
-    frequency: FloatArray  # (point,) in the file's unit
+    frequency: FloatArray  # (point,) in the file's unit, or the level of the forces
     amplitude: FloatArray  # (point, dof)
     stable: BoolArray | None = None  # (point,)
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
@@ -111,10 +112,11 @@ def _response(dataset: Any) -> DrawnResponse:
     )
     regime = variables["regime"][:] if "regime" in variables else None
     swept = swept_values(variables)
+    level = floats(variables["level"]) if "level" in variables else None
     curves = tuple(
         _curve(
             {name: float(values[i]) for name, values in swept.items()},
-            frequency[i],
+            frequency[i] if level is None else level[i],
             amplitude[i],
             None if stable is None else stable[i],
             None if regime is None else regime[i],
@@ -123,7 +125,8 @@ def _response(dataset: Any) -> DrawnResponse:
         for i in range(len(frequency))
     )
     length = str(getattr(variables["amplitude"], "units", ""))
-    return DrawnResponse(dofs, str(getattr(dataset, "frequency_unit", "rad/s")), curves, length)
+    unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
+    return DrawnResponse(dofs, unit, curves, length)
 
 
 def _curve(

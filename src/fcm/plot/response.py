@@ -6,12 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.plot.error_panel import HEIGHT, SHARES, draw_errors, has_errors
+from fcm.plot.error_panel import (
+    ALPHA,
+    FADED,
+    HEIGHT,
+    SHARES,
+    draw_errors,
+    faded_line,
+    has_errors,
+    name_errors,
+)
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
-from fcm.plot.read import BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
+from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
 
 if TYPE_CHECKING:
@@ -23,6 +32,7 @@ _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 _DASHES = (0, (3, 1.6))
 _MOST_TICKS = 9  # of a colour bar
+_DOUBTFUL = 0.2  # estimated error beyond which a curve is faded
 _UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
@@ -56,7 +66,7 @@ def draw_response(
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
             name_points(figure, axes)
-        if wide(curves):
+        if wide(curves) and response.frequency_unit != LEVEL:
             axes.set_xscale("log")
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)
         if below is not None:
@@ -64,6 +74,11 @@ def draw_response(
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
         _name_curves(figure, axes, curves, column)
+        faded = any(doubtful(curve).any() for curve in curves)
+        if below is not None:
+            name_errors(figure, curves, colours, width, faded)
+        elif faded:
+            figure.legend([faded_line(colours[0], width)], [FADED], loc="outside lower center")
     return figure
 
 
@@ -91,21 +106,33 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
 
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> None:
-    """A solid line where the curve is stable or its stability unknown, a dashed one elsewhere."""
+    """A solid line where the curve is stable or its stability unknown, a dashed one elsewhere.
+
+    Faded is what may err by more than a fifth.
+    """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
     solid, dashed = _split(amplitude, unstable)
+    trusted, faded = _split(solid, doubtful(curve))
     alone = "." if len(amplitude) == 1 else ""
-    (line,) = axes.plot(curve.frequency, solid, linewidth=width, marker=alone)
+    (line,) = axes.plot(curve.frequency, trusted, linewidth=width, marker=alone)
+    others = [(faded, "-", ALPHA), (dashed, _DASHES, 1.0)]
     if unstable.any():
-        axes.plot(
-            curve.frequency,
-            dashed,
-            color=line.get_color(),
-            linewidth=width,
-            linestyle=_DASHES,
-            label=_UNSTABLE,
-        )
+        sure, unsure = _split(dashed, doubtful(curve))
+        others = [(faded, "-", ALPHA), (sure, _DASHES, 1.0), (unsure, _DASHES, ALPHA)]
+    for values, style, alpha in others:
+        if np.isfinite(values).any():
+            axes.plot(
+                curve.frequency, values, color=line.get_color(), linewidth=width, linestyle=style,
+                alpha=alpha, label=_UNSTABLE,
+            )  # fmt: skip
+
+
+def doubtful(curve: DrawnCurve) -> BoolArray:
+    """Where the estimated error of the harmonics left out is more than a fifth."""
+    if curve.truncation_error is None:
+        return np.zeros(len(curve.frequency), np.bool_)
+    return np.nan_to_num(curve.truncation_error) > _DOUBTFUL
 
 
 def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:

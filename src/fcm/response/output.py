@@ -154,6 +154,9 @@ def _point_fields(response: Response) -> dict[str, Field]:
 
     excitation = "excitation frequency"
     points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=cf_unit)
+    if any(c.level is not None for c in curves):
+        level = "level of the forces: all amplitudes times this"
+        points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
     points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"

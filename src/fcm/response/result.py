@@ -71,6 +71,7 @@ class Curve:
     seconds: float
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
     evaluations: int = 0  # of the equations, to follow it
+    level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
@@ -94,6 +95,8 @@ class Curve:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
         if self.orbits is not None and self.orbits.jumps is not None:
             return self.orbits.jumps
+        if self.level is not None:
+            return []
         return jumps(self.frequency, self.amplitude, self.stable != 0.0)  # what is unknown is no jump
 
     def _jump(self, jump: Jump, unit: str) -> dict[str, Any]:
@@ -107,7 +110,7 @@ class Curve:
     def _peak(self, peak: Peak, unit: str) -> dict[str, Any]:
         """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
         known = self.frequency[np.isfinite(self.frequency)]
-        at_edge = self.complete and known.size > 1 and peak.frequency in (known.min(), known.max())
+        at_edge = self.complete and self.level is None and known.size > 1 and peak.frequency in (known.min(), known.max())
         return {
             "amplitude": peak.amplitude,
             "frequency": float(in_unit(peak.frequency, unit)),

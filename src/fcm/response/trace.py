@@ -104,18 +104,18 @@ def _curve(found: Accurate) -> Curve:
     error = np.concatenate([one.amplitude for one in found.errors])
     return Curve(
         parameters=dict(scene.parameters),
-        frequency=_pick(points.z[:, -1], rows),
-        amplitude=_pick(points.amplitude, rows),
-        fundamental=_pick(np.abs(X[:, first]), rows),
-        phase=_pick(np.angle(X[:, first]), rows),
-        mean=_pick(points.mean, rows),
-        regime=_pick(states(system, points.z), rows),
-        loop=_pick(loops(system, points.z), rows),
-        cycle=_pick(cycles(system, points.z), rows),
-        stable=_pick(stable, rows),
-        table_error=_pick(points.shift, rows),
-        error=_pick(error, rows),
-        truncation_error=_pick(np.concatenate([one.truncation for one in found.errors]), rows),
+        frequency=pick(points.z[:, -1], rows),
+        amplitude=pick(points.amplitude, rows),
+        fundamental=pick(np.abs(X[:, first]), rows),
+        phase=pick(np.angle(X[:, first]), rows),
+        mean=pick(points.mean, rows),
+        regime=pick(states(system, points.z), rows),
+        loop=pick(loops(system, points.z), rows),
+        cycle=pick(cycles(system, points.z), rows),
+        stable=pick(stable, rows),
+        table_error=pick(points.shift, rows),
+        error=pick(error, rows),
+        truncation_error=pick(np.concatenate([one.truncation for one in found.errors]), rows),
         complete=not reason,
         reason=reason,
         peaks=_peaks(scene.modal.dofs, points, found.peak),
@@ -123,7 +123,7 @@ def _curve(found: Accurate) -> Curve:
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
-        harmonic=_pick(X, rows) if len(system.harmonics) > 1 else None,
+        harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
     )
 
 
@@ -183,7 +183,7 @@ def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bo
     return f"stopped at {end:.8g} {scene.frequency_unit}: {status.value}{why}", nowhere
 
 
-def _pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
+def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
     """Rows of a curve; where an index is -1, a gap: NaN or ''."""
     out = values[rows]
     out[rows < 0] = "" if values.dtype.kind == "U" else np.nan

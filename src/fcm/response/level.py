@@ -1,0 +1,107 @@
+"""Response against the level of the forces, all amplitudes times lambda, at fixed frequencies."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Status
+from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
+from fcm.harmonic.start import highest, level_curve
+from fcm.harmonic.system import System
+from fcm.response.result import Curve, Peak, Response
+from fcm.response.trace import ResponseError, pick, wanted_of
+from fcm.scene.model import Scene
+from fcm.units import UNIT, in_unit
+
+AT = "excitation.frequency"  # under which each curve says its own
+FAR = 1e6  # a level beyond this is a mistake of units
+
+
+def trace_levels(
+    scene: Scene,
+    at: Sequence[float],
+    span: tuple[float, float],
+    *,
+    harmonics: int | Sequence[int] | None = None,
+) -> Response:
+    """A curve for each curve of the scene and each frequency, in the scene's unit.
+
+    The curve begins at rest and is followed through its folds until the level has left the span for good; with the
+    harmonics given, or those of the scene, or one. Errors and stability are not estimated: they are NaN.
+
+    Raises
+    ------
+    ResponseError
+        If the span or a frequency is out of range.
+    """
+    low, high = span
+    if not 0.0 <= low < high <= FAR:
+        raise ResponseError(f"level is from {low:g} to {high:g}, but must rise from 0 or more to {FAR:g} at most")
+    if not all(np.isfinite(f) and f > 0.0 for f in at):
+        raise ResponseError("a frequency must be finite and greater than 0")
+    begin = time.perf_counter()
+    chosen = wanted_of(scene, 1 if harmonics is None and scene.harmonics is None else harmonics, None).harmonics
+    assert chosen is not None
+    curves = [
+        _level(curve, chosen, frequency * UNIT[scene.frequency_unit], span)
+        for curve in scene.each_curve()
+        for frequency in at
+    ]
+    contacts = tuple(contact.name for contact in scene.contacts)
+    response = Response(
+        scene.title, scene.modal.dofs, contacts, curves, "level of the forces", scene.frequency_unit
+    )
+    response.seconds = time.perf_counter() - begin
+    return response
+
+
+def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[float, float]) -> Curve:
+    from fcm.response.groups import lost_curve
+
+    begin = time.perf_counter()
+    system = System(scene, harmonics)
+    # what folds back into the span from beyond it is part of the curve
+    reach = (span[0], max(span[1], highest(system, omega)))
+    path = level_curve(system, omega, reach, scene.max_step, (1.0, span[1]))
+    frequency = float(in_unit(omega, scene.frequency_unit))
+    empty = lost_curve(scene, "no response was found at the least level")
+    parameters = {**scene.parameters, AT: frequency}
+    inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
+    if inside.size == 0:
+        return replace(empty, parameters=parameters)
+    rows = np.insert(np.arange(inside.size), np.flatnonzero(np.diff(inside) > 1) + 1, -1)  # -1: outside the span
+    level, z = path.parameter[inside], path.z[inside].copy()
+    z[:, -1] = omega
+    X, mean, amplitude = recorded_at_levels(system, z, level)
+    X, first = 1j * X, harmonics.index(1)
+    whole = path.status is Status.COMPLETE
+    tops = amplitude.argmax(axis=0)
+    unknown = np.full(level.size, np.nan)
+    return replace(
+        empty,
+        parameters=parameters,
+        frequency=pick(np.full(level.size, omega), rows),
+        level=pick(level, rows),
+        amplitude=pick(amplitude, rows),
+        fundamental=pick(np.abs(X[:, first]), rows),
+        phase=pick(np.angle(X[:, first]), rows),
+        mean=pick(mean, rows),
+        regime=pick(states(system, z), rows),
+        loop=pick(loops(system, z), rows),
+        cycle=pick(cycles(system, z), rows),
+        stable=pick(unknown, rows),
+        table_error=pick(np.zeros(level.size), rows),
+        error=pick(np.full(amplitude.shape, np.nan), rows),
+        truncation_error=pick(unknown, rows),
+        complete=whole,
+        reason="" if whole else f"stopped at level {level[-1]:.6g}: {path.status.value}",
+        peaks={d: Peak(float(amplitude[tops[k], k]), omega) for k, d in enumerate(empty.peaks)},
+        harmonics=harmonics,
+        harmonic=pick(X, rows) if len(harmonics) > 1 else None,
+        evaluations=path.evaluations,
+        seconds=time.perf_counter() - begin,
+    )
