@@ -84,12 +84,12 @@ def test_the_curve_does_not_depend_on_units(yang, name):
     assert curve.points == plain.points
     assert curve.frequency == pytest.approx(time * plain.frequency, rel=1e-9)
     assert curve.amplitude == pytest.approx(length * plain.amplitude, rel=1e-9)
-    assert (curve.regime == plain.regime).all() and (curve.stable == plain.stable).all()
+    assert (curve.regime == plain.regime).all() and np.array_equal(curve.stable, plain.stable, equal_nan=True)
 
 
 def test_masses_and_shapes_of_any_size_give_the_same_curve(yang):
     curve = curve_of("extreme/heavy-and-light")
-    assert curve.peaks["u"] == pytest.approx(yang[1].peaks["u"], rel=1e-9)
+    assert curve.peaks["u"][:2] == pytest.approx(yang[1].peaks["u"][:2], rel=1e-9)
     assert curve.folds == pytest.approx(yang[1].folds, rel=1e-9)
 
 
@@ -97,9 +97,9 @@ def test_a_wrong_point_is_unbalanced(yang):
     """A displacement wrong by 1e-6 leaves a force of about that, in every mode that it moves."""
     scene, curve = yang
     assert unbalanced(scene, curve).force.max() < 1e-12
-    amplitude = curve.amplitude.copy()
-    amplitude[::2] *= 1.0 + 1e-6
-    left = unbalanced(scene, replace(curve, amplitude=amplitude)).force
+    fundamental = curve.fundamental.copy()
+    fundamental[::2] *= 1.0 + 1e-6
+    left = unbalanced(scene, replace(curve, fundamental=fundamental)).force
     assert left[1::2].max() < 1e-12 and left[::2].min() > 1e-8
 
 
@@ -122,17 +122,14 @@ def test_the_condition_number_of_an_open_contact_is_that_of_its_equations():
     """Nothing but x = x(omega): the identity beside one column, whose norm follows from the slope."""
     name = "extreme/gap-1e6"
     scene, curve = fcm.load_scene(name), curve_of(name)
-    from fcm.response.newton import amplitudes, scales
-
-    x = curve.amplitude * np.exp(1j * curve.phase)
-    z = np.column_stack((x[:, 0].real, x[:, 0].imag, x[:, 1].real, x[:, 1].imag, 0.0 * curve.frequency))
+    X = curve.fundamental * np.exp(1j * curve.phase)
     w, modal = curve.frequency[:, None], scene.modal
     stiffness = modal.mass * (modal.frequency**2 - w**2 + 2j * modal.damping * modal.frequency * w)
     by_omega = modal.mass * (2j * modal.damping * modal.frequency - 2.0 * w)
     slope = (-by_omega / stiffness**2 * (modal.shapes @ [1.0, 1.0])) @ modal.shapes
-    column = np.column_stack((slope[:, 0].real, slope[:, 0].imag, slope[:, 1].real, slope[:, 1].imag))
-    scale = scales(z, amplitudes(z), np.ones(1))
-    length = np.sqrt(((column / scale[:, :4]) ** 2).sum(axis=1))  # the range is 1 wide
+    # the unit of a displacement: its size, or a tenth of its greatest so far, by the root of their number
+    unit = np.maximum(np.abs(X), 0.1 * np.maximum.accumulate(np.abs(X))) * np.sqrt(2.0)
+    length = np.sqrt((np.abs(slope / unit) ** 2).sum(axis=1))  # the range is 1 wide
     assert condition_number(scene, curve) == pytest.approx(np.sqrt(1.0 + length.max() ** 2), rel=1e-6)
 
 
@@ -140,7 +137,6 @@ def test_each_criterion_can_fail(rows):
     row = rows["b-one-opposed"]
     point = row.exact[0]
     assert "not complete" in faults(replace(row, complete=False, reason="it stopped"))[0]
-    assert "not corrected" in faults(replace(row, uncorrected=3))[0]
     assert "residual" in faults(replace(row, residual=1e-6))[0]
     assert "by table" in faults(replace(row, table=1e-5))[0]
     assert "no exact motion" in faults(replace(row, exact=[replace(point, difference=np.nan)]))[0]

@@ -87,7 +87,7 @@ def test_the_basis_of_rigid_modes_does_not_matter():
 
 
 def test_friction_that_pushes_one_way_has_no_steady_state():
-    scene, found = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
+    _, found = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
     assert not found.complete
     assert "one way on average along a rigid-body mode" in found.reason
     _, stuck = curve(

@@ -91,4 +91,6 @@ def _through(
         return path
     if other.status not in (Status.COMPLETE, Status.RETURNED):
         path, other = other, path
-    return other.backwards().then(path)
+    whole = other.backwards().then(path)
+    falls = whole.status is Status.COMPLETE and whole.parameter[0] > whole.parameter[-1]
+    return whole.backwards() if falls else whole

@@ -149,7 +149,7 @@ class _Follower:
                 if front.crosses():
                     if front.missed < 1.0:
                         return self.corner()
-                elif self.good():
+                elif reach >= step and self.good():
                     return self.smooth()
             # the curve may turn back in a corner, so that nothing is to be found beyond
             if reach < step and front.go(reach * (1.0 - PAST)) and not front.crosses() and self.good():
@@ -202,6 +202,9 @@ class _Follower:
         self.repeated = self.repeated + 1 if at < SHARP * led else 0
         point = events.found(front, at, Mark.CORNER, front.between)
         front.between.margin[which] = front.here.margin[which]
+        front.between.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
+        front.between.growth[:] = front.there.growth
+        front.between.orientation = front.there.orientation
         front.accept(front.between, at)
         self.step = max(AFTER * led, 10.0 * BEYOND)
         return self.turn(which, point)
@@ -218,6 +221,8 @@ class _Follower:
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
         if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
             mark |= Mark.PEAK
+        if np.array_equal(self.points[-1].z, point.z):  # the step before has come to the corner
+            mark |= self.points.pop().mark
         self.points.append(point._replace(mark=mark))
         np.maximum(self.greatest, front.here.output, out=self.greatest)
         self.step = max(self.step, min(FIRST, self.max_step))

@@ -14,7 +14,8 @@ from fcm.continuation.newton import Newton
 from fcm.continuation.problem import Problem
 
 NAN = cython.declare(cython.double, float("nan"))
-LOOKS = cython.declare(cython.int, 12)  # bisections of the predicted step to where a margin changes sign
+LOOKS = cython.declare(cython.int, 50)  # bisections of the predicted step to where a margin changes sign
+KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which it is found
 
 
 @cython.cclass
@@ -71,6 +72,8 @@ class Front:
         if not self.crossed():
             return step
         for count in range(LOOKS):
+            if high - low < KNOWN * high:
+                break
             self.predict(0.5 * (low + high))
             self.problem.bound(self.guess)
             if self.crossed():

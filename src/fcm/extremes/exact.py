@@ -38,7 +38,7 @@ def beside_exact(scene: Scene, curve: Curve) -> list[Beside]:
 
 def chosen(curve: Curve) -> list[int]:
     """Stable points at some shares of the curve and its highest one, none of them next to a fold."""
-    away = np.isfinite(curve.frequency) & curve.stable
+    away = np.isfinite(curve.frequency) & (curve.stable == 1.0)
     for fold in curve.folds:
         away &= np.abs(curve.frequency - fold) > FROM_FOLDS * fold
     at = np.flatnonzero(away)
@@ -53,7 +53,7 @@ def _beside(scene: Scene, curve: Curve, i: int) -> Beside:
     exact = _exact_near(scene, curve, i)
     if exact is None:
         return Beside(frequency, float("nan"), truncation)
-    ours = curve.amplitude[i] * np.exp(1j * curve.phase[i])
+    ours = curve.fundamental[i] * np.exp(1j * curve.phase[i])
     theirs = exact.fundamental * np.exp(1j * exact.phase)
     size = float(np.abs(ours).max())
     return Beside(frequency, float(np.abs(theirs - ours).max()) / (size if size > 0.0 else 1.0), truncation)
@@ -61,7 +61,7 @@ def _beside(scene: Scene, curve: Curve, i: int) -> Beside:
 
 def _exact_near(scene: Scene, curve: Curve, i: int) -> Measure | None:
     frequency = float(curve.frequency[i])
-    guess = harmonic_state(scene, frequency, curve.amplitude[i], curve.phase[i], curve.mean[i])
+    guess = harmonic_state(scene, frequency, curve.fundamental[i], curve.phase[i], curve.mean[i])
     for start in (guess, None):
         with suppress(SimulationError):
             return periodic(scene, frequency, start).measure

@@ -46,7 +46,7 @@ def unbalanced(scene: Scene, curve: Curve) -> Unbalanced:
     """
     modal = scene.modal
     at = np.flatnonzero(np.isfinite(curve.frequency))
-    x = curve.amplitude[at] * np.exp(1j * curve.phase[at])
+    x = curve.fundamental[at] * np.exp(1j * curve.phase[at])
     inverse = _inverse(modal.shapes)
     q, q_mean = x @ inverse, curve.mean[at] @ inverse
     dynamic, static = _stiffness(modal, curve.frequency[at])

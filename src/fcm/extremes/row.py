@@ -29,7 +29,6 @@ class Row:
     residual: float  # greatest along the curve, measured by what is allowed there
     tolerance: float  # at that point
     table: float  # greatest difference of peaks and folds by table and by closed form
-    without_table: int  # points to which the table led no way: found with the closed form alone
     condition: float
     exact: list[Beside] = field(default_factory=list)
 
@@ -67,7 +66,6 @@ def measured(name: str) -> Row:
         complete=by_table.complete and curve.complete,
         reason=by_table.reason or curve.reason,
         points=by_table.points,
-        without_table=int(np.isnan(by_table.table_error).sum() - np.isnan(by_table.frequency).sum()),
         seconds=seconds,
         residual=residual,
         tolerance=tolerance,

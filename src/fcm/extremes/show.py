@@ -16,7 +16,7 @@ HEADER = ["scene", "points", "time [s]", "residual", "tolerance", "table"]
 HEADER += ["exact", "estimate", "found", "condition", ""]
 LEGEND = """\
 residual   unbalanced modal force, relative to the forces; tolerance: what 1e-13 of the displacements is worth
-table      greatest difference of peaks and folds by the table and by the closed form; given up: without it
+table      greatest difference of peaks and folds by the table and by the closed form
 exact      difference from the exact periodic motion, at the point where it is largest against its
 estimate   of what the single harmonic leaves out; found: at how many of the points tried it exists
 condition  greatest condition number of the Jacobian along the curve"""
@@ -39,8 +39,7 @@ def _cells(row: Row) -> list[str]:
     exact = ["-", "-"] if worst is None else [_short(worst.difference), _short(worst.truncation)]
     found = f"{len(row.compared)} of {len(row.exact)}" if row.exact else "-"
     state = "FAILS" if faults(row) else "passes" if row.complete else "passes, says why it stops"
-    table = "given up" if row.without_table else _short(row.table)
-    numbers = [_short(row.residual), _short(row.tolerance), table]
+    numbers = [_short(row.residual), _short(row.tolerance), _short(row.table)]
     cells = [row.name, str(row.points), f"{row.seconds:.2f}", *numbers]
     return [*cells, *exact, found, _short(row.condition), state]
 

@@ -31,7 +31,8 @@ def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, 
     if system.linear.natural.size == 0 or system.linear.natural.min() > 0.0:
         return {}
     count = len(system.scene.contacts)
-    blocks, forces = z[:, :-1].reshape(z.shape[0], count, -1), force.reshape(z.shape[0], count, -1)
+    shape = (z.shape[0], count, 2 + 4 * len(system.harmonics))
+    blocks, forces = z[:, :-1].reshape(shape), force.reshape(shape)
     return {"pushed": _pushed(system, forces), "floating": _floating(system, blocks, forces)}
 
 

@@ -41,7 +41,8 @@ class Further:
         contacts = self.system.scene.contacts
         out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
         linear = np.ones(len(z), dtype=np.bool_)
-        motions = np.ascontiguousarray(z[:, :-1]).reshape(len(z), len(contacts), -1)
+        width = 2 + 4 * len(self.system.harmonics)
+        motions = np.ascontiguousarray(z[:, :-1]).reshape(len(z), len(contacts), width)
         kernel = self.kernel
         forces = np.asarray(kernel.forces)[2:].view(np.complex128).reshape(HIGHEST, 2)
         for j, c in enumerate(contacts):

@@ -162,5 +162,5 @@ def _single(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
 
 def _blocks(system: System, z: FloatArray) -> FloatArray:
     """Unknowns of each contact, (contact, point, width)."""
-    blocks = z[:, :-1].reshape(z.shape[0], len(system.scene.contacts), -1)
+    blocks = z[:, :-1].reshape(z.shape[0], len(system.scene.contacts), 2 + 4 * len(system.harmonics))
     return blocks.swapaxes(0, 1)

@@ -108,7 +108,7 @@ def highest(system: System, omega: float) -> float:
     for number, x in enumerate(linear_responses(system, omega, 1.0)):
         if number == 0:
             continue
-        blocks = x.reshape(len(system.scene.contacts), -1)
+        blocks = x.reshape(len(system.scene.contacts), 2 + 4 * len(system.harmonics))
         first = 2 + 4 * system.harmonics.index(1)
         for contact, block in zip(system.scene.contacts, blocks, strict=True):
             U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])

@@ -1,0 +1,279 @@
+"""Following curves that are known exactly, whatever the longest step."""
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Mark, Problem, Status, all_branches, follow
+
+STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
+CLOSE = 1e-10  # to which a point is on its curve
+LAST = 1e-4  # to which its direction is that of the curve, which is taken before the last correction
+
+
+class Planar(Problem):
+    """f(x, p) = 0 for the first of two unknowns, which the second equals; |x| is reported.
+
+    f gives its value and derivatives by x and p; margin, if there is one, is a function of x.
+    """
+
+    def __init__(self, f, margin=None):
+        Problem.__init__(self, 2, 0 if margin is None else 1, 1)
+        self.f, self.of_margin = f, margin
+
+    def evaluate(self, z):
+        self.residual[0], self.jacobian[0, 0], self.jacobian[0, 2] = self.f(z[0], z[2])
+        self.residual[1] = z[1] - z[0]
+        self.jacobian[1, 0], self.jacobian[1, 1] = -1.0, 1.0
+        return 0
+
+    def measure(self, z):
+        self.scale[0] = self.scale[1] = 1.0
+        self.scale[2] = 2.0
+        return 0
+
+    def bound(self, z):
+        if self.of_margin is not None:
+            self.margin[0] = self.of_margin(z[0])
+        return 0
+
+    def report(self, z, direction):
+        self.output[0] = abs(z[0])
+        self.growth[0] = direction[0] * np.sign(z[0])
+        return 0
+
+
+def start(x, p):
+    return np.array([x, x, p])
+
+
+def cubic():
+    return Planar(lambda x, p: (x**3 - x + 2.0 - p, 3.0 * x * x - 1.0, -1.0))
+
+
+def circle():
+    """(x - 3)^2 + (p - 2)^2 = 4."""
+    return Planar(lambda x, p: ((x - 3.0) ** 2 + (p - 2.0) ** 2 - 4.0, 2.0 * (x - 3.0), 2.0 * (p - 2.0)))
+
+
+def zigzag(back):
+    """p rises with x up to the corner at x = 2, falls with slope -back for 1, and rises with slope 2."""
+
+    def f(x, p):
+        if x < 2.0:
+            return x - p, 1.0, -1.0
+        if x < 3.0:
+            return 2.0 - back * (x - 2.0) - p, -back, -1.0
+        return 2.0 - back + 2.0 * (x - 3.0) - p, 2.0, -1.0
+
+    return Planar(f, lambda x: (x - 2.0) * (x - 3.0))
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_an_s_shaped_curve_through_both_folds(step):
+    """p = x^3 - x + 2 has its folds at x = -+1/sqrt(3), where p = 2 +- 2/(3 sqrt(3))."""
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    assert path.status is Status.COMPLETE
+    x, p = path.z[:, 0], path.parameter
+    assert p[0] == 1.0 and p[-1] == 3.0 and np.all(np.diff(x) > 0.0)
+    assert x[-1] == pytest.approx(-x[0], abs=CLOSE)
+    assert x**3 - x + 2.0 == pytest.approx(p, abs=1e-9)
+    folds = path.where(Mark.FOLD)
+    across = 2.0 / (3.0 * np.sqrt(3.0))
+    assert p[folds] == pytest.approx([2.0 + across, 2.0 - across], abs=1e-10)
+    assert x[folds] == pytest.approx([-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0)], abs=1e-6)
+    ends = np.concatenate(([1.0], np.sign(path.direction[:, -1])[1:-1], [1.0]))
+    assert np.count_nonzero(np.diff(ends[np.setdiff1d(np.arange(ends.size), folds)])) == 2
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_directions_are_tangents(step):
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    x, direction = path.z[:, 0], path.direction
+    assert (3.0 * x * x - 1.0) * direction[:, 0] == pytest.approx(direction[:, -1], abs=LAST)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_the_work_is_bounded(step):
+    """A point takes a prediction and some corrections; folds and ends of the range a few more in all."""
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    smooth = path.z.shape[0] - path.where(Mark.FOLD | Mark.END).size
+    assert path.evaluations < 5 * smooth + 50
+
+
+def test_a_smaller_step_gives_more_points():
+    points = [follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, s).z.shape[0] for s in STEPS]
+    assert points == sorted(points)
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, STEPS[-1])
+    apart = np.diff(path.z, axis=0) / [1.0, 1.0, 2.0]  # in the problem's scale
+    assert np.linalg.norm(apart, axis=1).max() < 1.1 * STEPS[-1]
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("back", [0.5, 2.0, 20.0])
+def test_a_corner_at_which_the_curve_turns_back(step, back):
+    low = min(1.0, 2.0 - back - 0.5)
+    path = follow(zigzag(back), start(low, low), (low, 6.0), True, step)
+    assert path.status is Status.COMPLETE
+    x, p = path.z[:, 0], path.parameter
+    assert np.all(np.diff(x) > 0.0) and p[-1] == 6.0
+    corners = path.where(Mark.CORNER)
+    assert x[corners] == pytest.approx([2.0, 3.0], abs=1e-8)
+    assert p[corners] == pytest.approx([2.0, 2.0 - back], abs=1e-8 * max(1.0, back))
+    assert np.all(path.mark[corners] & Mark.FOLD)
+    assert path.where(Mark.FOLD).tolist() == corners.tolist()
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_corner_at_which_it_goes_on(step):
+    """The slope changes from 1 to 4: a corner, but neither a fold nor a branch."""
+    bent = Planar(
+        lambda x, p: (x - p, 1.0, -1.0) if x < 2.0 else (2.0 + 4.0 * (x - 2.0) - p, 4.0, -1.0),
+        lambda x: x - 2.0,
+    )
+    path = follow(bent, start(1.0, 1.0), (1.0, 5.0), True, step)
+    assert path.status is Status.COMPLETE
+    (corner,) = path.where(Mark.CORNER)
+    assert path.z[corner, 0] == pytest.approx(2.0, abs=1e-10)
+    assert path.where(Mark.FOLD).size == path.where(Mark.BRANCH).size == 0
+    assert path.z[-1, 0] == pytest.approx(2.75, abs=1e-10)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_peak_is_a_point(step):
+    """Of x on the circle: 5, at p = 2; it rises and falls, so that no fold is there."""
+    path = follow(circle(), start(3.0 + np.sqrt(3.0), 1.0), (1.0, 3.0), True, step)
+    assert path.status is Status.COMPLETE
+    (peak,) = path.where(Mark.PEAK)
+    assert path.z[peak, 0] == pytest.approx(5.0, abs=1e-10)
+    assert path.parameter[peak] == pytest.approx(2.0, abs=1e-6)
+    assert path.where(Mark.FOLD).size == 0
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_peak_in_a_corner(step):
+    """x = p up to the corner at p = 2, then x = 4 - p."""
+
+    class Roof(Planar):
+        def __init__(self):
+            Planar.__init__(
+                self, lambda x, p: (x - p, 1.0, -1.0) if p < 2.0 else (x - 4.0 + p, 1.0, 1.0), abs
+            )
+
+        def bound(self, z):
+            self.margin[0] = z[2] - 2.0
+            return 0
+
+    path = follow(Roof(), start(1.0, 1.0), (1.0, 3.0), True, step)
+    assert path.status is Status.COMPLETE
+    (corner,) = path.where(Mark.CORNER)
+    assert path.z[corner] == pytest.approx([2.0, 2.0, 2.0], abs=1e-8)
+    assert path.where(Mark.PEAK).tolist() == [corner] and path.where(Mark.FOLD).size == 0
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_curve_that_leaves_its_range_where_it_entered(step):
+    path = follow(circle(), start(3.0 - np.sqrt(3.0), 1.0), (1.0, 5.0), True, step)
+    assert path.status is Status.RETURNED
+    assert path.z[-1] == pytest.approx([3.0 + np.sqrt(3.0)] * 2 + [1.0], abs=1e-10)
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([4.0], abs=1e-10)
+    assert path.z[path.where(Mark.PEAK), 0] == pytest.approx([5.0], abs=1e-10)
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("forward", [True, False])
+def test_a_closed_loop_from_inside_the_range(step, forward):
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), forward, step, stations=[3.0])
+    assert path.status is Status.CLOSED
+    assert path.z[-1] == pytest.approx(path.z[0], abs=1e-10)
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx(
+        [4.0, 0.0][:: 1 if forward else -1], abs=1e-10
+    )
+    around = np.unwrap(np.arctan2(path.parameter - 2.0, path.z[:, 0] - 3.0))
+    assert abs(around[-1] - around[0]) == pytest.approx(2.0 * np.pi, abs=1e-9)
+    assert np.all(np.diff(around) * (-1.0 if forward else 1.0) > 0.0)
+    found = path.z[path.where(Mark.STATION)]
+    assert found[:, -1].tolist() == [3.0, 3.0]
+    assert sorted(found[:, 0]) == pytest.approx([3.0 - np.sqrt(3.0), 3.0 + np.sqrt(3.0)], abs=1e-10)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_every_passing_of_a_station(step):
+    """p = 2 on the S-shaped curve at x = -1, 0, 1."""
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step, stations=[2.0])
+    found = path.where(Mark.STATION)
+    assert path.parameter[found].tolist() == [2.0] * 3
+    assert path.z[found, 0] == pytest.approx([-1.0, 0.0, 1.0], abs=1e-10)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_another_curve_that_crosses(step):
+    """x (x - p + 2) = 0: x = 0 is followed past p = 2, where x = p - 2 crosses it."""
+    crossed = Planar(lambda x, p: (x * (x - p + 2.03), 2.0 * x - p + 2.03, -x))
+    path = follow(crossed, start(0.0, 1.0), (1.0, 3.0), True, step)
+    assert path.status is Status.COMPLETE and np.all(path.z[:, 0] == 0.0)
+    (after,) = path.where(Mark.BRANCH)
+    assert path.parameter[after - 1] < 2.03 < path.parameter[after]
+    assert np.unique(np.sign(path.orientation[:after])).size == 1
+    assert path.orientation[after] == -path.orientation[after - 1]
+
+
+def test_where_there_is_no_curve_nothing_is_followed():
+    none = Planar(lambda x, p: (x * x + 1.0, 2.0 * x, 0.0))
+    path = follow(none, start(0.5, 1.0), (1.0, 3.0))
+    assert path.status is Status.STALLED and path.z.shape == (0, 3)
+
+
+def test_a_resonance_without_damping_has_no_limit():
+    """x = 1 / (2 - p), in units of its size as it grows."""
+
+    class Pole(Planar):
+        def measure(self, z):
+            self.scale[0] = self.scale[1] = abs(z[0])
+            self.scale[2] = 2.0
+            return 0
+
+    pole = Pole(lambda x, p: (x * (2.0 - p) - 1.0, 2.0 - p, -x))
+    path = follow(pole, start(1.0, 1.0), (1.0, 3.0), True, 0.2)
+    assert path.status is Status.UNBOUNDED and path.parameter[-1] == pytest.approx(2.0, abs=1e-8)
+
+
+def test_a_curve_that_ends_is_kept_up_to_there():
+    """The curve ends at x = 2: no further point is found, and the points up to there are kept."""
+
+    def f(x, p):
+        return (x - p, 1.0, -1.0) if p < 2.0 else (1.0 + x * x, 2.0 * x, 0.0)
+
+    path = follow(Planar(f), start(1.0, 1.0), (1.0, 3.0), True, 0.1)
+    assert path.status is Status.STALLED
+    assert path.parameter[-1] == pytest.approx(2.0, abs=1e-6)
+
+
+def test_backwards_and_then():
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, 0.1)
+    back = path.backwards()
+    assert np.array_equal(back.z, path.z[::-1]) and np.array_equal(back.direction, -path.direction[::-1])
+    assert np.array_equal(back.backwards().z, path.z)
+
+
+def test_all_branches_once_each():
+    """A circle and a line through the range, from five solutions on them."""
+
+    def f(x, p):
+        loop, line = (x - 3.0) ** 2 + (p - 2.0) ** 2 - 4.0, x - 8.0
+        return loop * line, 2.0 * (x - 3.0) * line + loop, 2.0 * (p - 2.0) * line
+
+    solutions = [start(8.0, -1.0), start(8.0, 5.0), start(1.0, 2.0), start(5.0, 2.0), start(8.0, 2.0)]
+    found = all_branches(lambda: Planar(f), solutions, (-1.0, 5.0), 0.05)
+    assert [path.status for path in found.paths] == [Status.COMPLETE, Status.CLOSED]
+    assert found.status is Status.COMPLETE and found.lost == ()
+    line, loop = found.paths
+    assert line.z[:, 0] == pytest.approx(8.0, abs=1e-9) and np.all(np.diff(line.parameter) > 0.0)
+    assert np.hypot(loop.z[:, 0] - 3.0, loop.parameter - 2.0) == pytest.approx(2.0, abs=1e-9)
+
+
+def test_a_start_inside_the_range_is_followed_both_ways():
+    found = all_branches(cubic, [start(0.0, 2.0)], (1.0, 3.0), 0.1)
+    (path,) = found.paths
+    assert found.status is Status.COMPLETE
+    assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
+    assert path.where(Mark.FOLD).size == 2

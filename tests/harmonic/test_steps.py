@@ -1,0 +1,33 @@
+"""Peaks and folds do not depend on the longest step, with any number of harmonics."""
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Status
+
+from .scenes import Curves, gap5, up_to, yang
+
+STEPS = (0.2, 0.1, 0.05, 0.02)
+FINEST = 0.005
+SCENES = {"n_0 = 5": yang(5.0), "n_0 = -5": yang(-5.0), "gap5": gap5()}
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+@pytest.mark.parametrize("name", SCENES)
+def test_the_same_for_every_step(name, count):
+    finest = Curves(SCENES[name], up_to(count), max_step=FINEST)
+    assert finest.branches.status is Status.COMPLETE
+    for step in STEPS:
+        curves = Curves(SCENES[name], up_to(count), max_step=step)
+        assert curves.branches.status is Status.COMPLETE and len(curves.paths) == len(finest.paths)
+        assert np.sort(curves.folds) == pytest.approx(np.sort(finest.folds), rel=1e-7)
+        highest = finest.amplitude.max(axis=0)
+        assert curves.amplitude.max(axis=0) == pytest.approx(highest, rel=1e-7)
+
+
+@pytest.mark.parametrize("count", [1, 3, 9])
+def test_the_work_is_bounded(count):
+    """Evaluations for a point, with all that is located: corners, folds, peaks and ends."""
+    curves = Curves(yang(5.0), up_to(count))
+    points = sum(path.z.shape[0] for path in curves.paths)
+    assert sum(path.evaluations for path in curves.paths) < 8 * points
