@@ -101,6 +101,8 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high or not front.put(at):
             return high
+        if kind != MARGIN and not front.sharpen():
+            return high
         now = value(front.between, kind, k)
         if now == 0.0:
             return at

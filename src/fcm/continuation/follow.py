@@ -36,7 +36,8 @@ PAST = 1e-3  # of a step that ends at a margin, by which it goes past
 BEFORE = 1e-6  # of the way to a corner: up to here the curve is smooth
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for
 TOUCHED = 1e-8  # a margin this near is met: less than BEYOND
-AFTER = 0.2  # of the step that led to a corner, the first one beyond
+NEAR, NEARER = 1e-4, 0.9  # a corner further away is approached by this share of the way
+AFTER = 1e-5  # the first step beyond a corner
 LONGEST = 20_000  # steps
 BOUNDLESS = 1e9  # size, in units of that at the start, that only an undamped resonance reaches
 
@@ -145,6 +146,10 @@ class _Follower:
             reach = front.ahead(step)
             if reach < min(step, TOUCHED):
                 return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
+            # curves bend more and more towards a corner, and may hide a pair of folds there
+            if NEAR < reach < step:
+                if front.go(NEARER * reach) and not front.crosses() and self.good():
+                    return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if front.crosses():
                     if front.missed < 1.0:
@@ -206,7 +211,6 @@ class _Follower:
         front.between.growth[:] = front.there.growth
         front.between.orientation = front.there.orientation
         front.accept(front.between, at)
-        self.step = max(AFTER * led, 10.0 * BEYOND)
         return self.turn(which, point)
 
     @cython.cfunc
@@ -225,7 +229,7 @@ class _Follower:
             mark |= self.points.pop().mark
         self.points.append(point._replace(mark=mark))
         np.maximum(self.greatest, front.here.output, out=self.greatest)
-        self.step = max(self.step, min(FIRST, self.max_step))
+        self.step = AFTER
         return None
 
     @cython.cfunc

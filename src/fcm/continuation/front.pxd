@@ -30,6 +30,7 @@ cdef class Front:
     cpdef double ahead(self, double step) except -1
     cpdef bint cross(self, Py_ssize_t which, double past) except -1
     cpdef bint crosses(self) except -1
+    cpdef bint sharpen(self) except -1
     cpdef bint shorten(self, double at) except -1
     cpdef double length(self, Place place) except -1e300
     cpdef double extent(self) except -1

@@ -194,12 +194,23 @@ class Front:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
+    def sharpen(self) -> cython.bint:
+        """Give the place between here and there the direction that it has exactly there.
+
+        That of the corrector is from before its last step.
+        """
+        if not self.newton.look():
+            return False
+        self.record(self.between)
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def shorten(self, at: cython.double) -> cython.bint:
         """Make the place at a length from here the one there, with the direction that it has exactly there."""
         i: cython.Py_ssize_t
-        if not self.put(at) or not self.newton.look():
+        if not self.put(at) or not self.sharpen():
             return False
-        self.record(self.between)
         self.step, self.turn = at, 0.0
         for i in range(self.here.tangent.shape[0]):
             self.turn += self.here.tangent[i] * self.between.tangent[i]

@@ -143,7 +143,7 @@ class Curve:
         known = np.isfinite(orbits.family_greatest).any(axis=1)
         families = {
             dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
-            for i, (dof, (_, omega)) in enumerate(self.peaks.items())
+            for i, (dof, (_, omega, _)) in enumerate(self.peaks.items())
             for k in np.flatnonzero(known & (self.frequency == omega))[:1]
         }
         return {
