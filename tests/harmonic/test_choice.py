@@ -22,7 +22,7 @@ def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
     passes = []
     traced = choice.traced
     monkeypatch.setattr(choice, "traced", lambda *args: passes.append(args) or traced(*args))
-    found = accurate(scene("yang1998", 100), 1e-6)
+    found = accurate(System(scene("yang1998", 100)), 1e-6)
     assert found.system.harmonics == (1,)
     assert found.reached
     assert found.worst == 0.0
@@ -32,7 +32,7 @@ def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
 @pytest.mark.parametrize("preload", EXACT)
 def test_a_blade_to_one_percent(preload):
     one = scene("shroud", preload)
-    found = accurate(one, 1e-2)
+    found = accurate(System(one), 1e-2)
     assert found.reached
     assert found.worst <= 1e-2
     at = list(one.modal.dofs).index("40z")
@@ -43,7 +43,7 @@ def test_a_blade_to_one_percent(preload):
 @pytest.mark.parametrize("preload", [300, 100])
 def test_a_blade_to_a_tenth_of_a_percent(preload):
     one = scene("shroud", preload)
-    found = accurate(one, 1e-3)
+    found = accurate(System(one), 1e-3)
     assert found.reached
     at = list(one.modal.dofs).index("40z")
     height = max(shown.amplitude[:, at].max() for shown in found.shown)
@@ -53,7 +53,7 @@ def test_a_blade_to_a_tenth_of_a_percent(preload):
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("case", [("yang1998", 5), ("yang1998", -5), ("gap5", None), ("stuck_mean", None)])
 def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
-    found = accurate(scene(*case), accuracy)
+    found = accurate(System(scene(*case)), accuracy)
     assert found.reached
     many = estimated(System(scene(*case), tuple(range(1, 32))), 0.0)
     true = many.shown[0].amplitude.max(axis=0)
@@ -62,14 +62,14 @@ def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
 
 def test_harmonics_are_chosen_by_need():
     """At n_0 = -5 the ninth meets the mode at 10 rad/s; the fourth to eighth do next to nothing."""
-    found = accurate(scene("yang1998", -5), 2e-3)
+    found = accurate(System(scene("yang1998", -5)), 2e-3)
     assert 9 in found.system.harmonics
     assert len(found.system.harmonics) < 9
 
 
 def test_what_cannot_be_reached_is_said(monkeypatch):
     monkeypatch.setattr(choice, "WORK", 0.0)
-    found = accurate(scene("yang1998", 5), 1e-3)
+    found = accurate(System(scene("yang1998", 5)), 1e-3)
     assert not found.reached
     assert found.system.harmonics == (1,)
     assert found.worst == pytest.approx(0.062, rel=0.1)

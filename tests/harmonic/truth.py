@@ -62,7 +62,7 @@ class Truth:
 
     def __init__(self, system, many=MANY):
         self.system, self.many = system, system.with_harmonics(many)
-        self.corrector = Corrector(system)
+        self.corrector = Corrector(system, again=False)
         self.corrector.chosen = lambda share: many
 
     def at(self, z, direction):
@@ -70,7 +70,7 @@ class Truth:
 
         From the point normal to the curve, then along the curve of many harmonics to the frequency.
         """
-        if np.isnan(self.corrector.displaced(z, direction, None)).any():
+        if np.isnan(self.corrector.displaced(z, direction, None, None)).any():
             return None
         ((newton, _),) = self.corrector.known.values()
         near, tangent = np.array(newton.z), np.array(newton.tangent)

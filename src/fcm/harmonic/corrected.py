@@ -100,7 +100,7 @@ class Corrected:
         z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
         self.share[places] = self.further.shares(z[places], self.force[places], now[:, 1:])
         for i, before in zip(places.tolist(), now, strict=True):
-            found = self.corrector.displaced(z[i], self.path.direction[i], self.share[i])
+            found = self.corrector.displaced(z[i], self.path.direction[i], self.share[i], before[1:])
             if found is not None:
                 self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
         self.known[places] = True

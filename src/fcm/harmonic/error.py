@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import Corrected, Indices
@@ -20,6 +21,9 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
+
+RIVAL = 0.8  # of the greatest amplitude: points this high may become the greatest
+FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
 
 @dataclass(frozen=True)
@@ -126,11 +130,24 @@ def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def _heights(shown: Reported, amplitude: FloatArray, tops: Indices) -> FloatArray:
-    """Relative change of the greatest amplitudes (dof,)."""
-    d = np.arange(len(tops))
+    """Relative change of the greatest amplitudes (dof,).
+
+    Unknown where that of the highest point is, or of a stretch nearly as high, which may become the highest.
+    """
     corrected = shown.amplitude * (1.0 + amplitude)
-    known = np.isfinite(corrected[tops, d])
-    greatest = np.where(np.isfinite(corrected), corrected, 0.0).max(axis=0)
+    d = np.arange(len(tops))
     now = shown.amplitude[tops, d]
+    lost = _stretches(np.isnan(amplitude[:, 0]))[:, None]
+    unknown = np.isnan(corrected[tops, d]) | (lost & (shown.amplitude > RIVAL * now)).any(axis=0)
+    greatest = np.where(np.isfinite(corrected), corrected, 0.0).max(axis=0)
     change: FloatArray = np.abs(greatest - now) / np.where(now > 0.0, now, 1.0)
-    return np.where(known, change, np.nan)
+    return np.where(unknown, np.nan, change)
+
+
+def _stretches(lost: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """The points of those that are more than a few in a row."""
+    ends = np.flatnonzero(np.diff(np.concatenate(([False], lost, [False]))))
+    out = np.zeros_like(lost)
+    for first, end in ends.reshape(-1, 2):
+        out[first:end] = end - first > FEW
+    return out
