@@ -44,7 +44,7 @@ def test_every_method_with_its_errors_and_costs(fcm, short):
         for against in one["against"].values():
             for measure in set(MEASURES) - {"fold"}:  # there are none
                 assert (against["errors"][measure] is None) == (measure in against["below"])
-        assert one["evaluations"] >= one["calls"] > 10 and one["processor_seconds"] > 0.0
+        assert one["evaluations"] > 10 and one["processor_seconds"] > 0.0
     _the_error_of_the_harmonic_is_true(short, result)
     _the_parts_of_the_error(result)
     _the_file_holds_the_same(result)

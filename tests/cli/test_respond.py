@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from fcm import response
+from fcm.response.result import Peak
 
 
 def files(folder):
@@ -66,9 +67,13 @@ def test_json_is_all_of_standard_output(fcm, scene):
 
 
 def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
-    changed(monkeypatch, peaks={"u": (np.nan, np.nan), "v": (np.nan, np.nan)})
+    changed(monkeypatch, peaks={"u": Peak(np.nan, np.nan), "v": Peak(np.nan, np.nan)})
     done = fcm("respond", scene, "--json")
-    assert json.loads(done.out)["curves"][0]["peak"]["u"] == {"amplitude": None, "frequency": None}
+    assert json.loads(done.out)["curves"][0]["peak"]["u"] == {
+        "amplitude": None,
+        "frequency": None,
+        "error": None,
+    }
     assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]
 
 
@@ -191,14 +196,14 @@ def test_a_defect_is_one_only_if_it_takes_every_curve(fcm, scene, monkeypatch):
     """One curve, or all of a sweep, lost to a defect: 1; some of a sweep: 3, for the others are there."""
 
     def fails_below(limit):
-        def trace_group(scene, *args):
-            if min(curve.contacts[0].n_0 for curve in scene.curves) < limit:
+        def traced_curve(scene, *args):
+            if scene.contacts[0].n_0 < limit:
                 raise ZeroDivisionError("of zero")
             return traced(scene, *args)
 
-        monkeypatch.setattr("fcm.response.groups.trace_group", trace_group)
+        monkeypatch.setattr("fcm.response.groups.traced_curve", traced_curve)
 
-    from fcm.response.groups import trace_group as traced
+    from fcm.response.groups import traced_curve as traced
 
     fails_below(1e9)
     done = fcm("respond", scene)
@@ -222,7 +227,7 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeyp
     assert error == "fcm: error: a.nc: No space left on device"
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("fcm.response.groups.trace_group", refuse)
+    monkeypatch.setattr("fcm.response.groups.traced_curve", refuse)
     assert fcm("respond", scene, "-o", "a.nc", "--resume").code == 0
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 

@@ -25,7 +25,7 @@ class Solver:
         self.right = np.zeros(size)
         self.swapped = np.zeros(size, dtype=np.intc)
         self.orientation = 0.0
-        self.factors = None
+        self.factors = (np.empty(0), np.empty(0))  # of LAPACK
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

@@ -62,9 +62,9 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
         events += located(front, FOLD, 0, limit, Mark.FOLD)
     for k in range(front.problem.outputs):
         size = max(here.output[k], there.output[k])
-        if here.growth[k] > RISE * size and there.growth[k] < -RISE * size:
-            if size >= NEARLY_GREATEST * most[k]:
-                events += located(front, PEAK, k, limit, Mark.PEAK)
+        turns = here.growth[k] > RISE * size and there.growth[k] < -RISE * size
+        if turns and size >= NEARLY_GREATEST * most[k]:
+            events += located(front, PEAK, k, limit, Mark.PEAK)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 
 
@@ -87,7 +87,8 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     """Length at which a function changes sign between here and there.
 
     By the secant through the last two values of opposite sign, one of them halved when it does not move
-    (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the root.
+    (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
+    root.
     """
     low: cython.double = 0.0
     high: cython.double = step
@@ -97,7 +98,7 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     now: cython.double
     last: cython.int = 0
     count: cython.int
-    for count in range(LOOKS):
+    for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high or not front.put(at):
             return high

@@ -1,9 +1,10 @@
 # cython: wraparound=True
 r"""Follow a curve by steps along its arc; everything that happens on it is a point of it.
 
-A step is predicted by a parabola, corrected in the plane normal to the tangent, and accepted if the curve turned
-gently and was where it was predicted. What happens within an accepted step - a fold, a peak of something reported,
-a value of the parameter that was asked for - is the root of a function along it (`events`).
+A step is predicted by a parabola, corrected in the plane normal to the tangent, and accepted if the curve
+turned gently and was where it was predicted. What happens within an accepted step - a fold, a peak of
+something reported, a value of the parameter that was asked for - is the root of a function along it
+(`events`).
 
 Where a margin of the problem changes sign the curve may have a corner. It is not approached by shorter and
 shorter steps: the margins are known functions, so the step ends just beyond where the prediction crosses one,
@@ -90,14 +91,14 @@ class _Follower:
     step: cython.double
     max_step: cython.double
     size: cython.double
-    values: list  # of the parameter, to be landed on: stations, then the ends of the range
-    points: list
-    greatest: object
-    start: object
-    heading: object
+    values: list[float]  # of the parameter, to be landed on: stations, then the ends of the range
+    points: list[events.Found]
+    greatest: FloatArray
+    start: FloatArray
+    heading: FloatArray
     interior: cython.bint
     repeated: cython.int  # corners at one point
-    progress: object
+    progress: Progress | None
 
     def __init__(
         self,
@@ -214,7 +215,7 @@ class _Follower:
         return self.turn(which, point)
 
     @cython.cfunc
-    def turn(self, which: cython.int, point: object) -> object:
+    def turn(self, which: cython.int, point: events.Found) -> object:
         """Keep the corner that is here, and turn into the direction that the curve has beyond."""
         front: Front = self.front
         rise: cython.double = front.here.tangent[self.n]

@@ -20,7 +20,8 @@ KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which 
 
 @cython.cclass
 class Place:
-    """A point of the curve with what the problem says of it; the tangent in scaled coordinates, a unit vector."""
+    """A point of the curve with what the problem says of it; the tangent in scaled coordinates, a unit
+    vector."""
 
     def __init__(self, problem: Problem) -> None:
         self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
@@ -71,7 +72,7 @@ class Front:
         self.problem.bound(self.guess)
         if not self.crossed():
             return step
-        for count in range(LOOKS):
+        for count in range(LOOKS):  # noqa: B007
             if high - low < KNOWN * high:
                 break
             self.predict(0.5 * (low + high))
@@ -207,7 +208,8 @@ class Front:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def shorten(self, at: cython.double) -> cython.bint:
-        """Make the place at a length from here the one there, with the direction that it has exactly there."""
+        """Make the place at a length from here the one there, with the direction that it has exactly
+        there."""
         i: cython.Py_ssize_t
         if not self.put(at) or not self.sharpen():
             return False
@@ -247,7 +249,7 @@ class Front:
     def crosses(self) -> cython.bint:
         """Whether a margin changes sign from here to there."""
         k: cython.Py_ssize_t
-        for k in range(self.problem.margins):
+        for k in range(self.problem.margins):  # noqa: SIM110 - a loop in C
             if self.here.margin[k] * self.there.margin[k] < 0.0:
                 return True
         return False
@@ -275,7 +277,8 @@ class Front:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def unforeseen(self) -> cython.double:
-        """Greatest change of the growth of an output over the step, as a change of the output over its size."""
+        """Greatest change of the growth of an output over the step, as a change of the output over its
+        size."""
         k: cython.Py_ssize_t
         worst: cython.double = 0.0
         size: cython.double

@@ -1,8 +1,8 @@
 r"""Newton's method for a point of a curve, in coordinates made dimensionless by the problem's scale.
 
-The n equations for the n + 1 numbers z are closed by a row: the point is sought in the plane through the guess
-whose normal is the row. A row along the curve gives the next point; a row along the parameter holds that. The
-same matrix gives the direction of the curve, and the sign of its determinant the orientation.
+The n equations for the n + 1 numbers z are closed by a row: the point is sought in the plane through the
+guess whose normal is the row. A row along the curve gives the next point; a row along the parameter holds
+that. The same matrix gives the direction of the curve, and the sign of its determinant the orientation.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ COARSEST = cython.declare(cython.double, 1e-6)  # and no longer than this
 class Newton:
     """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
 
-    z, scale, row, tangent: (n + 1,), the parameter last; row and tangent in scaled coordinates. The tangent is
-    a unit vector on the side of the row.
+    z, scale, row, tangent: (n + 1,), the parameter last; row and tangent in scaled coordinates. The tangent
+    is a unit vector on the side of the row.
     """
 
     def __init__(self, problem: Problem) -> None:

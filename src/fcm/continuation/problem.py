@@ -1,8 +1,8 @@
 """What is followed: n equations residual(z) = 0 for n unknowns and a parameter, the last of z.
 
-A problem knows nothing of the curve, and the follower nothing of what the unknowns mean. A problem writes what
-it is asked for into arrays of its own, so that a step of the follower makes no new ones. It is smooth while none
-of its margins changes sign.
+A problem knows nothing of the curve, and the follower nothing of what the unknowns mean. A problem writes
+what it is asked for into arrays of its own, so that a step of the follower makes no new ones. It is smooth
+while none of its margins changes sign.
 """
 
 from __future__ import annotations

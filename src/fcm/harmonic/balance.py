@@ -167,7 +167,8 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def measure(self, z: cython.double[::1]) -> cython.int:
-        """Displacements by their present size, tangential and normal of each contact; the frequency by its range."""
+        """Displacements by their present size, tangential and normal of each contact; the frequency by its
+        range."""
         w: cython.Py_ssize_t = self.width
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t

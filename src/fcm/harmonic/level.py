@@ -1,7 +1,7 @@
 """The level of the forces as the parameter: all amplitudes times lambda, at one frequency.
 
-Rest is the solution at lambda = 0. The curve from there passes lambda = 1 at every solution that hangs together
-with it, also at those that no sweep of the frequency from an end of the range comes to.
+Rest is the solution at lambda = 0. The curve from there passes lambda = 1 at every solution that hangs
+together with it, also at those that no sweep of the frequency from an end of the range comes to.
 """
 
 from __future__ import annotations

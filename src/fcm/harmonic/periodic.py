@@ -12,7 +12,8 @@ OPEN = cython.declare(cython.int, 0)
 
 @cython.cclass
 class Periodic(Law):
-    """Forces of a periodic motion with their derivatives; contacts may share the kernel, which is a workspace."""
+    """Forces of a periodic motion with their derivatives; contacts may share the kernel, which is a
+    workspace."""
 
     def __init__(
         self,

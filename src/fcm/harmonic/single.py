@@ -58,8 +58,8 @@ class SingleHarmonic(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        """Forces by which a contact is closed at some time, and at all times; by which it is beyond the slip limit
-        (25); and, where it never slips, by which its mean friction is within its limits.
+        """Forces by which a contact is closed at some time, and at all times; by which it is beyond the slip
+        limit (25); and, where it never slips, by which its mean friction is within its limits.
         """
         load: cython.double = self.n_0 + self.k_v * x[first + 1]
         variation: cython.double = self.k_v * hypot(x[first + 4], x[first + 5])
@@ -194,7 +194,8 @@ class SingleHarmonic(Law):
         b_bar: cython.double,
         a: cython.double,
     ) -> cython.void:
-        """slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, from those by n0_bar, b_bar, phi."""
+        """slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, from those by n0_bar, b_bar,
+        phi."""
         b: cython.double = max(hypot(x[first + 4], x[first + 5]), SMALLEST)
         k: cython.double = self.mu / self.k_u * self.k_v
         turn: cython.double = a / b

@@ -1,8 +1,8 @@
 r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
 
-At both ends of the range, and at the resonances inside it that the structure has with its contacts all stuck and
-all open, the level is followed from nearly nothing until it is well beyond every level at which a contact can
-change what it does. Every passing of the level 1 is a solution.
+At both ends of the range, and at the resonances inside it that the structure has with its contacts all stuck
+and all open, the level is followed from nearly nothing until it is well beyond every level at which a contact
+can change what it does. Every passing of the level 1 is a solution.
 """
 
 from __future__ import annotations

@@ -24,8 +24,8 @@ from fcm.table.lookup import Table
 class System:
     """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
 
-    With one harmonic the curves can be followed by a table: each point is then corrected with the closed form,
-    unless that is left out.
+    With one harmonic the curves can be followed by a table: each point is then corrected with the closed
+    form, unless that is left out.
     """
 
     scene: Scene

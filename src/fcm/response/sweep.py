@@ -54,8 +54,8 @@ def trace(
     harmonics : int or sequence of int, optional
         Harmonics of the balance: up to a number, or some that begin with 1; the scene's by default.
     accuracy : float, optional
-        Instead, of the peaks and folds, relative: as many harmonics as that takes; the scene's, or 1e-2, where
-        there are no harmonics given.
+        Instead, of the peaks and folds, relative: as many harmonics as that takes; the scene's, or 1e-2,
+        where there are no harmonics given.
     jobs : int
         Processes for the groups of curves; 0 for one on each core.
     tolerance : float, optional

@@ -35,8 +35,8 @@ class ResponseError(ValueError):
 class Wanted:
     """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
-    With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to be
-    corrected, its points are solutions with the closed form.
+    With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to
+    be corrected, its points are solutions with the closed form.
     """
 
     harmonics: tuple[int, ...] | None = (1,)
@@ -72,10 +72,8 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     """The response curve of a scene without a sweep."""
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
-    if wanted.harmonics is None:
-        found = accurate(system, wanted.accuracy)
-    else:
-        found = estimated(system, np.inf)
+    by_need = wanted.harmonics is None
+    found = accurate(system, wanted.accuracy) if by_need else estimated(system, np.inf)
     if wanted.table is not None:
         wanted.table.outside += getattr(system.coarse, "outside", 0)
     if not found.traced.branches.paths:
