@@ -50,9 +50,13 @@ def check_level(
     if span is None:
         return
     if at is None:
-        raise click.UsageError("--level needs --at F, the frequency at which the level of the forces is raised.")
+        raise click.UsageError(
+            "--level needs --at F, the frequency at which the level of the forces is raised."
+        )
     if method == "exact":
-        raise click.UsageError("--level is of no use with --method exact: levels are followed by the balance.")
+        raise click.UsageError(
+            "--level is of no use with --method exact: levels are followed by the balance."
+        )
     if error is not None:
         raise click.UsageError("--accuracy is of no use with --level: give --harmonics.")
 

@@ -54,7 +54,9 @@ def check_options(method: str, at: tuple[float, ...] | None, level: object = Non
     """A usage error if an option was given that has no meaning with the method."""
     if method != "exact":
         if at is not None and level is None:
-            raise click.UsageError("--at needs --method exact, whose motions are visited by sweeps, or --level.")
+            raise click.UsageError(
+                "--at needs --method exact, whose motions are visited by sweeps, or --level."
+            )
         return
     for name, why in (OF_NO_USE | ({"max_step": "no curve is followed"} if at else {})).items():
         context = click.get_current_context()

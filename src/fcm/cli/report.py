@@ -127,7 +127,7 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
 
 
 def short_of_accuracy(summary: Mapping[str, Any]) -> str:
-    """How many curves do not have the accuracy that was asked for, and why the first has not; empty if all have."""
+    """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
     if not short:
         return ""

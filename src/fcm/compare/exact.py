@@ -1,4 +1,4 @@
-"""Lines of the exact periodic motion: half the peak-to-peak of each orbit, its peaks located between points."""
+"""Lines of the exact periodic motion: half the peak-to-peak of each, its peaks located between points."""
 
 from __future__ import annotations
 

@@ -148,9 +148,9 @@ class _Follower:
             if reach < min(step, TOUCHED):
                 return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
             # curves bend more and more towards a corner, and may hide a pair of folds there
-            if NEAR < reach < step:
-                if front.go(NEARER * reach) and not front.crosses() and self.good():
-                    return self.smooth()
+            near: cython.bint = NEAR < reach < step and front.go(NEARER * reach)
+            if near and not front.crosses() and self.good():
+                return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if front.crosses():
                     if front.missed < 1.0:

@@ -17,7 +17,7 @@ REFINED = 4  # Newton steps from the greatest sample to the extreme
 
 @cython.cclass
 class Displacements:
-    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates; mean (dof,).
+    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates.
 
     amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate.
     """
@@ -51,9 +51,10 @@ class Displacements:
         z: cython.double[::1],
         direction: cython.double[::1],
     ) -> cython.int:
-        """From the contact forces (unknown,), laid out as the unknowns, and their rates, with the receptance at
-        omega; but those that the contacts' displacements make up from these, z (unknown + 1,): forces that nearly
-        balance leave few digits of a small displacement.
+        """From the contact forces (unknown,), laid out as the unknowns, and their rates.
+
+        The receptance is at omega. Those that contacts' displacements make up are from these, z (unknown + 1,):
+        forces that nearly balance leave few digits of a small displacement.
         """
         j: cython.int
         d: cython.Py_ssize_t
@@ -182,11 +183,10 @@ class Displacements:
     @cython.exceptval(check=False)
     def refined(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
         """The extreme next to an angle."""
-        count: cython.int
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         first: cython.double = theta
-        for count in range(REFINED):
+        for _ in range(REFINED):
             slope: cython.double = 0.0
             curvature: cython.double = 0.0
             for j in range(self.seen.count):
@@ -229,7 +229,11 @@ def _attached(
     Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
     nearly cancel.
     """
-    shares = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0] if ports.size else np.zeros((ports.shape[1], dofs.shape[1]))
+    shares = (
+        np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
+        if ports.size
+        else np.zeros((ports.shape[1], dofs.shape[1]))
+    )
     shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
     size = np.abs(dofs).max(axis=0, initial=0.0)
     off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)

@@ -3,8 +3,8 @@ r"""Floquet multipliers of a balanced solution, and what they say of its stabili
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `Finer` one; that of the harmonics balanced alone tells how sure the verdict is.
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
-the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of the
-number of real multipliers above +1, and changes exactly at the folds: it decides.
+the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of
+the number of real multipliers above +1, and changes exactly at the folds: it decides.
 """
 
 from __future__ import annotations

@@ -40,11 +40,13 @@ def trace_levels(
     """
     low, high = span
     if not 0.0 <= low < high <= FAR:
-        raise ResponseError(f"level is from {low:g} to {high:g}, but must rise from 0 or more to {FAR:g} at most")
+        raise ResponseError(f"level is from {low:g} to {high:g}, but must rise, from 0 or more")
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
-    chosen = wanted_of(scene, 1 if harmonics is None and scene.harmonics is None else harmonics, None).harmonics
+    chosen = wanted_of(
+        scene, 1 if harmonics is None and scene.harmonics is None else harmonics, None
+    ).harmonics
     assert chosen is not None
     curves = [
         _level(curve, chosen, frequency * UNIT[scene.frequency_unit], span)
@@ -73,7 +75,9 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     if inside.size == 0:
         return replace(empty, parameters=parameters)
-    rows = np.insert(np.arange(inside.size), np.flatnonzero(np.diff(inside) > 1) + 1, -1)  # -1: outside the span
+    rows = np.insert(
+        np.arange(inside.size), np.flatnonzero(np.diff(inside) > 1) + 1, -1
+    )  # -1: outside the span
     level, z = path.parameter[inside], path.z[inside].copy()
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)

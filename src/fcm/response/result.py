@@ -110,7 +110,12 @@ class Curve:
     def _peak(self, peak: Peak, unit: str) -> dict[str, Any]:
         """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
         known = self.frequency[np.isfinite(self.frequency)]
-        at_edge = self.complete and self.level is None and known.size > 1 and peak.frequency in (known.min(), known.max())
+        at_edge = (
+            self.complete
+            and self.level is None
+            and known.size > 1
+            and peak.frequency in (known.min(), known.max())
+        )
         return {
             "amplitude": peak.amplitude,
             "frequency": float(in_unit(peak.frequency, unit)),
