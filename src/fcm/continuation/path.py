@@ -61,8 +61,8 @@ class Path:
         """The same points in the other order."""
         return replace(
             self,
-            z=self.z[::-1],
-            direction=-self.direction[::-1],
+            z=self.z[::-1].copy(),
+            direction=-self.direction[::-1].copy(),
             mark=self.mark[::-1],
             orientation=-self.orientation[::-1],
             shift=self.shift[::-1],

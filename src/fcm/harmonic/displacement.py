@@ -53,8 +53,8 @@ class Displacements:
     ) -> cython.int:
         """From the contact forces (unknown,), laid out as the unknowns, and their rates.
 
-        The receptance is at omega. Those that contacts' displacements make up are from these, z (unknown + 1,):
-        forces that nearly balance leave few digits of a small displacement.
+        The receptance is at omega. What contacts' displacements make up is from these, z (unknown + 1,): of
+        a small displacement, forces that nearly balance leave few digits.
         """
         j: cython.int
         d: cython.Py_ssize_t

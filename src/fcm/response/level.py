@@ -30,8 +30,8 @@ def trace_levels(
 ) -> Response:
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
-    The curve begins at rest and is followed through its folds until the level has left the span for good; with the
-    harmonics given, or those of the scene, or one. Errors and stability are not estimated: they are NaN.
+    The curve begins at rest and is followed through its folds until the level has left the span for good;
+    with the harmonics given, or those of the scene, or one. Errors and stability are not estimated: they are NaN.
 
     Raises
     ------
