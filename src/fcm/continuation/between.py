@@ -31,9 +31,8 @@ class Between:
         if self._length == 0.0:
             return False
         rest = 1.0 - part
-        guess = self._ends[0] * rest * rest * (1.0 + 2.0 * part) + self._ends[1] * part * part * (
-            3.0 - 2.0 * part
-        )
+        guess = self._ends[0] * (rest * rest * (1.0 + 2.0 * part))
+        guess += self._ends[1] * (part * part * (3.0 - 2.0 * part))
         guess += part * rest * (rest * self._slopes[0] - part * self._slopes[1])
         self.newton.scale[:] = self._scale
         self.newton.row[:] = self._chord / self._length

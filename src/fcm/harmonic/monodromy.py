@@ -33,6 +33,11 @@ else:
 REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
 LARGE = cython.declare(cython.int, 3000)  # products from which on BLAS is faster
+FEW = cython.declare(cython.int, 12)  # disturbances up to which the exponential itself is made, by squaring
+SHORT = cython.declare(
+    cython.double, 0.25
+)  # angle, in radians of the fastest motion, from which it is squared
+ORDER = cython.declare(cython.int, 10)  # of its series there: 0.25^11 / 11! is below rounding
 
 
 @cython.cclass
@@ -50,6 +55,7 @@ class Monodromy:
         self.port = np.zeros((2, self.size))
         self.X, self.term = np.zeros((self.size, self.size)), np.zeros((2 * modes, self.size))
         self.work = np.zeros((modes, self.size))
+        self.A, self.E, self.F = np.zeros((3, 2 * modes, self.size))
         self.memories = 0
 
     @cython.ccall
@@ -134,13 +140,77 @@ class Monodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate(self, length: cython.double) -> cython.int:
-        """X by the series of the exponential, in steps in which its terms do not grow large."""
+        """X by the exponential, or by its series in steps in which the terms do not grow large."""
+        if self.size <= FEW:
+            return self.jump(length)
         steps: cython.int = cython.cast(cython.int, ceil(self.stiffness.rate * length / REACH))
         i: cython.int
         steps = max(steps, 1)
         for i in range(steps):  # noqa: B007
             self.apply(length / steps)
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def jump(self, length: cython.double) -> cython.int:
+        """X by the rows of the exponential for (q, q'), from a short angle by squaring."""
+        m: cython.Py_ssize_t = self.modes
+        n: cython.Py_ssize_t = self.size
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        order: cython.int
+        squarings: cython.int = 0
+        while self.stiffness.rate * length > SHORT:
+            length *= 0.5
+            squarings += 1
+        for i in range(m):
+            for j in range(n):
+                self.A[i, j] = length if j == m + i else 0.0
+                self.A[m + i, j] = 0.0
+            for j in range(m):
+                self.A[m + i, j] = -length * self.stiffness.K[i, j]
+            self.A[m + i, m + i] = -length * self.stiffness.damping[i]
+            for j in range(self.contacts):
+                self.A[m + i, 2 * m + j] = length * self.stiffness.image[i, j]
+        self.E[:, :] = self.A
+        for order in range(ORDER, 1, -1):  # A (1 + A / 2 (1 + A / 3 (...)))
+            self.product(self.A, self.E, 1.0 / order)
+            for i in range(2 * m):
+                for j in range(n):
+                    self.E[i, j] = self.A[i, j] + self.F[i, j]
+        for order in range(squarings):  # (1 + E)^2 = 1 + 2 E + E^2, without the rounding of 1 + E  # noqa: B007
+            self.product(self.E, self.E, 1.0)
+            for i in range(2 * m):
+                for j in range(n):
+                    self.E[i, j] = 2.0 * self.E[i, j] + self.F[i, j]
+        self.product(self.E, self.X, 1.0)
+        for i in range(2 * m):
+            for j in range(2 * m, n):  # the product leaves out the places of the sliders, which stay
+                weight: cython.double = self.E[i, j]
+                for order in range(n):
+                    self.F[i, order] += weight * self.X[j, order]
+            for j in range(n):
+                self.X[i, j] += self.F[i, j]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def product(
+        self, left: cython.double[:, ::1], right: cython.double[:, ::1], factor: cython.double
+    ) -> cython.void:
+        """F = factor left right, of the rows of (q, q')."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        weight: cython.double
+        for i in range(2 * self.modes):
+            for k in range(self.size):
+                self.F[i, k] = 0.0
+            for j in range(2 * self.modes):
+                weight = factor * left[i, j]
+                if weight != 0.0:
+                    for k in range(self.size):
+                        self.F[i, k] += weight * right[j, k]
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -26,6 +26,8 @@ ComplexArray = npt.NDArray[np.complex128]
 FEW = 24  # modes; with more, those far above the excitation follow without delay
 FAR = 6.0  # times the excitation, and FURTHER times the highest harmonic
 FURTHER = 1.5
+SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
+SHIFT = 4.0  # if it is also this many times what further harmonics add to the motion
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
@@ -61,11 +63,19 @@ class Multipliers:
             return UNKNOWN
         if plain.moving + plain.held + fine.moving + fine.held == 0:
             return PASSIVE
-        values, coarse = self._values(self.fine, omega), self._values(self.plain, omega)
-        if values is None or coarse is None:
+        values = self._values(self.fine, omega)
+        if values is None:
             return UNKNOWN
-        found = even(Spectrum.of(values), Spectrum.of(coarse), turning)
-        return either(found, self._resting(omega)) if fine.held else found
+        found = self._found(Spectrum.of(values), omega, turning)
+        return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
+
+    def _found(self, fine: Spectrum, omega: float, turning: bool) -> Verdict:
+        """The verdict, which the motion of the balanced harmonics alone confirms where that may matter."""
+        alone = fine.verdict(turning)
+        if not fine.odd and alone.growth < -max(SAFE, SHIFT * self.finer.shift):
+            return alone
+        values = self._values(self.plain, omega)
+        return UNKNOWN if values is None else even(fine, Spectrum.of(values), turning)
 
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
@@ -121,12 +131,12 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
 
     Examples
     --------
-    >>> import fcm, numpy as np
+    >>> import fcm
     >>> from fcm.harmonic.start import solutions
-    >>> system = System(next(fcm.load_scene("yang1998-n5").each_curve()), (1, 2, 3))
-    >>> rest, *_ = solutions(system, 1.21).solutions
-    >>> bool(abs(multipliers(system, rest)).max() < 1.0)
-    True
+    >>> system = System(fcm.load_scene("yang1998-n5"), (1, 2, 3))
+    >>> (z,) = solutions(system, 1.3).solutions
+    >>> abs(multipliers(system, z)).max().round(2)
+    np.float64(0.88)
     """
     values = Multipliers(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
     return np.array(sorted(values or [], key=abs, reverse=True), dtype=np.complex128)

@@ -19,6 +19,7 @@ class Kind(Enum):
 
     FLIP = "flip"
     PAIR = "pair"
+    REAL = "real"  # through +1, of a motion that is smooth only on one side of the balance's
 
 
 class Verdict(NamedTuple):
@@ -29,6 +30,7 @@ class Verdict(NamedTuple):
     kind: Kind  # of what grows most
     turn: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
     passive: bool = False  # no contact slips or opens
+    held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
 
 
 PASSIVE = Verdict(1.0, -math.inf, Kind.PAIR, passive=True)
@@ -73,7 +75,7 @@ class Spectrum:
         """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
         real = sorted(self.positive, key=abs)[without_nearest:]
         most = max((size for size in real if size > STABLE), default=-math.inf)
-        growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.PAIR)
+        growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.REAL)
         return Verdict(float(growth <= STABLE), growth, kind, self.turn)
 
 

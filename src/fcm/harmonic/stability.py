@@ -25,8 +25,9 @@ IntArray = npt.NDArray[np.intp]
 __all__ = ["Crossing", "Kind", "Stability", "multipliers", "stability"]
 
 SPAN = 16  # points between two that are always looked at
-DEVIATION = 0.5  # of the growth from a straight line, over its own size, that is followed up
+DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
 TURN = 0.4  # [rad] from -1 within which a multiplier is followed as it passes: there modes flip
+SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
 FINE = 1e-9  # of a step: a crossing is known to this, or to a growth of ZERO
 ZERO = 1e-10
@@ -97,9 +98,8 @@ class _Along:
             self._look(first, last)
             at = np.array(sorted(i for i in self.verdicts if first <= i <= last))
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
-            stable[first : last + 1] = known[
-                _nearer(at, first, last)
-            ]  # those beside it agree, or are neighbours
+            # points between two that were looked at have neighbours that agree
+            stable[first : last + 1] = known[_nearer(at, first, last)]
             crossings += self._crossings(at)
         return Stability(stable, tuple(crossings), self.evaluations)
 
@@ -188,8 +188,10 @@ def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
         return True
     if not one.stable == middle.stable == other.stable:
         return False
-    if min(v.turn for v in verdicts) < TURN:
+    if min(v.turn for v in verdicts) < TURN or not one.held == middle.held == other.held:
         return False
+    if one.stable == 1.0 and (any(v.passive for v in verdicts) or max(v.growth for v in verdicts) < SAFE):
+        return True
     a, b, c = (max(v.growth, ENOUGH) for v in verdicts)
     return abs(b - 0.5 * (a + c)) < DEVIATION * min(abs(a), abs(b), abs(c))
 
