@@ -26,7 +26,7 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
 
 def test_a_peak_where_the_range_ends_is_marked():
     text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
-    assert text.splitlines()[1].split()[:4] == ["1.00000", "1.50000", "2.00000", "1.50000*"]
+    assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]
     assert text.splitlines()[-1] == "* at an end of the range: beyond it the curve may rise further"
 
 

@@ -73,6 +73,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
         "amplitude": None,
         "frequency": None,
         "error": None,
+        "at_edge": False,
     }
     assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]
 

@@ -45,7 +45,7 @@ def test_the_same_as_long_simulations(scene):
         last = simulate(scene, omega, 400).measures(last=1)[0]
         for point in (k, -1 - k):
             assert curve.amplitude[point] == pytest.approx(last.amplitude, rel=1e-7)
-            assert curve.orbits.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
+            assert curve.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
 
 
 def test_a_motion_of_two_periods():

@@ -40,7 +40,7 @@ def peaks() -> list[Peak]:
 def _peak(scene: Scene, curve: Curve) -> Peak:
     highest = int(curve.amplitude[:, 0].argmax())
     orbit = _climbed(scene, _start(scene, curve, highest))
-    estimate = float(curve.truncation_error[highest])
+    estimate = curve.peaks["u"].error
     return Peak(scene.contacts[0].n_0, curve.peaks["u"].amplitude, orbit.measure.amplitude[0], estimate)
 
 

@@ -19,19 +19,23 @@ def curves():
 
 def test_stability_changes_at_the_folds_and_nowhere_else(curves):
     for curve in curves.values():
-        changes = np.flatnonzero(np.diff(curve.stable.astype(int)))
+        if curve.parameters["contact.shroud.n_0"] == 0.0:
+            continue  # the motion loses stability near 0.75 rad/s without a fold: tests/harmonic/test_stability.py
+        known = np.isfinite(curve.stable)
+        stable, frequency = curve.stable[known], curve.frequency[known]
+        changes = np.flatnonzero(np.diff(stable))
         assert len(changes) == len(curve.folds)
         for k, fold in zip(changes, curve.folds, strict=True):
-            assert min(abs(curve.frequency[k : k + 2] - fold)) == 0.0
+            assert min(abs(frequency[k : k + 2] - fold)) == 0.0
 
 
 def test_the_part_between_the_folds_is_unstable(curves):
     curve = curves[5.0]
     upper, lower = curve.folds
     falling = np.concatenate((np.diff(curve.frequency) < 0.0, [False]))
-    assert np.all(~curve.stable[1:-1][falling[:-2] & falling[1:-1]])
-    assert curve.stable[curve.frequency > upper + 1e-6].all()
-    assert curve.stable[curve.frequency < lower - 1e-6].all()
+    assert np.all(curve.stable[1:-1][falling[:-2] & falling[1:-1]] == 0.0)
+    assert np.all(curve.stable[curve.frequency > upper + 1e-6] == 1.0)
+    assert np.all(curve.stable[curve.frequency < lower - 1e-6] == 1.0)
 
 
 def test_jumps_of_a_slow_sweep(curves):
@@ -54,10 +58,10 @@ def test_the_truncation_error_vanishes_for_a_linear_response(curves):
 def test_the_truncation_error_predicts_the_size_of_the_papers_discrepancy(curves):
     """Time simulation gives 14.8 where single-harmonic balance gives 15.83 (figure 14)."""
     curve = curves[5.0]
-    predicted = curve.truncation_error[curve.amplitude[:, 0].argmax()]
+    predicted = curve.peaks["u"].error
     true = (15.83 - 14.8) / 14.8
-    assert true / 4.0 < predicted < 4.0 * true
-    assert curves[50.0].truncation_error.max() < 0.1 * predicted
+    assert true / 2.0 < predicted < 2.0 * true
+    assert curves[50.0].peaks["u"].error < 0.1 * predicted
 
 
 def test_contacts_too_stiff_for_the_table_are_traced_without_it():

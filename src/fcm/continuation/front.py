@@ -14,6 +14,7 @@ from fcm.continuation.newton import Newton
 from fcm.continuation.problem import Problem
 
 NAN = cython.declare(cython.double, float("nan"))
+ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 LOOKS = cython.declare(cython.int, 50)  # bisections of the predicted step to where a margin changes sign
 KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which it is found
 
@@ -123,15 +124,15 @@ class Front:
         near: cython.bint = False
         if self.problem.coarse:
             self.problem.refine(False)
-            near = self.newton.correct(step)
+            near = self.newton.correct(step) and self.newton.moved < ASTRAY * step
             self.problem.refine(True)
-            if not near:
-                self.newton.z[:] = self.guess
-        if not self.newton.correct(step):
-            return False
-        if self.problem.coarse:
-            self.there.shift = self.newton.moved if near else NAN
-        return True
+            near = near and self.newton.correct(step) and self.newton.moved < ASTRAY * step
+            if near:
+                self.there.shift = self.newton.moved
+                return True
+            self.newton.z[:] = self.guess
+            self.there.shift = NAN
+        return self.newton.correct(step)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

@@ -15,7 +15,7 @@ from fcm.continuation.dense import Solver
 from fcm.continuation.problem import Problem
 
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
-CLOSE = cython.declare(cython.double, 1e-10)  # error of a point, estimated from the convergence
+CLOSE = cython.declare(cython.double, 1e-13)  # error of a point, estimated from the convergence
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
 ROUNDINGS = cython.declare(

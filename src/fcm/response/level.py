@@ -31,7 +31,7 @@ def trace_levels(
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
-    with the harmonics given, or those of the scene, or one. Errors and stability are not estimated: they are NaN.
+    with the harmonics given, or those of the scene, or one. Errors and stability are not estimated: NaN.
 
     Raises
     ------

@@ -23,6 +23,7 @@ from fcm.table import Table
 from fcm.units import in_unit
 
 METHODS = ("table", "closed-form")
+FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
 ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
 Rows = npt.NDArray[np.intp]
 
@@ -79,7 +80,9 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     if not found.traced.branches.paths:
         from fcm.response.groups import lost_curve
 
-        return lost_curve(scene, "no solution was found at either end of the range; try another range")
+        rigid = bool((system.linear.natural == 0.0).any())
+        why = "no solution was found at either end of the range; try another range"
+        return lost_curve(scene, f"{why}{FLOATING if rigid else ''}")
     curve = _curve(found)
     if wanted.harmonics is None and not found.reached and curve.complete:
         error = "an unknown one" if np.isnan(found.worst) else f"{found.worst:.1e}"
@@ -174,7 +177,7 @@ def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bo
         return "", nowhere
     broken = next((path for path in branches.paths if path.status is status), None)
     rigid = bool((system.linear.natural == 0.0).any()) and status is Status.STALLED
-    why = "; rigid-body modes are at rest only while closed contacts hold them" if rigid else ""
+    why = FLOATING if rigid else ""
     if broken is None:
         return f"{status.value}{why}", nowhere
     end = float(in_unit(broken.parameter[-1], scene.frequency_unit))
