@@ -188,9 +188,12 @@ def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
         return True
     if not one.stable == middle.stable == other.stable:
         return False
-    if min(v.turn for v in verdicts) < TURN or not one.held == middle.held == other.held:
+    if min(v.turn for v in verdicts) < TURN:
         return False
-    if one.stable == 1.0 and (any(v.passive for v in verdicts) or max(v.growth for v in verdicts) < SAFE):
+    safe = max(v.growth for v in verdicts) < SAFE
+    if not safe and not one.held == middle.held == other.held:
+        return False
+    if one.stable == 1.0 and (safe or any(v.passive for v in verdicts)):
         return True
     a, b, c = (max(v.growth, ENOUGH) for v in verdicts)
     return abs(b - 0.5 * (a + c)) < DEVIATION * min(abs(a), abs(b), abs(c))
