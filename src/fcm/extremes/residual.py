@@ -22,6 +22,7 @@ ComplexArray = npt.NDArray[np.complex128]
 BALANCED = 1e-9  # of the forces on a mode: less counts as balanced
 CORRECTED = 1e-13  # of the displacements: to this a point of a response is corrected
 TINY = float(np.finfo(np.float64).tiny)
+EPS = float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True)
@@ -65,9 +66,10 @@ def unbalanced(scene: Scene, curve: Curve) -> Unbalanced:
     unit = np.where(unit > 0.0, unit, 1.0)
     left = np.maximum(np.abs(total), np.abs(mean)) / unit
     moved = np.abs(q) + np.abs(q_mean) + unit / np.maximum(np.abs(dynamic), TINY)
-    return Unbalanced(
-        left.max(axis=1, initial=0.0), (_last_digits(scene, moved) / unit).max(axis=1, initial=0.0)
-    )
+    # the last digit of the frequency, next to a resonance that hardly anything damps
+    digit = EPS * 2.0 * modal.mass * curve.frequency[at][:, None] ** 2 * np.abs(q)
+    tolerance = (_last_digits(scene, moved) + digit) / unit
+    return Unbalanced(left.max(axis=1, initial=0.0), tolerance.max(axis=1, initial=0.0))
 
 
 def _inverse(shapes: FloatArray) -> FloatArray:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from fcm.continuation import Branches, all_branches
+import numpy as np
+
+from fcm.continuation import Branches, Path, all_branches
 from fcm.continuation.follow import Progress
+from fcm.harmonic.drift import undetermined
+from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, resonances, solutions
 from fcm.harmonic.system import System
 
@@ -25,4 +29,22 @@ def traced(system: System, progress: Progress | None = None) -> Traced:
     looked = tuple(solutions(exact, omega) for omega in (*span, *resonances(system)))
     starts = [z for found in looked for z in found.solutions]
     branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
-    return Traced(branches, looked)
+    return Traced(_steady(system, branches), looked)
+
+
+def _steady(system: System, branches: Branches) -> Branches:
+    """Without the branches that are none, beside one that is.
+
+    The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which friction
+    pushes along such a mode does not balance it.
+    """
+    paths = branches.paths
+    if len(paths) < 2 or system.linear.natural.min(initial=1.0) > 0.0:
+        return branches
+    kept = tuple(path for path in paths if not _nowhere(system, path))
+    return replace(branches, paths=kept) if kept else branches
+
+
+def _nowhere(system: System, path: Path) -> bool:
+    points = recorded(system, [path])
+    return bool(undetermined(system, points.z, points.force).get("pushed", np.zeros(1, bool)).all())

@@ -24,6 +24,7 @@ from fcm.units import in_unit
 
 METHODS = ("table", "closed-form")
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
+BEYOND = 0.2  # estimated error, beyond which a solution is not called stable
 ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
 Rows = npt.NDArray[np.intp]
 
@@ -102,6 +103,8 @@ def _curve(found: Accurate) -> Curve:
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = _incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
+    truncation = np.concatenate([one.truncation for one in found.errors])
+    stable[(truncation > BEYOND) & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
     error = np.concatenate([one.amplitude for one in found.errors])
     return Curve(
         parameters=dict(scene.parameters),
@@ -116,7 +119,7 @@ def _curve(found: Accurate) -> Curve:
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
         error=pick(error, rows),
-        truncation_error=pick(np.concatenate([one.truncation for one in found.errors]), rows),
+        truncation_error=pick(truncation, rows),
         complete=not reason,
         reason=reason,
         peaks=_peaks(scene.modal.dofs, points, found.peak),
