@@ -12,10 +12,12 @@ REPORT := build/report
 KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
 
 # What the pictures are made of, so that a change redoes only what it touches.
-CONTACT    := $(wildcard src/fcm/contact/*.py)
-SOLVER     := $(CONTACT) $(wildcard src/fcm/scene/*.py src/fcm/table/*.py src/fcm/response/*.py) tables/default.nc
+ALL        := src/fcm/signals.py src/fcm/units.py src/fcm/files.py
+CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
+SOLVER     := $(CONTACT) tables/default.nc \
+	$(wildcard $(foreach part,scene table structure continuation harmonic run response,src/fcm/$(part)/*.py))
 SIMULATION := $(SOLVER) $(wildcard src/fcm/simulate/*.py src/fcm/motion/*.py src/fcm/orbit/*.py)
-LOOK       := src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
+LOOK       := $(ALL) src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
 SURFACES   := $(CONTACT) $(LOOK) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py
 NORMAL     := $(CONTACT) $(LOOK) src/fcm/plot/normal.py src/fcm/cli/coefficients.py

@@ -86,12 +86,15 @@ def test_the_curve_does_not_depend_on_units(yang, name):
     assert curve.amplitude == pytest.approx(length * plain.amplitude, rel=1e-9)
     differ = curve.regime != plain.regime  # on a boundary of two regimes a contact is in either
     assert differ.sum() <= 2 * (len(plain.folds) + 4)
-    assert np.array_equal(curve.stable, plain.stable, equal_nan=True)
+    judged = np.isclose(curve.stable, plain.stable, equal_nan=True)  # nor is the estimate that may forbid to tell
+    assert (~judged).sum() <= 2
 
 
 def test_masses_and_shapes_of_any_size_give_the_same_curve(yang):
     curve = curve_of("extreme/heavy-and-light")
-    assert curve.peaks["u"][:2] == pytest.approx(yang[1].peaks["u"][:2], rel=1e-9)
+    (height, at, _), (same, there, _) = curve.peaks["u"], yang[1].peaks["u"]
+    assert height == pytest.approx(same, rel=1e-12)
+    assert at == pytest.approx(there, rel=1e-8)  # where it is flat: a height right to 1e-16 says so much
     assert curve.folds == pytest.approx(yang[1].folds, rel=1e-9)
 
 

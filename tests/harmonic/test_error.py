@@ -27,7 +27,7 @@ def test_where_nothing_slips_or_opens_there_is_no_error():
 @pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
 def test_points_beside_the_exact_motion(preload, harmonics):
     """Nine in ten within a factor of two, none low by more than three."""
-    pairs, _, _, exact = points(System(scene("yang1998", preload), harmonics), 20)
+    pairs, _, _, exact = points(System(scene("yang1998", preload), harmonics), 60)
     pairs = pairs[pairs.max(axis=1) > 1e-3]
     assert len(pairs) > 5
     assert exact > 10

@@ -16,6 +16,7 @@ from fcm.continuation.problem import Problem
 
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
 CLOSE = cython.declare(cython.double, 1e-13)  # error of a point, estimated from the convergence
+SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
 ROUNDINGS = cython.declare(
@@ -65,7 +66,8 @@ class Newton:
             for i in range(size):
                 self.z[i] += self.scale[i] * self.solver.right[i]
             ratio = step / before
-            if step * ratio * sqrt(ratio) < CLOSE or step < EPS:
+            # the first step says nothing of the convergence yet
+            if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
                 return self.direct()
             if count > 0 and ratio > 0.25 and step < COARSEST and step < ROUNDINGS * self.rounding():
                 return self.direct()

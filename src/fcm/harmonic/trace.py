@@ -35,8 +35,8 @@ def traced(system: System, progress: Progress | None = None) -> Traced:
 def _steady(system: System, branches: Branches) -> Branches:
     """Without the branches that are none, beside one that is.
 
-    The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which friction
-    pushes along such a mode does not balance it.
+    The mean of a rigid-body mode that nothing holds is not among the equations: a branch on all of which
+    friction pushes along such a mode does not balance it.
     """
     paths = branches.paths
     if len(paths) < 2 or system.linear.natural.min(initial=1.0) > 0.0:
