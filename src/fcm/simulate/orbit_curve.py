@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.motion.errors import SimulationError
+from fcm.motion.system import has_friction
 from fcm.orbit.family import family
 from fcm.response.groups import lost_curve
 from fcm.response.result import Curve, Orbits, Peak
@@ -99,10 +100,16 @@ def _families(
     """The extent over residual friction at the peaks, or everywhere; nan where the amplitude is unique."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     known = np.isfinite(amplitude).any(axis=1)
+    rough = all(has_friction(contact) for contact in scene.contacts)
+
+    def linear(point: Sample) -> bool:
+        """Whether no contact does anything but stick: as far as all do, the amplitude is the same."""
+        return rough and set(point.states) == {"E"}
+
     chosen = range(len(points)) if everywhere else set(np.nanargmax(amplitude, axis=0)) if known.any() else ()
     for k in chosen:
         point = points[k]
-        if point is None or "E" not in point.states or point.repeats != 1:
+        if point is None or "E" not in point.states or point.repeats != 1 or linear(point):
             continue
         try:
             found = family(scene, point.frequency, point.state)
