@@ -86,7 +86,9 @@ def test_the_curve_does_not_depend_on_units(yang, name):
     assert curve.amplitude == pytest.approx(length * plain.amplitude, rel=1e-9)
     differ = curve.regime != plain.regime  # on a boundary of two regimes a contact is in either
     assert differ.sum() <= 2 * (len(plain.folds) + 4)
-    judged = np.isclose(curve.stable, plain.stable, equal_nan=True)  # nor is the estimate that may forbid to tell
+    judged = np.isclose(
+        curve.stable, plain.stable, equal_nan=True
+    )  # nor is the estimate that may forbid to tell
     assert (~judged).sum() <= 2
 
 
