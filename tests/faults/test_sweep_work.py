@@ -29,11 +29,11 @@ SLOW = (
     ALONE
     + """
 import fcm.response.groups as groups, time
-real = groups.trace_group
+real = groups.traced_curve
 def slow(*args):
     time.sleep(0.2)
     return real(*args)
-groups.trace_group = slow
+groups.traced_curve = slow
 """
 )
 
@@ -130,7 +130,7 @@ output.write_netcdf = lambda *_: os.kill(os.getpid(), 9)
     )
     args = ("respond", "sweep.toml", "-o", "a.nc", "--jobs", "1")
     assert program(*args, before=deadly).returncode == -signal.SIGKILL
-    nothing = FEW + "import fcm.response.groups as groups\ngroups.trace_group = None\n"
+    nothing = FEW + "import fcm.response.groups as groups\ngroups.traced_curve = None\n"
     done = program(*args, "--resume", before=nothing)
     assert done.returncode == 0 and program.files == ["a.nc", "one.toml", "sweep.toml"]
     assert program(*args[:3], "b.nc", before=FEW).returncode == 0
@@ -154,7 +154,7 @@ output.write_netcdf = lambda *_: (os.kill(os.getpid(), signal.SIGINT), time.slee
 @pytest.mark.parametrize("length", [230, 240, 244, 252])
 def test_a_name_too_long_is_refused_before_anything_is_computed(program, length):
     name = "x" * (length - 3) + ".nc"
-    done = program("respond", "one.toml", "-o", name, before=FEW + "sweep.trace_group = None\n")
+    done = program("respond", "one.toml", "-o", name, before=FEW + "sweep.traced_curve = None\n")
     if done.returncode == 0:  # short enough for every name that was used meanwhile
         assert name in program.files
     else:
@@ -360,7 +360,7 @@ def test_of_120_curves_84_percent_are_kept(tmp_path):
 
     keep = tmp_path / "kept"
     part = trace(scene, "closed-form", progress=stop, keep=keep)
-    assert sum(curve.complete for curve in part.curves) == 90 and part.interrupted
+    assert sum(curve.complete for curve in part.curves) == 100 and part.interrupted
     assert all(curve.complete for curve in trace(scene, "closed-form", keep=keep, resume=True).curves)
 
 
@@ -375,7 +375,7 @@ def test_there_is_one_bar_and_it_never_goes_back():
 
 def test_verbose_shows_where_a_curve_was_lost(program):
     lost = "import fcm.response.groups as groups\n" + (
-        "def broken(*_):\n    raise ZeroDivisionError('of zero')\ngroups.trace_group = broken\n"
+        "def broken(*_):\n    raise ZeroDivisionError('of zero')\ngroups.traced_curve = broken\n"
     )
     quiet = program("respond", "one.toml", before=lost)
     loud = program("respond", "one.toml", "-v", before=lost)
@@ -400,7 +400,7 @@ sys.modules["fcm.motion.histories"].histories = stop
     done = program("respond", "one.toml", "--csv", "a.csv", before=stopped)
     assert done.returncode == 3 and former.read_text() == "former"
     assert "kept in a.csv.unfinished: continue with --resume" in done.err
-    nothing = ALONE + "import fcm.response.groups as groups\ngroups.trace_group = None\n"
+    nothing = ALONE + "import fcm.response.groups as groups\ngroups.traced_curve = None\n"
     assert program("respond", "one.toml", "--csv", "a.csv", "--resume", before=nothing).returncode == 0
     assert former.read_text().startswith("curve,") and program.files == ["a.csv", "one.toml", "sweep.toml"]
 

@@ -61,7 +61,7 @@ def test_what_the_template_has_in_comments_is_right():
     """Its comments taken away, all but one of each choice: a scene of matrices, with all tables."""
     text = printed("--template")
     lines = [line.removeprefix("# ") for line in text[text.index("[[contact]]") :].splitlines()]
-    dropped = ("gap", "areas", "nodes", "file ", "phase ", " ", "phase   =")
+    dropped = ("accuracy", "gap", "areas", "nodes", "file ", "phase ", " ", "phase   =")
     kept = [line for line in lines if not line.startswith(dropped)]
     table = '[structure]\ndofs = ["40x","40y","41x","41y","71x","50z","7a"]\nmass = [1,1,1,1,1,1,1]\n'
     table += "stiffness = [1e5,2e5,3e5,4e5,5e5,6e5,7e5]\ndamping = 0.002\n"

@@ -124,7 +124,7 @@ def scene(folder, elements=60, **structure):
         "structure": table,
         "contact": [contact | {"n_0": 0.6}],
         "force": [{"dof": "31w", "amplitude": 1.0}],
-        "response": {"frequency": [2.0, 30.0]},
+        "response": {"frequency": [2.0, 30.0], "harmonics": 1},
     }
     return scene_from_dict(data, "beam.toml", folder)
 

@@ -44,10 +44,7 @@ class Line:
 
 def line_of(curve: Curve) -> Line:
     """A curve of harmonic balance."""
-    estimate: dict[str, float] = {}
-    if curve.points:
-        highest = np.nan_to_num(curve.amplitude, nan=-1.0).argmax(axis=0)
-        estimate = {d: float(curve.truncation_error[k]) for d, k in zip(curve.peaks, highest, strict=True)}
+    estimate = {dof: peak.error for dof, peak in curve.peaks.items()}
     return Line(
         curve.frequency, curve.amplitude, heights(curve), curve.folds, curve.complete, curve.reason,
         estimate, curve.evaluations,
