@@ -55,9 +55,3 @@ def _numbers(n0_star: npt.ArrayLike) -> FloatArray:
     numbers = np.empty((4, at.size))
     normal_loads(at.ravel(), numbers)
     return numbers.reshape(4, *at.shape)
-
-
-def contact_angle(n0_star: FloatArray) -> FloatArray:
-    """theta_1 of (30), half the contact duration [rad]."""
-    theta_1: FloatArray = np.pi * normal_gradients(n0_star)[0]
-    return theta_1

@@ -14,7 +14,6 @@ from fcm.plot.read import FloatArray, floats, opened, swept_values
 _CYCLES = ("cycle_start", "cycle_elapsed", "cycle_part", "cycle_greatest", "cycle_least", "cycle_mean")
 _PHASES = ("schedule_frequency", "schedule_cycles", "schedule_start")
 _NEEDED = ("displacement", "time", "cycles", "dof", *_CYCLES, *_PHASES)
-AXES = ("cycles", "time")
 
 
 @dataclass(frozen=True)

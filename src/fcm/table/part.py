@@ -98,13 +98,11 @@ class Reach:
 
     def __init__(self, resolution: Resolution) -> None:
         self.resolution = resolution
-        self.looked_up = 0
         self._low, self._high = np.full((2, 3), np.inf), np.full((2, 3), -np.inf)
 
     def note(self, n0: FloatArray, b: FloatArray, phi: FloatArray) -> None:
         """Look-ups at points (point,)."""
         place = locate(np.stack((n0, b, phi)), self.resolution)
-        self.looked_up += n0.size
         first_slip = self.resolution[0] - 1 + NODES_BETWEEN
         slips = place.q[0] > first_slip - 1
         for chart, chosen in enumerate((~slips, slips)):
