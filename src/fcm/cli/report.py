@@ -46,7 +46,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     of_length = f" [{length}]" if length else ""
     peaks = [text for dof in dofs for text in (f"peak {dof}{of_length}", f"at {unit}", "error")]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
-    header = [*names, *peaks, *balanced, "points", "time [s]", f"folds at {unit}", ""]
+    folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
+    header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
     rows = [_curve_row(curve, dofs, bool(balanced)) for curve in curves]
     lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
@@ -69,7 +70,7 @@ def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
         cells += [number(peak.get("amplitude")), at, short(peak.get("error"))]
     if balanced:
         cells.append(counted(curve["harmonics"]) if "harmonics" in curve else "-")
-    folds = "  ".join(number(fold) for fold in curve["folds"]) or "none"
+    folds = "  ".join(number(fold) for fold in curve.get("level_folds", curve["folds"])) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
 
@@ -110,13 +111,14 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     curves = summary["curves"]
     points = sum(curve["points"] for curve in curves)
     count = f"{len(curves)} curve{'' if len(curves) == 1 else 's'}"
-    table, harmonic = (_worst(curves, key) for key in ("table_error", "truncation_error"))
+    tabled = [curve for curve in curves if len(curve.get("harmonics", ())) < 2]  # more are summed exactly
+    table, harmonic = _worst(tabled, "table_error"), _worst(curves, "truncation_error")
     errors = []
     if summary.get("method") == "exact":
-        table = harmonic = None
+        harmonic = None
         if (closure := _worst(curves, "closure_error")) is not None:
             errors.append(f"{closure:.1e} by which a period does not close")
-    if summary.get("method") != "closed-form" and table is not None:
+    if summary.get("method") == "table" and table is not None:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:
         errors.append(f"{harmonic:.1e} by leaving out higher harmonics")

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Status
+from fcm.continuation import Mark, Status
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
@@ -74,7 +74,7 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     parameters = {**scene.parameters, AT: frequency}
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     if inside.size == 0:
-        return replace(empty, parameters=parameters)
+        return replace(empty, parameters=parameters, level=np.empty(0))
     rows = np.insert(
         np.arange(inside.size), np.flatnonzero(np.diff(inside) > 1) + 1, -1
     )  # -1: outside the span
@@ -82,6 +82,7 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)
     X, first = 1j * X, harmonics.index(1)
+    folds = (path.mark[inside] & Mark.FOLD) > 0
     whole = path.status is Status.COMPLETE
     tops = amplitude.argmax(axis=0)
     unknown = np.full(level.size, np.nan)
@@ -90,6 +91,7 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
         parameters=parameters,
         frequency=pick(np.full(level.size, omega), rows),
         level=pick(level, rows),
+        level_folds=level[folds].tolist(),
         amplitude=pick(amplitude, rows),
         fundamental=pick(np.abs(X[:, first]), rows),
         phase=pick(np.angle(X[:, first]), rows),

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 import fcm
-from fcm.contact.limits import FloatArray
 from fcm.files import replacing
-from fcm.response.result import Curve, Orbits, Response
+from fcm.response.fields import ORBIT_KINDS, Field, fields_of
+from fcm.response.result import Orbits, Response
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
@@ -23,71 +20,7 @@ if TYPE_CHECKING:
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
-ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
-LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
-    ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
-    ("b_bar", "mu k_v b / (k_u a) of the loop", {"units": "1"}),
-    ("phi", "phase of the normal motion before the tangential, of the loop", {"units": "radian"}),
-    ("tangential_amplitude", "amplitude a of the tangential motion across the contact", {}),
-    ("spring_force", "k_u a, by which the loop's forces are divided", {}),
-)
-
-CYCLE = (  # of Curve.cycle
-    ("greatest_normal_force", "greatest normal force of the cycle"),
-    ("greatest_friction_force", "greatest friction force of the cycle"),
-    ("slip_path", "way of the slider in slip, in a cycle"),
-    ("dissipated_energy", "energy that friction takes in a cycle"),
-)
-
-EXACT = {  # meanings that differ where the curves are of exact periodic solutions
-    "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
-    "S separation",
-    "table_error": "0: no table was used",
-    "truncation_error": "0: no harmonic was left out",
-    "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle",
-}
-ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
-    "closure_error": (
-        (),
-        {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
-    ),
-    "repeats": (
-        (),
-        {
-            "long_name": "periods of the force after which the motion repeats, 0 if it is quasi-periodic or "
-            "irregular",
-            "units": "1",
-        },
-    ),
-    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle"}),
-    "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
-    "family_least": (
-        ("dof",),
-        {"long_name": "least amplitude over the residual friction of contacts that never slip"},
-    ),
-    "family_greatest": (
-        ("dof",),
-        {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
-    ),
-    "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
-}
-
-
-LENGTHS = (
-    "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
-    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path",
-)  # fmt: skip
-FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
-
-
-class Field(NamedTuple):
-    """One variable of the file."""
-
-    dims: tuple[str, ...]
-    values: npt.NDArray[Any]
-    attrs: dict[str, str]
 
 
 def summary(response: Response) -> dict[str, Any]:
@@ -114,169 +47,6 @@ def _without_nan(value: Any) -> Any:
     if isinstance(value, list):
         return [_without_nan(item) for item in value]
     return None if isinstance(value, float) and not np.isfinite(value) else value
-
-
-def fields_of(response: Response) -> dict[str, Field]:
-    """Every variable of the file, coordinates first."""
-    swept = response.parameters
-    out = {
-        "dof": Field(("dof",), np.array(response.dofs), {"long_name": "degree of freedom"}),
-        "contact": Field(("contact",), np.array(response.contacts, dtype=str), {"long_name": "contact"}),
-    }
-    for key in swept[0] if swept else ():
-        values = np.array([parameters[key] for parameters in swept])
-        out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"})
-    if response.curves or response.histories is None:
-        out |= _point_fields(response)
-    if response.histories is not None:
-        from fcm.motion import output
-
-        out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
-    return _with_units(out, response.units)
-
-
-def _with_units(fields: dict[str, Field], units: tuple[str, str]) -> dict[str, Field]:
-    """The variables with the units of length and force that the scene names, where it does."""
-    for names, unit in zip((LENGTHS, FORCES), units, strict=True):
-        for name in set(names) & set(fields) if unit else ():
-            fields[name].attrs["units"] = unit
-    return fields
-
-
-def _point_fields(response: Response) -> dict[str, Field]:
-    """Every variable of the curves."""
-    curves, unit = response.curves, response.frequency_unit
-    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
-    out: dict[str, Field] = {}
-
-    def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
-        out[name] = Field(("curve", "point", *dims), _padded([pick(c) for c in curves]), attrs)
-
-    excitation = "excitation frequency"
-    points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=cf_unit)
-    if any(c.level is not None for c in curves):
-        level = "level of the forces: all amplitudes times this"
-        points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
-    points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
-    points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
-    phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"
-    points("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
-    points("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
-    states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
-    points("regime", lambda c: c.regime, ("contact",), long_name=states)
-    for i, (name, meaning, units) in enumerate(LOOP):
-        points(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
-    for i, (name, meaning) in enumerate(CYCLE):
-        points(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
-    shift = (
-        "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
-    )
-    points("table_error", lambda c: c.table_error, (), long_name=shift, units="1")
-    points(
-        "error", lambda c: c.error, ("dof",), long_name="estimated error of amplitude, relative", units="1"
-    )
-    left = "estimated shift of the response by the harmonics that were left out, relative"
-    points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
-    dies = "1 where small disturbances of the motion die out, 0 where not, missing where that is not known"
-    points("stable", lambda c: c.stable, (), long_name=dies, units="1")
-    if any(c.harmonic is not None for c in curves):
-        out |= _harmonic_fields(curves)
-    if response.method == "exact":
-        for name, meaning in EXACT.items():
-            out[name].attrs["long_name"] = meaning
-        for name, (dims, attrs) in ORBITS.items():
-            points(name, partial(_of_orbits, name=name), dims, **attrs)
-    out |= _curve_fields(response, cf_unit)
-    return out
-
-
-def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
-    """Amplitude and phase of each harmonic, by its number; NaN for those that a curve has not."""
-    numbers = sorted({h for curve in curves for h in curve.harmonics})
-    dims = ("curve", "point", "harmonic", "dof")
-    X = _padded([_by_number(curve, numbers) for curve in curves])
-    sine = "as harmonic_amplitude * sin(harmonic omega t + harmonic_phase)"
-    return {
-        "harmonic": Field(("harmonic",), np.array(numbers), {"long_name": "number of the harmonic"}),
-        "harmonic_amplitude": Field(dims, np.abs(X), {"long_name": "amplitude of the harmonic"}),
-        "harmonic_phase": Field(dims, np.angle(X), {"long_name": f"phase, {sine}", "units": "radian"}),
-    }
-
-
-def _by_number(curve: Curve, numbers: Sequence[int]) -> npt.NDArray[np.complex128]:
-    """(point, harmonic, dof) of one curve."""
-    points, dofs = curve.fundamental.shape
-    out = np.full((points, len(numbers), dofs), np.nan, dtype=np.complex128)
-    if curve.harmonic is None:
-        out[:, numbers.index(1)] = curve.fundamental * np.exp(1j * curve.phase)
-    else:
-        out[:, [numbers.index(h) for h in curve.harmonics]] = curve.harmonic
-    return out
-
-
-def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
-    if curve.orbits is None:  # lost
-        lost: dict[str, npt.NDArray[Any]] = dict.fromkeys(ORBIT_KINDS, curve.amplitude)
-        return (lost | {"sweep": np.array([], dtype=str)}).get(name, curve.frequency)
-    values: npt.NDArray[Any] = getattr(curve.orbits, name)
-    return values
-
-
-def _of_orbit(orbits: Orbits, point: int) -> list[Any]:
-    """The last columns of a row of CSV."""
-    return [repr(float(orbits.closure_error[point])), orbits.sweep[point], int(orbits.repeats[point])]
-
-
-def _of_loop(curve: Curve, column: int) -> FloatArray:
-    return curve.loop[..., column]
-
-
-def _of_cycle(curve: Curve, column: int) -> FloatArray:
-    return curve.cycle[..., column]
-
-
-def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
-    """One value or row for each curve: peaks, folds, whether it is complete."""
-    curves, unit = response.curves, response.frequency_unit
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
-    folds = _padded([in_unit(c.folds, unit) for c in curves])
-    complete = np.array([c.complete for c in curves], dtype=np.int8)
-    by_dof, by_fold = ("curve", "dof"), ("curve", "fold")
-    return {
-        "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
-        "peak_frequency": Field(
-            by_dof,
-            in_unit(peaks[..., 1], unit),
-            {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
-        ),
-        "peak_error": Field(
-            by_dof,
-            peaks[..., 2],
-            {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
-        ),
-        "fold_frequency": Field(
-            by_fold,
-            folds,
-            {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
-        ),
-        "complete": Field(
-            ("curve",),
-            complete,
-            {"long_name": "1 where the curve reached the end of its range", "units": "1"},
-        ),
-    }
-
-
-def _padded(parts: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays of different length stacked; padded with NaN, or '' for text."""
-    longest = max((part.shape[0] for part in parts), default=0)
-    text = bool(parts) and parts[0].dtype.kind == "U"
-    tail = parts[0].shape[1:] if parts else ()
-    kind = np.result_type("<U6" if text else np.float64, *parts)
-    out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype=kind)
-    for row, part in zip(out, parts, strict=True):
-        row[: part.shape[0]] = part
-    return out
 
 
 def attributes(response: Response) -> dict[str, str]:
@@ -350,6 +120,7 @@ def write_csv(response: Response, path: str | Path) -> None:
     """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
+    levels = any(curve.level is not None for curve in response.curves)
     kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
     unit = f" [{response.units[0]}]" if response.units[0] else ""
     bare = ("phase", "error")
@@ -363,6 +134,7 @@ def write_csv(response: Response, path: str | Path) -> None:
                 "branch",
                 *keys,
                 f"frequency [{response.frequency_unit}]",
+                *(["level"] if levels else []),
                 *columns,
                 *regimes,
                 *LAST_COLUMNS,
@@ -378,8 +150,14 @@ def write_csv(response: Response, path: str | Path) -> None:
             for k in np.flatnonzero(np.isfinite(c.frequency)):
                 writer.writerow(
                     [number, c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
+                    + ([] if c.level is None else [repr(float(c.level[k]))])
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
                     + ([] if orbits is None else _of_orbit(orbits, int(k)))
                 )
+
+
+def _of_orbit(orbits: Orbits, point: int) -> list[Any]:
+    """The last columns of a row of CSV."""
+    return [repr(float(orbits.closure_error[point])), orbits.sweep[point], int(orbits.repeats[point])]

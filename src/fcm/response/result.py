@@ -72,6 +72,7 @@ class Curve:
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
     evaluations: int = 0  # of the equations, to follow it
     level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
+    level_folds: list[float] = field(default_factory=list)  # levels at which that curve turns back
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
@@ -90,6 +91,13 @@ class Curve:
         """Largest error of the curve that is known."""
         known = errors[np.isfinite(errors)]
         return float(known.max()) if known.size else None
+
+    def _stable(self) -> bool | None:
+        """Whether all of the curve is stable; None where that is not known."""
+        stable = self.stable[np.isfinite(self.frequency)]
+        if (stable == 0.0).any():
+            return False
+        return True if stable.size and (stable == 1.0).all() else None
 
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
@@ -134,8 +142,9 @@ class Curve:
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
             "peak": {d: self._peak(peak, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
+            **({} if self.level is None else {"level_folds": self.level_folds}),
             "jumps": [self._jump(jump, unit) for jump in self.jumps()],
-            "stable": bool((self.stable[np.isfinite(self.frequency)] == 1.0).all()),
+            "stable": self._stable(),
             "table_error": self.worst(self.table_error),
             "truncation_error": self.worst(self.truncation_error),
             **({} if self.orbits is None else self._of_orbits(self.orbits)),

@@ -1,0 +1,49 @@
+"""Curves against the level of the forces: where they fold, beside curves against the frequency."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.response import trace
+from fcm.response.level import trace_levels
+from fcm.response.output import to_dataset, write_csv
+from fcm.scene import load_scene
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_both_kinds_of_curve_fold_at_the_same_solution(harmonics):
+    """Where the equations are singular is no matter of the parameter."""
+    scene = load_scene("yang1998-n5")
+    (curve,) = trace(scene, harmonics=harmonics).curves
+    for frequency in curve.folds:
+        (raised,) = trace_levels(scene, [frequency], (0.5, 1.5), harmonics=harmonics).curves
+        assert min(abs(level - 1.0) for level in raised.level_folds) < 1e-6
+        assert raised.folds == []
+
+
+def test_the_motion_of_an_open_contact_is_in_proportion_to_the_level():
+    scene = load_scene("yang1998-n5")
+    away = replace(scene, contacts=tuple(replace(one, n_0=-1e3) for one in scene.contacts))
+    (raised,) = trace_levels(away, [0.9], (0.1, 2.0)).curves
+    assert raised.level_folds == [] and raised.complete
+    each = raised.amplitude / raised.level[:, None]
+    assert each == pytest.approx(np.broadcast_to(each[0], each.shape), rel=1e-9)
+
+
+def test_what_is_said_of_a_curve_of_levels():
+    response = trace_levels(load_scene("yang1998-n5"), [1.2], (0.0, 1.0))
+    data, said = to_dataset(response), response.curves[0].summary()
+    assert data.fold_level.dims == ("curve", "level_fold")
+    assert data.fold_level[0].values.tolist() == said["level_folds"] == response.curves[0].level_folds
+    assert said["stable"] is None and said["folds"] == []
+
+
+def test_the_level_is_a_column_of_csv(tmp_path):
+    response = trace_levels(load_scene("yang1998-n5"), [1.2], (0.0, 1.0))
+    write_csv(response, tmp_path / "a.csv")
+    head, first, *_ = (line.split(",") for line in (tmp_path / "a.csv").read_text().splitlines())
+    assert len(head) == len(first)
+    assert float(first[head.index("level")]) == response.curves[0].level[0]
