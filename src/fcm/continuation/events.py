@@ -39,7 +39,7 @@ def first_margin(front: Front) -> tuple[float, int]:
     """Where within the step a margin changes sign first, and which."""
     first, which = front.step, -1
     for k in range(front.problem.margins):
-        if front.here.margin[k] * front.there.margin[k] < 0.0:
+        if front.here.margin[k] * front.margin(k, front.there) < 0.0:
             at = root(front, MARGIN, k, front.step)
             if at <= first:
                 first, which = at, k
@@ -75,10 +75,11 @@ def located(front: Front, kind: int, k: int, limit: float, mark: int) -> list[Fo
 
 
 @cython.cfunc
-def value(place: Place, kind: cython.int, k: cython.Py_ssize_t) -> cython.double:
-    """A function along the step."""
+def value(front: Front, place: Place, kind: cython.int, k: cython.Py_ssize_t) -> cython.double:
+    """A function along the step; a margin that there is not has not changed its sign."""
     if kind == MARGIN:
-        return place.margin[k]
+        margin: cython.double = front.here.margin[k] if place is front.here else front.margin(k, place)
+        return margin if margin != 0.0 else front.here.margin[k]
     return place.tangent[place.tangent.shape[0] - 1] if kind == FOLD else place.growth[k]
 
 
@@ -92,8 +93,8 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     """
     low: cython.double = 0.0
     high: cython.double = step
-    before: cython.double = value(front.here, kind, k)
-    after: cython.double = value(front.there, kind, k)
+    before: cython.double = value(front, front.here, kind, k)
+    after: cython.double = value(front, front.there, kind, k)
     at: cython.double
     now: cython.double
     last: cython.int = 0
@@ -104,7 +105,7 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
             return high
         if kind != MARGIN and not front.sharpen():
             return high
-        now = value(front.between, kind, k)
+        now = value(front, front.between, kind, k)
         if now == 0.0:
             return at
         if now * before > 0.0:

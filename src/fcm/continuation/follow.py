@@ -207,12 +207,14 @@ class _Follower:
             return Status.STALLED
         self.repeated = self.repeated + 1 if at < SHARP * led else 0
         point = events.found(front, at, Mark.CORNER, front.between)
-        front.between.margin[which] = front.here.margin[which]
+        same = front.partner(which, front.between.kind, front.between.angle)
+        if same >= 0:
+            front.between.margin[same] = front.here.margin[which]
         front.between.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
         front.between.growth[:] = front.there.growth
         front.between.orientation = front.there.orientation
         front.accept(front.between, at)
-        return self.turn(which, point)
+        return self.turn(same, point)
 
     @cython.cfunc
     def turn(self, which: cython.int, point: events.Found) -> object:
@@ -221,7 +223,7 @@ class _Follower:
         rise: cython.double = front.here.tangent[self.n]
         growth = np.array(front.here.growth)
         front.cross(which, BEYOND)
-        if self.repeated > self.problem.margins:  # the curve only touches the margin
+        if which >= 0 and self.repeated > self.problem.margins:  # the curve only touches the margin
             front.here.margin[which] = 0.0
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
         if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):

@@ -5,6 +5,8 @@ cdef class Place:
     cdef public double[::1] z
     cdef public double[::1] tangent
     cdef public double[::1] margin
+    cdef public int[::1] kind
+    cdef public double[::1] angle
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
@@ -30,6 +32,8 @@ cdef class Front:
     cpdef double ahead(self, double step) except -1
     cpdef bint cross(self, Py_ssize_t which, double past) except -1
     cpdef bint crosses(self) except -1
+    cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
+    cpdef double margin(self, Py_ssize_t k, Place place) except -1e300
     cpdef bint sharpen(self) except -1
     cpdef bint shorten(self, double at) except -1
     cpdef double length(self, Place place) except -1e300
@@ -42,3 +46,4 @@ cdef class Front:
     cdef void interpolate(self, double at) noexcept
 
 cdef double greater(double a, double b) noexcept nogil
+cdef Py_ssize_t nearest(int wanted, double at, int[::1] kind, double[::1] angle) noexcept

@@ -11,11 +11,17 @@ import numpy as np
 from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.newton import Newton
-from fcm.continuation.problem import Problem
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.problem import NONE, Problem
+else:
+    from fcm.continuation.problem import NONE, Problem
 
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 LOOKS = cython.declare(cython.int, 50)  # bisections of the predicted step to where a margin changes sign
+PI = cython.declare(cython.double, 3.141592653589793)
+APART = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
 KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which it is found
 
 
@@ -26,7 +32,8 @@ class Place:
 
     def __init__(self, problem: Problem) -> None:
         self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
-        self.margin = np.zeros(problem.margins)
+        self.margin, self.angle = np.zeros(problem.margins), np.zeros(problem.margins)
+        self.kind = np.zeros(problem.margins, dtype=np.intc)
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
         self.orientation, self.shift = 0.0, 0.0
 
@@ -90,10 +97,35 @@ class Front:
         """Whether a margin has the other sign at the guess than here; which is then one of those."""
         k: cython.Py_ssize_t
         for k in range(self.problem.margins):
-            if self.problem.margin[k] * self.here.margin[k] < 0.0:
+            i: cython.Py_ssize_t = self.partner(k, self.problem.kind, self.problem.angle)
+            if i >= 0 and self.problem.margin[i] * self.here.margin[k] < 0.0:
                 self.which = k
                 return True
         return False
+
+    @cython.ccall
+    @cython.exceptval(-2, check=False)
+    def partner(
+        self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
+    ) -> cython.Py_ssize_t:
+        """Which of other margins is the one with number k here; -1 if none is.
+
+        It is that of its kind nearest to it, if it is also nearest to that.
+        """
+        i: cython.Py_ssize_t
+        if self.here.kind[k] == NONE:
+            return -1
+        if kind[k] == self.here.kind[k] and angle[k] == self.here.angle[k]:
+            return k
+        i = nearest(self.here.kind[k], self.here.angle[k], kind, angle)
+        return i if i >= 0 and nearest(kind[i], angle[i], self.here.kind, self.here.angle) == k else -1
+
+    @cython.ccall
+    @cython.exceptval(-1e300, check=False)
+    def margin(self, k: cython.Py_ssize_t, place: Place) -> cython.double:
+        """The margin at a place that is the one with number k here; 0 if none is."""
+        i: cython.Py_ssize_t = self.partner(k, place.kind, place.angle)
+        return place.margin[i] if i >= 0 else 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -188,6 +220,8 @@ class Front:
         self.here.z[:] = place.z
         self.here.tangent[:] = place.tangent
         self.here.margin[:] = place.margin
+        self.here.kind[:] = place.kind
+        self.here.angle[:] = place.angle
         self.here.output[:] = place.output
         self.here.orientation = place.orientation
         for i in range(place.growth.shape[0]):
@@ -233,7 +267,8 @@ class Front:
         self.newton.row[:] = self.here.tangent
         for i in range(size):
             self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
-        self.here.margin[which] = -self.here.margin[which]
+        if which >= 0:
+            self.here.margin[which] = -self.here.margin[which]
         if not self.newton.look():
             return False
         sign = 1.0 if self.newton.orientation == self.here.orientation else -1.0
@@ -251,7 +286,7 @@ class Front:
         """Whether a margin changes sign from here to there."""
         k: cython.Py_ssize_t
         for k in range(self.problem.margins):  # noqa: SIM110 - a loop in C
-            if self.here.margin[k] * self.there.margin[k] < 0.0:
+            if self.here.margin[k] * self.margin(k, self.there) < 0.0:
                 return True
         return False
 
@@ -299,6 +334,8 @@ class Front:
         place.orientation = self.newton.orientation
         self.problem.bound(place.z)
         place.margin[:] = self.problem.margin
+        place.kind[:] = self.problem.kind
+        place.angle[:] = self.problem.angle
         if self.problem.outputs:
             for i in range(place.z.shape[0]):
                 self.guess[i] = self.newton.scale[i] * place.tangent[i]
@@ -341,3 +378,21 @@ class Front:
 @cython.exceptval(check=False)
 def greater(a: cython.double, b: cython.double) -> cython.double:
     return a if a > b else b
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def nearest(
+    wanted: cython.int, at: cython.double, kind: cython.int[::1], angle: cython.double[::1]
+) -> cython.Py_ssize_t:
+    """The number of that of a kind whose angle is nearest to one given; -1 if there is none near it."""
+    i: cython.Py_ssize_t
+    best: cython.Py_ssize_t = -1
+    least: cython.double = APART
+    for i in range(kind.shape[0]):
+        if kind[i] == wanted:
+            off: cython.double = fabs(at - angle[i])
+            off = off if off <= PI else fabs(2.0 * PI - off)
+            if off < least:
+                least, best = off, i
+    return best

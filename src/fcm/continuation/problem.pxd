@@ -1,3 +1,5 @@
+cdef int NONE
+
 cdef class Problem:
     cdef public int unknowns
     cdef public int margins
@@ -7,6 +9,8 @@ cdef class Problem:
     cdef public double[:, ::1] jacobian
     cdef public double[::1] scale
     cdef public double[::1] margin
+    cdef public int[::1] kind
+    cdef public double[::1] angle
     cdef public double[::1] output
     cdef public double[::1] growth
     cpdef int evaluate(self, double[::1] z) except -1

@@ -10,13 +10,16 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
+
 
 @cython.cclass
 class Problem:
     """Equations of a curve; see the methods for what each array holds.
 
     residual (n,), jacobian (n, n + 1): by `evaluate`, the derivative by the parameter in the last column.
-    scale (n + 1,): by `measure`. margin (margins,): by `bound`. output, growth (outputs,): by `report`.
+    scale (n + 1,): by `measure`. margin, kind, angle (margins,): by `bound`. output, growth (outputs,): by
+    `report`.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
     """
 
@@ -26,7 +29,8 @@ class Problem:
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, unknowns + 1))
         self.scale = np.ones(unknowns + 1)
-        self.margin = np.ones(margins)
+        self.margin, self.angle = np.ones(margins), np.zeros(margins)
+        self.kind = np.arange(margins, dtype=np.intc)
         self.output = np.zeros(outputs)
         self.growth = np.zeros(outputs)
 
@@ -45,7 +49,11 @@ class Problem:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, z: cython.double[::1]) -> cython.int:
-        """Margins: functions of z of which each changes sign where the problem is not smooth."""
+        """Margins: functions of z of which each changes sign where the problem is not smooth.
+
+        Which function each is its kind says, and of those of one kind the angle [rad], which varies with z;
+        NONE where there is none. Margins may come and go, and stand in any order.
+        """
         return 0
 
     @cython.ccall

@@ -15,10 +15,15 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import sqrt
 
-from fcm.continuation.problem import Problem
 from fcm.harmonic.displacement import Displacements
-from fcm.harmonic.law import Law
 from fcm.structure.receptance import Receptance
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.problem import NONE, Problem
+    from cython.cimports.fcm.harmonic.law import KINDS, Law
+else:
+    from fcm.continuation.problem import NONE, Problem
+    from fcm.harmonic.law import KINDS, Law
 
 OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a unit is at least this much of its own, and of the greatest, maximum
 
@@ -204,7 +209,8 @@ class Balance(Problem):
             law: Law = self.laws[c]
             law.bound(z, c * self.width)
             for i in range(law.margins):
-                self.margin[at] = law.margin[i]
+                self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
+                self.kind[at] = law.kind[i] + c * KINDS if law.kind[i] != NONE else NONE
                 at += 1
         return 0
 

@@ -1,3 +1,5 @@
+cdef int KINDS
+
 cdef class Law:
     cdef public int width
     cdef public int margins
@@ -8,6 +10,8 @@ cdef class Law:
     cdef public double[::1] force
     cdef public double[:, ::1] tangent
     cdef public double[::1] margin
+    cdef public int[::1] kind
+    cdef public double[::1] angle
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int refine(self, bint exact) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1

@@ -14,10 +14,13 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+KINDS = cython.declare(cython.int, 8)  # of margins, at most
+
 
 @cython.cclass
 class Law:
-    """A contact; force (width,) and tangent (width, width) by `evaluate`, margin (margins,) by `bound`."""
+    """A contact; force (width,) and tangent (width, width) by `evaluate`; margin, kind and angle
+    (margins,) by `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1."""
 
     def __init__(
         self,
@@ -31,7 +34,8 @@ class Law:
         self.width, self.margins = width, margins
         self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
-        self.margin = np.ones(margins)
+        self.margin, self.angle = np.ones(margins), np.zeros(margins)
+        self.kind = np.arange(margins, dtype=np.intc)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

@@ -58,6 +58,8 @@ class Level(Problem):
         self.place(z)
         self.balance.bound(self.z)
         self.margin[:] = self.balance.margin
+        self.kind[:] = self.balance.kind
+        self.angle[:] = self.balance.angle
         return 0
 
     @cython.cfunc

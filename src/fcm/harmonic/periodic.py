@@ -5,9 +5,13 @@ from __future__ import annotations
 import cython
 
 from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.margins import Margins
 from fcm.harmonic.law import Law
 
-OPEN = cython.declare(cython.int, 0)
+if cython.compiled:
+    from cython.cimports.fcm.continuation.problem import NONE
+else:
+    from fcm.continuation.problem import NONE
 
 
 @cython.cclass
@@ -23,8 +27,8 @@ class Periodic(Law):
         k_v: cython.double,
         n_0: cython.double,
     ) -> None:
-        Law.__init__(self, kernel.unknowns, 0, mu, k_u, k_v, n_0)
-        self.kernel = kernel
+        self.kernel, self.bounds = kernel, Margins(kernel.cycle)
+        Law.__init__(self, kernel.unknowns, self.bounds.most, mu, k_u, k_v, n_0)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -33,4 +37,15 @@ class Periodic(Law):
         self.force[:] = self.kernel.forces
         self.tangent[:, :] = self.kernel.jacobian
         self.force[1] -= max(self.n_0, 0.0)
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def bound(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        i: cython.Py_ssize_t
+        self.bounds.find(x, first, self.mu, self.k_u, self.k_v, self.n_0)
+        for i in range(self.margins):
+            self.kind[i] = self.bounds.kind[i] if i < self.bounds.count else NONE
+        self.margin[:] = self.bounds.value
+        self.angle[:] = self.bounds.angle
         return 0

@@ -7,7 +7,7 @@ cdef double TWO_PI
 cdef class Cycle(Events):
     cdef readonly Crossings crossings
     cdef readonly int pieces
-    cdef readonly double overlap
+    cdef readonly double overlap, greatest_lower, least_upper
     cdef readonly int[::1] state, event, cause
     cdef readonly double[::1] begin, rest
     cdef int[::1] order

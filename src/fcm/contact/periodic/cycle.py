@@ -77,8 +77,8 @@ class Cycle(Events):
         Of a stick the place of the slider k_u w, from the mean of u, divided by the scale of the motion.
     cause
         Of a stick what brought the slider to rest: POSITIVE or NEGATIVE slip, SEPARATION; 0 its start.
-    overlap
-        Of a contact that never opens, how far the greatest top is above the least bottom.
+    greatest_lower, least_upper, overlap
+        Of a contact that never opens, the greatest top, the least bottom, and the first less the second.
     """
 
     def __init__(self, motion: Motion) -> None:
@@ -91,7 +91,7 @@ class Cycle(Events):
         self.cause = np.zeros(size, dtype=np.intc)
         self.begin, self.rest = np.zeros(size), np.zeros(size)
         self.pieces = self.slipping = self.span = self.span_cause = 0
-        self.overlap = self.span_begin = self.w = 0.0
+        self.overlap = self.greatest_lower = self.least_upper = self.span_begin = self.w = 0.0
 
     def solve(self, behaviour: cython.int, start: float) -> cython.int:
         """The cycle of a loaded motion, OPEN, STUCK or MIXED; its slider began at `start` from the mean of u.
@@ -182,7 +182,8 @@ class Cycle(Events):
         if top < 0 or bottom < 0:  # a limit that does not move at all, or hardly
             e = self.place(self.motion.first, SLIPS)
             top, bottom = e if top < 0 else top, e if bottom < 0 else bottom
-        self.overlap = self.lower[top] - self.upper[bottom]
+        self.greatest_lower, self.least_upper = self.lower[top], self.upper[bottom]
+        self.overlap = self.greatest_lower - self.least_upper
         if self.overlap <= 0.0 or self.crossings.count == 0:
             if start < self.lower[top]:
                 self.add(STICK, top, 0.0, self.lower[top], POSITIVE)

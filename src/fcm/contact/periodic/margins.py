@@ -1,0 +1,120 @@
+"""Kernel: how far a contact is from another regime, as signed functions of its motion.
+
+A regime of a contact is the sequence of its events. The derivatives of its forces jump, or begin like a
+square root, where
+
+- the greatest or the least load passes zero: the contact begins to close at all, or to open;
+- the greatest lower limit of the slider passes the least upper one: it begins to slip, equation (25);
+- one of these passes the place where the slider of a contact that never slips began;
+- an extreme of a limit passes the slider that rests there: another slip begins, and the slider is left
+  elsewhere.
+
+Where a slip halts (P to PEP), and in which direction a contact slips as it opens and closes, the derivatives
+are continuous.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.crossings import Crossings
+    from cython.cimports.fcm.contact.periodic.cycle import STUCK, Cycle
+    from cython.cimports.fcm.contact.periodic.events import BOTTOM, TOP
+    from cython.cimports.fcm.contact.periodic.motion import (
+        CLOSED,
+        LOAD,
+        LOAD_RATE,
+        MIXED,
+        OPEN,
+        REACH,
+        UNKNOWN,
+    )
+else:
+    from fcm.contact.periodic.crossings import Crossings
+    from fcm.contact.periodic.cycle import STUCK, Cycle
+    from fcm.contact.periodic.events import BOTTOM, TOP
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, REACH, UNKNOWN
+
+CLOSES = cython.declare(cython.int, 0)  # kinds of margins
+OPENS = cython.declare(cython.int, 1)
+SLIPS = cython.declare(cython.int, 2)
+MOST = cython.declare(cython.int, 3)
+LEAST = cython.declare(cython.int, 4)
+UPWARDS = cython.declare(cython.int, 5)
+DOWNWARDS = cython.declare(cython.int, 6)
+FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
+PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
+
+
+@cython.cclass
+class Margins:
+    """`find` gives those of a motion: value, kind, angle (margin,), the first `count` of `most`.
+
+    Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
+    """
+
+    def __init__(self, cycle: Cycle) -> None:
+        self.cycle, self.motion = cycle, cycle.motion
+        self.crossings = Crossings(cycle.motion)
+        self.most, self.count = FIXED + self.crossings.capacity, 0
+        self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
+        self.kind = np.zeros(self.most, dtype=np.intc)
+        self.low = self.high = 0.0
+
+    def find(
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
+    ) -> None:
+        """Of the motion x[first:] of a contact; see `PeriodicContact`."""
+        start: float
+        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        self.count = 0
+        if behaviour == UNKNOWN:
+            return
+        start = -k_u * x[first] / self.motion.scale
+        kind: cython.int = self.cycle.solve(behaviour, start)
+        self.loads(behaviour)
+        self.note(CLOSES, 0.0, self.high)
+        self.note(OPENS, 0.0, self.low)
+        if mu * k_u > 0.0 and kind != OPEN:
+            self.slips(kind, behaviour, start)
+
+    def note(self, kind: cython.int, angle: float, value: float) -> None:
+        """One more."""
+        self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
+        self.count += 1
+
+    def loads(self, behaviour: cython.int) -> None:
+        """`low` and `high`: extremes of the load; where they cannot matter, numbers of their sign."""
+        i: cython.int
+        value: float
+        self.low = self.high = PAST if behaviour == CLOSED else -PAST
+        if behaviour != MIXED:
+            return
+        self.crossings.begin()
+        self.crossings.search(LOAD_RATE, 0, 0)
+        self.low = self.high = self.motion.at[LOAD, 0]
+        for i in range(self.crossings.count):
+            value, _ = self.motion.evaluate(LOAD, self.crossings.angle[i])
+            self.low, self.high = min(self.low, value), max(self.high, value)
+
+    def slips(self, kind: cython.int, behaviour: cython.int, start: float) -> None:
+        """Of a contact with friction that closes."""
+        e: cython.int
+        if kind == STUCK:
+            if behaviour == CLOSED and self.cycle.far_inside(start):
+                self.note(SLIPS, 0.0, -PAST)
+                self.note(MOST, 0.0, PAST)
+                self.note(LEAST, 0.0, PAST)
+            else:
+                self.note(SLIPS, 0.0, self.cycle.overlap)
+                self.note(MOST, 0.0, self.cycle.least_upper - start)
+                self.note(LEAST, 0.0, start - self.cycle.greatest_lower)
+            return
+        self.note(SLIPS, 0.0, self.cycle.overlap if self.cycle.overlap > 0.0 else PAST)
+        for e in range(self.cycle.events):
+            if self.cycle.event_kind[e] == TOP:
+                self.note(UPWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
+            elif self.cycle.event_kind[e] == BOTTOM:
+                self.note(DOWNWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
