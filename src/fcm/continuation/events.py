@@ -13,8 +13,12 @@ from fcm.continuation.path import FloatArray, Mark
 
 LOOKS = 40  # places looked at to find a root
 FINE = 1e-11  # of a step: a root is known to this
-RISE = 1e-7  # growth of an output over its size, along a unit of arc, that is not rounding
-NEARLY_GREATEST = 0.9  # of the greatest so far: a lower peak of an output is not looked for
+RISE = cython.declare(
+    cython.double, 1e-7
+)  # growth of an output over its size, along a unit of arc, that is not rounding
+NEARLY_GREATEST = cython.declare(
+    cython.double, 0.9
+)  # of the greatest so far: a lower peak of an output is not looked for
 MARGIN, FOLD, PEAK = range(3)  # the functions along a step
 
 
@@ -46,11 +50,39 @@ def first_margin(front: Front) -> tuple[float, int]:
     return first, which
 
 
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def quiet(front: Front, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
+    """Whether there is nothing within the step."""
+    n: cython.Py_ssize_t = front.problem.unknowns
+    k: cython.Py_ssize_t
+    here: Place = front.here
+    there: Place = front.there
+    for k in range(values.shape[0]):
+        if (values[k] - here.z[n]) * (values[k] - there.z[n]) < 0.0:
+            return False
+    if here.tangent[n] * there.tangent[n] < 0.0:
+        return False
+    for k in range(front.problem.outputs):  # noqa: SIM110 - a loop in C
+        if turns(here, there, k, greatest[k]):
+            return False
+    return True
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def turns(here: Place, there: Place, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
+    """Whether an output has a peak that matters between two places."""
+    size: cython.double = max(here.output[k], there.output[k])
+    if not (here.growth[k] > RISE * size and there.growth[k] < -RISE * size):
+        return False
+    return size >= NEARLY_GREATEST * greatest
+
+
 def within(front: Front, limit: float, values: list[float], greatest: FloatArray) -> list[Found]:
     """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
     n: cython.Py_ssize_t = front.problem.unknowns
     k: cython.Py_ssize_t
-    size: cython.double
     most: cython.double[::1] = greatest
     here: Place = front.here
     there: Place = front.there
@@ -61,9 +93,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     if here.tangent[n] * there.tangent[n] < 0.0:
         events += located(front, FOLD, 0, limit, Mark.FOLD)
     for k in range(front.problem.outputs):
-        size = max(here.output[k], there.output[k])
-        turns = here.growth[k] > RISE * size and there.growth[k] < -RISE * size
-        if turns and size >= NEARLY_GREATEST * most[k]:
+        if turns(here, there, k, most[k]):
             events += located(front, PEAK, k, limit, Mark.PEAK)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 

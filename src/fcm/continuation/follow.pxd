@@ -1,2 +1,3 @@
 from fcm.continuation.front cimport Front, Place
 from fcm.continuation.problem cimport Problem
+from fcm.continuation.trail cimport Trail

@@ -25,22 +25,37 @@ from fcm.continuation import events
 from fcm.continuation.front import Front, Place
 from fcm.continuation.path import FloatArray, Mark, Path, Status
 from fcm.continuation.problem import Problem
+from fcm.continuation.trail import Trail
 
-FIRST = 1e-3  # the first step
-SHORTEST = 1e-9  # a step that is still too long then leads nowhere
-SHARP = 1e-4  # a step this short may turn by any angle below a right angle
-COSINE = 0.94  # otherwise by at most 20 degrees
-AIM = 0.2  # [rad] the turn that a step aims at
-MISS = 0.03  # of its length, by which a step aims to miss the curve
-UNEVEN = 0.15  # change of an output, over its size, that a step aims not to have foreseen
-PAST = 1e-3  # of a step that ends at a margin, by which it goes past
-BEFORE = 1e-6  # of the way to a corner: up to here the curve is smooth
-BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for
-TOUCHED = 1e-8  # a margin this near is met: less than BEYOND
-NEAR, NEARER = 1e-4, 0.9  # a corner further away is approached by this share of the way
-AFTER = 1e-5  # the first step beyond a corner
+if cython.compiled:
+    from cython.cimports.fcm.continuation.events import quiet
+else:
+    from fcm.continuation.events import quiet
+
+FIRST = cython.declare(cython.double, 1e-3)  # the first step
+SHORTEST = cython.declare(cython.double, 1e-9)  # a step that is still too long then leads nowhere
+SHARP = cython.declare(cython.double, 1e-4)  # a step this short may turn by any angle below a right angle
+COSINE = cython.declare(cython.double, 0.94)  # otherwise by at most 20 degrees
+AIM = cython.declare(cython.double, 0.2)  # [rad] the turn that a step aims at
+MISS = cython.declare(cython.double, 0.03)  # of its length, by which a step aims to miss the curve
+UNEVEN = cython.declare(
+    cython.double, 0.15
+)  # change of an output, over its size, that a step aims not to have foreseen
+PAST = cython.declare(cython.double, 1e-3)  # of a step that ends at a margin, by which it goes past
+BEFORE = cython.declare(cython.double, 1e-6)  # of the way to a corner: up to here the curve is smooth
+BEYOND = cython.declare(
+    cython.double, 1e-7
+)  # length past a corner at which the curve's new direction is looked for
+TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less than BEYOND
+NEAR = cython.declare(cython.double, 1e-4)
+NEARER = cython.declare(cython.double, 0.9)  # a corner further away is approached by this share of the way
+AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
 LONGEST = 20_000  # steps
-BOUNDLESS = 1e9  # size, in units of that at the start, that only an undamped resonance reaches
+END = cython.declare(cython.long, int(Mark.END))
+BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
+BOUNDLESS = cython.declare(
+    cython.double, 1e9
+)  # size, in units of that at the start, that only an undamped resonance reaches
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
 
@@ -92,8 +107,10 @@ class _Follower:
     max_step: cython.double
     size: cython.double
     values: list[float]  # of the parameter, to be landed on: stations, then the ends of the range
-    points: list[events.Found]
+    stops: cython.double[::1]  # the same
+    trail: Trail
     greatest: FloatArray
+    most: cython.double[::1]  # the same
     start: FloatArray
     heading: FloatArray
     interior: cython.bint
@@ -112,8 +129,10 @@ class _Follower:
         self.low, self.high = span
         self.max_step, self.progress = max_step, progress
         self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
-        self.points = []
+        self.stops = np.array(self.values)
+        self.trail = Trail(problem.unknowns + 1)
         self.greatest = np.zeros(problem.outputs)
+        self.most = self.greatest
         self.repeated = 0
 
     def run(self, start: FloatArray, forward: bool) -> Path:
@@ -127,7 +146,7 @@ class _Follower:
         self.interior = self.low < start[-1] < self.high
         self.start, self.heading = np.array(here.z), np.array(here.tangent)
         self.size = self.front.extent()
-        self.points.append(events.found(self.front, 0.0, 0 if self.interior else Mark.END, here))
+        self.trail.add(here, self.front.newton.scale, 0 if self.interior else END, self.front.there.shift)
         self.step = min(FIRST, self.max_step)
         for count in range(LONGEST):
             status = self.advance()
@@ -181,16 +200,16 @@ class _Follower:
         if self.keep(front.step):
             return self.end()
         if self.interior and self.closed():
-            self.points.append(self.points[0])
+            self.trail.close()
             return Status.CLOSED
         turned: cython.bint = front.there.orientation != front.here.orientation
-        self.points.append(events.found(front, front.step, Mark.BRANCH if turned else 0, front.there))
+        self.trail.add(front.there, front.newton.scale, BRANCH if turned else 0, front.there.shift)
         growth = AIM / max(acos(min(front.turn, 1.0)), 1e-9)
         growth = min(growth, sqrt(MISS / max(front.missed, 1e-9)), UNEVEN / max(front.unforeseen(), 1e-9))
         self.step = min(front.step * min(max(0.9 * growth, 0.4), 2.5), self.max_step)
         front.accept(front.there, front.step)
         self.repeated = 0
-        np.maximum(self.greatest, front.here.output, out=self.greatest)
+        self.rise()
         return Status.UNBOUNDED if front.extent() > BOUNDLESS * self.size else None
 
     @cython.cfunc
@@ -228,10 +247,10 @@ class _Follower:
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
         if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
             mark |= Mark.PEAK
-        if np.array_equal(self.points[-1].z, point.z):  # the step before has come to the corner
-            mark |= self.points.pop().mark
-        self.points.append(point._replace(mark=mark))
-        np.maximum(self.greatest, front.here.output, out=self.greatest)
+        if np.array_equal(self.trail.last(), point.z):  # the step before has come to the corner
+            mark |= self.trail.drop()
+        self.trail.put(point.z, point.direction, mark, point.orientation, point.shift)
+        self.rise()
         self.step = AFTER
         return None
 
@@ -239,9 +258,12 @@ class _Follower:
     @cython.exceptval(-1, check=False)
     def keep(self, limit: cython.double) -> cython.bint:
         """Keep what happens within the step up to a limit; true if the curve leaves its range there."""
+        if quiet(self.front, self.stops, self.most):
+            return False
         for event in events.within(self.front, limit, self.values, self.greatest):
             ends = event.mark & Mark.STATION and event.z[self.n] in (self.low, self.high)
-            self.points.append(event._replace(mark=Mark.END) if ends else event)
+            mark = Mark.END if ends else event.mark
+            self.trail.put(event.z, event.direction, mark, event.orientation, event.shift)
             if ends:
                 return True
         return False
@@ -249,7 +271,7 @@ class _Follower:
     @cython.cfunc
     def end(self) -> object:
         """The status of a curve that has left its range."""
-        back = not self.interior and self.points[-1].z[self.n] == self.start[-1]
+        back = not self.interior and self.trail.last()[-1] == self.start[-1]
         return Status.RETURNED if back else Status.COMPLETE
 
     @cython.cfunc
@@ -265,15 +287,14 @@ class _Follower:
         passes = before @ self.heading < 0.0 <= after @ self.heading
         return bool(passes and np.asarray(front.here.tangent) @ self.heading > 0.5)
 
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def rise(self) -> cython.void:
+        """The greatest outputs so far."""
+        k: cython.Py_ssize_t
+        for k in range(self.most.shape[0]):
+            self.most[k] = max(self.most[k], self.front.here.output[k])
+
     def path(self, status: Status) -> Path:
         """The points kept so far."""
-        points, width = self.points, self.n + 1
-        return Path(
-            z=np.array([p.z for p in points]).reshape(-1, width),
-            direction=np.array([p.direction for p in points]).reshape(-1, width),
-            mark=np.array([p.mark for p in points], dtype=np.int64),
-            orientation=np.array([p.orientation for p in points]),
-            shift=np.array([p.shift for p in points]),
-            status=status,
-            evaluations=self.front.newton.evaluations,
-        )
+        return self.trail.path(status, self.front.newton.evaluations)

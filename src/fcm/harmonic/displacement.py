@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-import numpy.typing as npt
 from cython.cimports.libc.math import cos, fabs, hypot, sin
 
+from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance
 
 SAMPLES = 12  # for each period of the highest harmonic, among which the extremes are sought
-ROUNDING = 1e-12  # relative: shapes this near are the same
-MOST = 10.0  # times a shape, of those that it is combined from
 REFINED = 4  # Newton steps from the greatest sample to the extreme
 
 
@@ -22,22 +20,16 @@ class Displacements:
     amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate.
     """
 
-    def __init__(
-        self,
-        seen: Receptance,
-        shapes: npt.NDArray[np.float64],
-        flexibility: npt.NDArray[np.float64],
-    ) -> None:
-        count, dofs = seen.count, shapes.shape[1]
+    def __init__(self, seen: Receptance, linear: Linear) -> None:
+        count, dofs = seen.count, linear.dofs.shape[1]
         self.seen, self.dofs = seen, dofs
-        self.shapes = np.ascontiguousarray(shapes)
-        self.static = np.ascontiguousarray(shapes.T @ flexibility @ np.asarray(seen.shapes))
+        self.shapes, self.static = linear.dofs, linear.answer
         self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
-        self.attached, self.apart = _attached(np.asarray(seen.shapes), shapes)
+        self.attached, self.apart = linear.attached
         harmonics = np.asarray(seen.harmonics)
-        self.samples = int(SAMPLES * harmonics[count - 1])
+        self.samples = int(SAMPLES * harmonics[count - 1]) if count > 1 else 0
         theta = 2.0 * np.pi * np.arange(self.samples) / self.samples
         self.cosine, self.sine = np.cos(np.outer(theta, harmonics)), np.sin(np.outer(theta, harmonics))
 
@@ -219,24 +211,3 @@ class Displacements:
             h: cython.double = self.seen.harmonics[j]
             x += self.d_re[j, d] * cos(h * theta) - self.d_im[j, d] * sin(h * theta)
         return x
-
-
-def _attached(
-    ports: npt.NDArray[np.float64], dofs: npt.NDArray[np.float64]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.intc]]:
-    """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
-
-    Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
-    nearly cancel.
-    """
-    shares = (
-        np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
-        if ports.size
-        else np.zeros((ports.shape[1], dofs.shape[1]))
-    )
-    shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
-    size = np.abs(dofs).max(axis=0, initial=0.0)
-    off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
-    large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > MOST * size
-    apart = (off > ROUNDING * size) | large | (size == 0.0)
-    return np.ascontiguousarray(shares), apart.astype(np.intc)

@@ -16,9 +16,10 @@ from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.harmonic.level import Level
 from fcm.harmonic.system import System
-from fcm.scene.model import FloatArray
+from fcm.scene.model import Contact, FloatArray
 
 WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
+BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to there nothing is to be followed
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
@@ -36,9 +37,13 @@ class Found:
 
 def solutions(system: System, omega: float) -> Found:
     """All solutions at omega that hang together with rest."""
-    path = level_curve(system, omega, (0.0, highest(system, omega)))
+    most = highest(system, omega)
+    linear = min(BEFORE * least(system, omega), 0.5 * most)
+    path = level_curve(system, omega, (linear, most))
     at = np.flatnonzero(path.parameter == 1.0)
     found = [np.append(path.z[i, :-1], omega) for i in at]
+    if path.z.shape[0] and linear > 1.0:
+        found.insert(0, np.append(next(linear_responses(system, omega, 1.0)), omega))
     if not found:
         found = list(_from_linear(system, omega))
     return Found(omega, tuple(found), path.status is Status.COMPLETE)
@@ -67,15 +72,11 @@ def level_curve(
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
     """Unknowns with the contacts as they are at rest, then all stuck, then all open."""
-    seen = system.balance().seen
-    seen.at(omega)
-    j = seen.driven
-    G = np.asarray(seen.G_re)[j] + 1j * np.asarray(seen.G_im)[j]
-    X = level * (np.asarray(seen.X_re) + 1j * np.asarray(seen.X_im))
+    G, X = system.linear.at(omega)
     closed = np.repeat([c.n_0 > 0.0 for c in system.scene.contacts], 2)
     for share in (closed, np.ones_like(closed), np.zeros_like(closed)):
-        ports = np.linalg.solve(np.eye(X.size) + G * (system.springs(stuck=True) * share), X)
-        yield _unknowns(ports, len(system.harmonics), j)
+        ports = np.linalg.solve(np.eye(X.size) + G * (system.springs(stuck=True) * share), level * X)
+        yield _unknowns(ports, len(system.harmonics), system.harmonics.index(1))
 
 
 def _unknowns(ports: FloatArray, harmonics: int, driven: int) -> FloatArray:
@@ -105,18 +106,33 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
 def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
     levels = [1.0]
-    for number, x in enumerate(linear_responses(system, omega, 1.0)):
-        if number == 0:
-            continue
-        blocks = x.reshape(len(system.scene.contacts), 2 + 4 * len(system.harmonics))
-        first = 2 + 4 * system.harmonics.index(1)
-        for contact, block in zip(system.scene.contacts, blocks, strict=True):
-            U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
-            variation, load = contact.k_v * abs(V), abs(contact.n_0)
-            slip = [abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0)]
-            levels += [load / variation] if variation > 0.0 else []
-            levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
+    _, *uniform = linear_responses(system, omega, 1.0)
+    for variation, slip, contact in (one for x in uniform for one in _motions(system, x)):
+        load = abs(contact.n_0)
+        levels += [load / variation] if variation > 0.0 else []
+        levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
     return min(BEYOND * max(levels), GREATEST)
+
+
+def least(system: System, omega: float) -> float:
+    """The least level at which a contact is not as it is at rest; 0 where static loads have a say in that."""
+    if system.scene.loads:
+        return 0.0
+    levels = [GREATEST]
+    for variation, slip, contact in _motions(system, next(linear_responses(system, omega, 1.0))):
+        levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
+        closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
+        levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] * (contact.n_0 == 0.0)
+    return min(levels)
+
+
+def _motions(system: System, x: FloatArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
+    """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
+    first = 2 + 4 * system.harmonics.index(1)
+    for contact, block in zip(system.scene.contacts, x.reshape(len(system.scene.contacts), -1), strict=True):
+        U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
+        over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
+        yield contact.k_v * abs(V), (over, under), contact
 
 
 def resonances(system: System) -> list[float]:

@@ -49,7 +49,7 @@ class System:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
         seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
-        shown = Displacements(seen, self.linear.dofs, self.linear.flexibility)
+        shown = Displacements(seen, self.linear)
         balance = Balance(seen, self.laws(), shown, self.linear.counted, high - low)
         balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
         return balance

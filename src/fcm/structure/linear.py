@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +11,10 @@ import numpy.typing as npt
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.receptance import Receptance
 from fcm.structure.rigid import settled
+
+ROUNDING = 1e-12  # relative: shapes this near are the same
+MOST = 10.0  # times a shape, of those that it is combined from
+LEAST_DAMPING = 1e-9  # as in `receptance`
 
 
 @dataclass(frozen=True)
@@ -27,8 +32,41 @@ class Linear:
 
     def receptance(self, harmonics: FloatArray) -> Receptance:
         """The structure seen from its ports at some harmonics."""
-        static = self.ports.T @ self.flexibility @ self.ports
-        return Receptance(self.ports, self.natural, self.damping, self.force, static, harmonics)
+        return Receptance(self.ports, self.natural, self.damping, self.force, self.static, harmonics)
+
+    @cached_property
+    def static(self) -> FloatArray:
+        """Flexibility of the ports for mean forces (port, port)."""
+        return np.ascontiguousarray(self.ports.T @ self.flexibility @ self.ports)
+
+    @cached_property
+    def answer(self) -> FloatArray:
+        """Of the degrees of freedom to mean forces on the ports (dof, port)."""
+        return np.ascontiguousarray(self.dofs.T @ self.flexibility @ self.ports)
+
+    @cached_property
+    def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
+        """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
+
+        A combination of several ports is one only where they do not nearly cancel.
+        """
+        ports, dofs = self.ports, self.dofs
+        shares = np.zeros((ports.shape[1], dofs.shape[1]))
+        if ports.size:
+            shares = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
+        shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
+        size = np.abs(dofs).max(axis=0, initial=0.0)
+        off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
+        large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > MOST * size
+        apart = (off > ROUNDING * size) | large | (size == 0.0)
+        return np.ascontiguousarray(shares), apart.astype(np.intc)
+
+    def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
+        """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
+        stiffness = (self.natural - omega) * (self.natural + omega)
+        dynamic = stiffness + 2j * self.damping * self.natural * omega
+        weighted = self.ports.T / np.where(dynamic == 0.0, 1j * LEAST_DAMPING * omega * omega, dynamic)
+        return weighted @ self.ports, weighted @ self.force
 
 
 def linear_of(scene: Scene) -> Linear:
@@ -46,8 +84,8 @@ def linear_of(scene: Scene) -> Linear:
     return Linear(
         natural=modal.frequency,
         damping=modal.damping,
-        ports=ports,
-        dofs=modal.shapes * unit,
+        ports=np.ascontiguousarray(ports),
+        dofs=np.ascontiguousarray(modal.shapes * unit),
         force=(modal.shapes @ total) * unit[:, 0],
         flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
         counted=k_v,

@@ -27,6 +27,8 @@ LONG = cython.declare(cython.int, 3)  # sticks that are integrated in closed for
 # A stick is short up to two radians of the highest harmonic in it: eight points are then exact to rounding.
 SHORT = cython.declare(cython.double, 2.0)
 POINTS = cython.declare(cython.int, 8)
+_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
+_GAUSS = 0.5 * (1.0 + _NODES), 0.5 * _SHARES  # POINTS of them, on 0 to 1
 
 
 @cython.cclass
@@ -43,8 +45,7 @@ class Integrals:
         self.stick_re, self.stick_im = np.zeros((2, self.most + 1))
         self.grow_re, self.grow_im = np.zeros((2, self.highest + 1))
         self.total_re, self.total_im = np.zeros((2, self.most + 1))
-        nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-        self.points, self.weights = 0.5 * (1.0 + nodes), 0.5 * weights
+        self.points, self.weights = _GAUSS
         self.reciprocal = 1.0 / np.maximum(np.arange(self.highest + 1), 1)
 
     def integrate(self) -> None:

@@ -61,6 +61,8 @@ LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and
 GREATEST_LOAD = cython.declare(cython.int, 11)
 TURN = cython.declare(cython.int, 12)  # of the motion
 POINTS = cython.declare(cython.int, 8)
+_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
+_GAUSS = 0.5 * (1.0 + _NODES), 0.5 * _SHARES  # POINTS of them, on 0 to 1
 PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
 
@@ -90,11 +92,10 @@ class Measures:
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = Crossings(cycle.motion)
         self.value = np.zeros(self.crossings.capacity)
-        nodes, weights = np.polynomial.legendre.leggauss(POINTS)
         self.least_load = self.greatest_load = self.overlap = self.greatest_friction = 0.0
         self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0
         self.signature = 0
-        self.points, self.weights = 0.5 * (1.0 + nodes), 0.5 * weights
+        self.points, self.weights = _GAUSS
 
     def take(self, k_u: float) -> None:
         """`measure`, called from Python."""

@@ -1,0 +1,12 @@
+from fcm.continuation.front cimport Place
+
+cdef class Trail:
+    cdef readonly int count
+    cdef readonly int size
+    cdef double[:, ::1] z
+    cdef double[:, ::1] direction
+    cdef double[:, ::1] rest
+    cdef long[::1] mark
+    cdef int add(self, Place place, double[::1] scale, long mark, double shift) except -1
+    cpdef int put(self, double[::1] z, double[::1] direction, long mark, double orientation, double shift) except -1
+    cdef int widen(self) except -1

@@ -1,0 +1,99 @@
+"""The points that were kept of a curve, one after the other, in arrays that grow."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from fcm.continuation.front import Place
+from fcm.continuation.path import FloatArray, Path, Status
+
+ROOM = 64  # points for which there is room at first
+
+
+@cython.cclass
+class Trail:
+    """count points: z, direction (point, unknown + 1), mark, orientation, shift (point,), as of a `Path`."""
+
+    def __init__(self, size: cython.int) -> None:
+        self.count, self.size = 0, size
+        self.z, self.direction = np.empty((ROOM, size)), np.empty((ROOM, size))
+        self.mark, self.rest = np.empty(ROOM, dtype=np.int64), np.empty((ROOM, 2))
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def add(
+        self, place: Place, scale: cython.double[::1], mark: cython.long, shift: cython.double
+    ) -> cython.int:
+        """Keep a place, with lengths in units of scale."""
+        i: cython.Py_ssize_t
+        self.widen()
+        for i in range(self.size):
+            self.z[self.count, i] = place.z[i]
+            self.direction[self.count, i] = scale[i] * place.tangent[i]
+        self.mark[self.count] = mark
+        self.rest[self.count, 0], self.rest[self.count, 1] = place.orientation, shift
+        self.count += 1
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def put(
+        self,
+        z: cython.double[::1],
+        direction: cython.double[::1],
+        mark: cython.long,
+        orientation: cython.double,
+        shift: cython.double,
+    ) -> cython.int:
+        """Keep a point."""
+        self.widen()
+        self.z[self.count, :], self.direction[self.count, :] = z, direction
+        self.mark[self.count] = mark
+        self.rest[self.count, 0], self.rest[self.count, 1] = orientation, shift
+        self.count += 1
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def widen(self) -> cython.int:
+        """Make room for one more point."""
+        if self.count < self.mark.shape[0]:
+            return 0
+        self.z, self.direction = _twice(self.z), _twice(self.direction)
+        self.mark, self.rest = _twice(self.mark), _twice(self.rest)
+        return 0
+
+    def last(self) -> FloatArray:
+        """The last point."""
+        return np.array(self.z[self.count - 1])
+
+    def drop(self) -> int:
+        """Forget the last point; its mark."""
+        self.count -= 1
+        return int(self.mark[self.count])
+
+    def close(self) -> None:
+        """End at the first point."""
+        first = np.array(self.z[0]), np.array(self.direction[0])
+        self.put(*first, self.mark[0], self.rest[0, 0], self.rest[0, 1])
+
+    def path(self, status: Status, evaluations: int) -> Path:
+        """The points as they are."""
+        kept = slice(self.count)
+        rest = np.array(np.asarray(self.rest)[kept].T)
+        return Path(
+            z=np.array(np.asarray(self.z)[kept]),
+            direction=np.array(np.asarray(self.direction)[kept]),
+            mark=np.array(np.asarray(self.mark)[kept]),
+            orientation=rest[0],
+            shift=rest[1],
+            status=status,
+            evaluations=evaluations,
+        )
+
+
+def _twice(kept: object) -> FloatArray:
+    """With as much room again."""
+    array = np.asarray(kept)
+    return np.concatenate((array, np.empty_like(array)))
