@@ -62,7 +62,7 @@ class Truth:
 
     def __init__(self, system, many=MANY):
         self.system, self.many = system, system.with_harmonics(many)
-        self.corrector = Corrector(system, again=False)
+        self.corrector = Corrector(system, again=False, enough=1e-9)
         self.corrector.chosen = lambda share: many
 
     def at(self, z, direction):
@@ -72,7 +72,8 @@ class Truth:
         """
         if np.isnan(self.corrector.displaced(z, direction, None, None)).any():
             return None
-        ((newton, _),) = self.corrector.known.values()
+        (lifted,) = self.corrector.known.values()
+        newton = lifted.newton
         near, tangent = np.array(newton.z), np.array(newton.tangent)
         if near[-1] == z[-1]:
             return near

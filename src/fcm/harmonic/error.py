@@ -16,6 +16,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import Corrected, Indices
 from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.points import Points
 from fcm.harmonic.shifted import Beside
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -55,14 +56,9 @@ class Errors:
 
 def reported(system: System, path: Path) -> Reported:
     """Amplitudes along a path."""
-    problem = system.balance()
-    amplitude = np.empty((len(path.z), problem.outputs))
-    growth = np.empty_like(amplitude)
-    for i, (z, direction) in enumerate(zip(path.z, path.direction, strict=True)):
-        problem.evaluate(z)
-        problem.report(z, direction)
-        amplitude[i], growth[i] = problem.output, problem.growth
-    return Reported(amplitude, growth)
+    points = Points(system.balance(), len(path.z))
+    points.take(path.z, path.direction, np.ones(len(path.z)))
+    return Reported(np.asarray(points.amplitude), np.asarray(points.growth))
 
 
 def errors_along(system: System, path: Path, shown: Reported | None = None) -> Errors:

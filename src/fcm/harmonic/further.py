@@ -16,11 +16,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.periodic.forces import PeriodicContact
+from fcm.harmonic.points import forces_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 HIGHEST = 50  # harmonic that is looked at
-MIXED = 2  # `PeriodicContact.kind` of a contact that slips or separates
 LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
@@ -39,19 +39,15 @@ class Further:
         harmonic.
         """
         contacts = self.system.scene.contacts
-        out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
-        linear = np.ones(len(z), dtype=np.bool_)
         width = 2 + 4 * len(self.system.harmonics)
-        motions = np.ascontiguousarray(z[:, :-1]).reshape(len(z), len(contacts), width)
-        kernel = self.kernel
-        forces = np.asarray(kernel.forces)[2:].view(np.complex128).reshape(HIGHEST, 2)
+        made, linear = np.empty((len(z), self.kernel.equations)), np.ones(len(z))
+        out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
+        z = np.ascontiguousarray(z)
         for j, c in enumerate(contacts):
-            for i in range(len(z)):
-                kernel.at(motions[i, j], c.mu, c.k_u, c.k_v, c.n_0, 0.0, False)
-                if kernel.kind == MIXED:
-                    linear[i] = False
-                out[i, :, 2 * j : 2 * j + 2] = forces
-        return out, linear
+            forces_of(self.kernel, z, j * width, np.array([c.mu, c.k_u, c.k_v, c.n_0]), made, linear)
+            pairs = made[:, 2:].reshape(len(z), HIGHEST, 2, 2)
+            out[:, :, 2 * j : 2 * j + 2] = pairs[..., 0] + 1j * pairs[..., 1]
+        return out, linear > 0.0
 
     def shares(self, z: FloatArray, force: npt.NDArray[np.complex128], amplitude: FloatArray) -> FloatArray:
         """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).

@@ -12,6 +12,7 @@ from fcm.contact.loop import sequences
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
 from fcm.continuation import Path
+from fcm.harmonic.points import Points, borne
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 
@@ -42,17 +43,7 @@ class Record:
 def recorded(system: System, paths: Sequence[Path]) -> Record:
     """The points of paths."""
     z = np.concatenate([path.z for path in paths])
-    balance = system.balance()
-    still = np.zeros(z.shape[1])
-    shown, points = balance.shown, z.shape[0]
-    X = np.empty((points, len(system.harmonics), shown.dofs), dtype=np.complex128)
-    mean, amplitude = np.empty((points, shown.dofs)), np.empty((points, shown.dofs))
-    force = np.empty((points, balance.unknowns))
-    for i in range(points):
-        balance.evaluate(z[i])
-        balance.report(z[i], still)
-        X[i].real, X[i].imag = shown.re, shown.im
-        mean[i], amplitude[i], force[i] = shown.mean, shown.amplitude, balance.force
+    X, mean, amplitude, force = _shown(system, z, np.ones(z.shape[0]))
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
     names = ("mark", "direction", "orientation", "shift")
     mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
@@ -63,13 +54,7 @@ def recorded(system: System, paths: Sequence[Path]) -> Record:
 
 def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Amplitudes (point, harmonic, dof) and means (point, dof) at points z (point, unknown + 1)."""
-    balance = system.balance()
-    X = np.empty((z.shape[0], len(system.harmonics), balance.shown.dofs), dtype=np.complex128)
-    mean = np.empty((z.shape[0], balance.shown.dofs))
-    for i in range(z.shape[0]):
-        balance.evaluate(z[i])
-        balance.report(z[i], np.zeros(z.shape[1]))
-        X[i].real, X[i].imag, mean[i] = balance.shown.re, balance.shown.im, balance.shown.mean
+    X, mean, _, _ = _shown(system, z, np.ones(z.shape[0]))
     return X, mean
 
 
@@ -77,16 +62,18 @@ def recorded_at_levels(
     system: System, z: FloatArray, level: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
     """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
-    balance = system.balance()
-    shown, points = balance.shown, z.shape[0]
-    X = np.empty((points, len(system.harmonics), shown.dofs), dtype=np.complex128)
-    mean, amplitude = np.empty((points, shown.dofs)), np.empty((points, shown.dofs))
-    for i in range(points):
-        balance.load = level[i]
-        balance.evaluate(z[i])
-        balance.report(z[i], np.zeros(z.shape[1]))
-        X[i].real, X[i].imag, mean[i], amplitude[i] = shown.re, shown.im, shown.mean, shown.amplitude
+    X, mean, amplitude, _ = _shown(system, z, level)
     return X, mean, amplitude
+
+
+def _shown(
+    system: System, z: FloatArray, level: FloatArray
+) -> tuple[ComplexArray, FloatArray, FloatArray, FloatArray]:
+    """X, mean, amplitude and force, as of a `Record`."""
+    points = Points(system.balance(), z.shape[0])
+    points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
+    X = np.asarray(points.re) + 1j * np.asarray(points.im)
+    return X, np.asarray(points.mean), np.asarray(points.amplitude), np.asarray(points.force)
 
 
 def loops(system: System, z: FloatArray) -> FloatArray:
@@ -140,15 +127,15 @@ def cycles(system: System, z: FloatArray) -> FloatArray:
 
     Greatest normal and greatest friction force, the way of the slip, and the energy that friction takes.
     """
-    out = np.zeros((z.shape[0], len(system.scene.contacts), 4))
-    for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
-        measures = None
-        for k, kernel in enumerate(_cycles(system, contact, x)):
-            measures = measures or Measures(kernel.cycle)
-            measures.take(contact.k_u)
-            normal = max(measures.greatest_load, 0.0)
-            out[k, i] = normal, measures.greatest_friction, measures.slip_path, measures.dissipation
-    return out
+    contacts, harmonics = system.scene.contacts, list(system.harmonics)
+    out = np.zeros((len(contacts), z.shape[0], 4))
+    z = np.ascontiguousarray(z)
+    kernel = PeriodicContact(harmonics, harmonics)
+    measures = Measures(kernel.cycle)
+    for i, c in enumerate(contacts):
+        law = np.array([c.mu, c.k_u, c.k_v, c.n_0])
+        borne(kernel, measures, z, i * (2 + 4 * len(harmonics)), law, out[i])
+    return out.swapaxes(0, 1)
 
 
 def _single(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:

@@ -39,7 +39,7 @@ def solutions(system: System, omega: float) -> Found:
     """All solutions at omega that hang together with rest."""
     most = highest(system, omega)
     linear = min(BEFORE * least(system, omega), 0.5 * most)
-    path = level_curve(system, omega, (linear, most))
+    path = level_curve(system, omega, (0.0, most), linear=linear)
     at = np.flatnonzero(path.parameter == 1.0)
     found = [np.append(path.z[i, :-1], omega) for i in at]
     if path.z.shape[0] and linear > 1.0:
@@ -55,15 +55,17 @@ def level_curve(
     span: tuple[float, float],
     step: float = STEP,
     stations: tuple[float, ...] = (1.0,),
+    linear: float = 0.0,
 ) -> Path:
-    """Response at omega against the level of the forces, from rest."""
+    """Response at omega against the level of the forces, from rest, or from a level up to which it is
+    linear."""
     path = None
     for weak in WEAK:
         low = max(span[0], weak)
-        for x in linear_responses(system, omega, low):
-            path = follow(
-                Level(system.balance(), omega), np.append(x, low), (low, span[1]), True, step, stations
-            )
+        level = max(low, linear)
+        for x in linear_responses(system, omega, level):
+            start, whole = np.append(x, level), (low, span[1])
+            path = follow(Level(system.balance(), omega), start, whole, True, step, stations)
             if path.z.shape[0]:
                 return path
     assert path is not None

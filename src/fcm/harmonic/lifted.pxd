@@ -1,0 +1,18 @@
+from fcm.continuation.newton cimport Newton
+from fcm.harmonic.balance cimport Balance
+from fcm.harmonic.between cimport Between
+
+cdef class Lifted:
+    cdef public Balance balance
+    cdef public Between between
+    cdef public Newton newton
+    cdef public double enough
+    cdef public double[::1] found
+    cdef int[::1] place
+    cdef double[::1] guess
+    cdef double[::1] row
+    cdef double[::1] still
+    cpdef bint beside(self, double[::1] z, double[::1] direction) except -1
+    cdef bint corrected(self) except -1
+    cdef bint nearly(self) except -1
+    cdef double away(self) except -1

@@ -1,0 +1,121 @@
+"""Points of a balance moved, in the plane normal to its curve, to the curve of one with more harmonics."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs, sqrt
+
+from fcm.continuation.newton import Newton
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.between import Between
+
+ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
+SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
+FAR = cython.declare(cython.double, 0.5)  # a displacement of this part of the solution's size is not believed
+TURNED = cython.declare(cython.double, 0.7)  # nor a curve that goes another way, by the cosine of the angle
+GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
+
+
+@cython.cclass
+class Lifted:
+    """`beside` a point of the balance of fewer harmonics finds one of the balance of more.
+
+    That is then newton.z, the direction of its curve newton.tangent; found (1 + dof,) its frequency and
+    amplitudes. A displacement is known when a Newton step changes it by less than the part `enough`.
+    """
+
+    def __init__(self, balance: Balance, fewer: list[int], more: list[int], enough: cython.double) -> None:
+        self.balance, self.enough = balance, enough
+        self.between = Between(balance)
+        self.newton = Newton(self.between)
+        width, wide = 2 + 4 * len(fewer), 2 + 4 * len(more)
+        block = [0, 1, *(2 + 4 * more.index(h) + i for h in fewer for i in range(4))]
+        place = np.arange(0, balance.contacts * wide, wide)[:, None] + np.array(block)
+        assert place.size == balance.contacts * width
+        self.place = np.append(place, balance.unknowns).astype(np.intc)
+        self.guess, self.row = np.zeros(balance.unknowns + 1), np.zeros(balance.unknowns + 1)
+        self.still = np.zeros(balance.unknowns + 1)
+        self.found = np.zeros(1 + balance.outputs)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def beside(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.bint:
+        """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        along: cython.double = 0.0
+        for i in range(self.place.shape[0]):
+            self.guess[self.place[i]] = z[i]
+        self.balance.measure(self.guess)
+        for i in range(self.place.shape[0]):
+            self.row[self.place[i]] = direction[i] / self.balance.scale[self.place[i]]
+            total += self.row[self.place[i]] * self.row[self.place[i]]
+        if not total > 0.0:
+            return False
+        for i in range(self.guess.shape[0]):
+            self.newton.scale[i] = self.balance.scale[i]
+            self.newton.row[i] = self.row[i] / sqrt(total)
+        if not self.corrected():
+            return False
+        for i in range(self.guess.shape[0]):
+            along += self.newton.tangent[i] * self.newton.row[i]
+        if along < TURNED:
+            return False
+        self.balance.report(self.newton.z, self.still)
+        self.found[0] = self.newton.z[self.balance.unknowns]
+        for i in range(self.balance.outputs):
+            self.found[1 + i] = self.balance.output[i]
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def corrected(self) -> cython.bint:
+        """Move the guess to the curve: at once, or gradually."""
+        self.between.taken = 0.0
+        self.newton.z[:] = self.guess
+        if self.nearly():
+            return self.newton.moved <= FAR
+        self.newton.z[:] = self.guess
+        self.between.evaluate(self.guess)
+        self.between.removed[:] = self.between.residual
+        for part in GRADUAL:
+            self.between.taken = 1.0 - part
+            if not self.newton.correct(1.0) or self.newton.moved > FAR:
+                return False
+        return self.away() <= FAR
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def nearly(self) -> cython.bint:
+        """As `Newton.correct`, up to the precision that a displacement needs."""
+        i: cython.Py_ssize_t
+        count: cython.int
+        step: cython.double
+        first: cython.double = 0.0
+        before: cython.double = 1.0
+        newton: Newton = self.newton
+        newton.guess[:] = newton.z
+        for count in range(ITERATIONS):
+            if not newton.factor():
+                return False
+            step = newton.step()
+            if not step < 1e30 or (count > 1 and step > 2.0 * before):
+                return False
+            for i in range(self.guess.shape[0]):
+                newton.z[i] += newton.scale[i] * newton.solver.right[i]
+            first = step if count == 0 else first
+            if step < SMALL or (count > 0 and step < self.enough * first):
+                return newton.direct()
+            before = step
+        return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def away(self) -> cython.double:
+        """Distance of the point from the guess."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        for i in range(self.guess.shape[0]):
+            total += fabs((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
+        return sqrt(total)

@@ -1,0 +1,12 @@
+from fcm.contact.periodic.forces cimport PeriodicContact
+from fcm.contact.periodic.measures cimport Measures
+from fcm.harmonic.balance cimport Balance
+
+cdef class Points:
+    cdef readonly Balance balance
+    cdef readonly double[:, :, ::1] re
+    cdef readonly double[:, :, ::1] im
+    cdef readonly double[:, ::1] mean
+    cdef readonly double[:, ::1] amplitude
+    cdef readonly double[:, ::1] growth
+    cdef readonly double[:, ::1] force

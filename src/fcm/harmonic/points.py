@@ -1,0 +1,93 @@
+"""Loops over the points of a curve that need no Python: amplitudes, forces, cycles."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.measures import Measures
+from fcm.harmonic.balance import Balance
+from fcm.scene.model import FloatArray
+
+MIXED = cython.declare(cython.int, 2)  # `PeriodicContact.kind` of a contact that slips or separates
+
+
+@cython.cclass
+class Points:
+    """`take` points (point, unknown + 1) and directions there, and have what the balance says of each.
+
+    re, im (point, harmonic, dof), mean, amplitude, growth (point, dof), force (point, unknown): see
+    `Displacements`; the growth is that along the direction.
+    """
+
+    def __init__(self, balance: Balance, count: cython.int) -> None:
+        shown = balance.shown
+        dofs, harmonics = shown.dofs, balance.seen.count
+        self.balance = balance
+        self.re, self.im = np.zeros((2, count, harmonics, dofs))
+        self.mean, self.amplitude, self.growth = np.zeros((3, count, dofs))
+        self.force = np.zeros((count, balance.unknowns))
+
+    def take(
+        self,
+        z: cython.double[:, ::1],
+        direction: cython.double[:, ::1],
+        level: cython.double[::1],
+    ) -> Points:
+        """With the forces times level (point,)."""
+        b: Balance = self.balance
+        i: cython.Py_ssize_t
+        d: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for i in range(z.shape[0]):
+            b.load = level[i]
+            b.evaluate(z[i])
+            b.report(z[i], direction[i])
+            for d in range(b.shown.dofs):
+                self.mean[i, d], self.amplitude[i, d] = b.shown.mean[d], b.shown.amplitude[d]
+                self.growth[i, d] = b.shown.growth[d]
+                for j in range(b.seen.count):
+                    self.re[i, j, d], self.im[i, j, d] = b.shown.re[j, d], b.shown.im[j, d]
+            for j in range(b.unknowns):
+                self.force[i, j] = b.force[j]
+        return self
+
+
+def forces_of(
+    kernel: PeriodicContact,
+    x: cython.double[:, ::1],
+    first: cython.Py_ssize_t,
+    contact: cython.double[::1],
+    out: cython.double[:, ::1],
+    linear: FloatArray,
+) -> None:
+    """Forces (point, equation) of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first]; linear
+    (point,) is 0 where it slips or separates, else as before."""
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    kept: cython.double[::1] = linear
+    for i in range(x.shape[0]):
+        kernel.evaluate(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0, False)
+        if kernel.kind == MIXED:
+            kept[i] = 0.0
+        for k in range(out.shape[1]):
+            out[i, k] = kernel.forces[k]
+
+
+def borne(
+    kernel: PeriodicContact,
+    measures: Measures,
+    x: cython.double[:, ::1],
+    first: cython.Py_ssize_t,
+    contact: cython.double[::1],
+    out: cython.double[:, ::1],
+) -> None:
+    """Greatest normal and friction force, way of the slip and energy of the same, (point, 4)."""
+    i: cython.Py_ssize_t
+    for i in range(x.shape[0]):
+        kernel.evaluate(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0, False)
+        measures.measure(contact[1])
+        out[i, 0] = max(measures.greatest_load, 0.0)
+        out[i, 1], out[i, 2] = measures.greatest_friction, measures.slip_path
+        out[i, 3] = measures.dissipation
