@@ -100,9 +100,15 @@ def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude:
     moved = path.parameter * (1.0 + frequency)
     value = shown.amplitude * (1.0 + amplitude)
     beside = Beside(place, moved, rate + _slope(place, moved - path.parameter))
-    out = np.empty_like(value)
+    out = np.empty(value.shape)
     slope = shown.growth + _slope(place, value - shown.amplitude)
-    beside.values(np.ascontiguousarray(path.parameter), np.sign(rate), value, slope, out)
+    beside.values(
+        np.ascontiguousarray(path.parameter),
+        np.sign(rate),
+        np.ascontiguousarray(value),
+        np.ascontiguousarray(slope),
+        out,
+    )
     scale = np.where(shown.amplitude > 0.0, shown.amplitude, 1.0)
     error: FloatArray = np.abs(out - shown.amplitude) / scale
     return error
