@@ -69,7 +69,7 @@ def _static(lighter: Lighter, tolerance: float, highest: int) -> Lighter:
     if found is None:
         return lighter
     modal, above = found
-    return replace(lighter, curves=tuple(replace(s, modal=modal) for s in curves), above=above)
+    return replace(lighter, curves=tuple(replace(s, modal=modal, draft=None) for s in curves), above=above)
 
 
 def _stiffest(curves: tuple[Scene, ...]) -> Scene:
@@ -126,11 +126,11 @@ def _with_contacts(scene: Scene, needed: tuple[int, ...]) -> Scene:
     if len(needed) == len(scene.contacts) and not any(steady):
         return scene
     contacts = [replace(c, k_v=0.0) if idle else c for c, idle in zip(scene.contacts, steady, strict=True)]
-    return replace(scene, contacts=tuple(contacts[i] for i in needed))
+    return replace(scene, contacts=tuple(contacts[i] for i in needed), draft=None)
 
 
 def _with_modals(curves: tuple[Scene, ...], modals: dict[int, Modal]) -> tuple[Scene, ...]:
-    return tuple(replace(s, modal=modals[id(s.modal)]) for s in curves)
+    return tuple(replace(s, modal=modals[id(s.modal)], draft=None) for s in curves)
 
 
 def _some_modes(modal: Modal, which: BoolArray) -> Modal:

@@ -8,9 +8,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from fcm.scene.address import replaced
+from fcm.scene.draft import Draft, forces_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
-from fcm.scene.excitation import base_force, load_of, read_base, read_loads
+from fcm.scene.excitation import load_of, read_base, read_loads
 from fcm.scene.files import LARGEST, Files
 from fcm.scene.keys import names
 from fcm.scene.linear import (
@@ -24,10 +24,9 @@ from fcm.scene.linear import (
     without_rounding,
 )
 from fcm.scene.modal import UNITS, modal_of
-from fcm.scene.model import FloatArray, Force, Scene
+from fcm.scene.model import FloatArray, Scene
 from fcm.scene.parts import (
     contact_of,
-    force_of,
     read_contacts,
     read_forces,
     read_harmonics,
@@ -37,7 +36,7 @@ from fcm.scene.parts import (
 )
 from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
-from fcm.scene.sweep import Swept, combinations, read_sweep
+from fcm.scene.sweep import combinations, read_sweep
 from fcm.scene.toml import read_toml
 
 MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
@@ -107,11 +106,12 @@ def scene_from_dict(
     swept = read_sweep(top, parts)
     title, units = top.text("title", ""), read_units(top)
     mistakes.raise_if_any()
+    draft = Draft(parts, tuple(swept))
     scene = Scene(
         title=title,
         modal=modal_of(parts["modal"], unit),
         contacts=tuple(map(contact_of, parts["contact"])),
-        forces=_forces(parts),
+        forces=forces_of(parts),
         loads=tuple(map(load_of, parts["load"])),
         units=units,
         frequency_range=ends,
@@ -124,8 +124,9 @@ def scene_from_dict(
         name=name,
         reported=reported,
         notes=tuple(notes),
+        draft=draft,
     )
-    scene = replace(scene, curves=_curves(scene, parts, swept))
+    scene = replace(scene, curves=tuple(draft.curve(scene, values) for values in combinations(swept)))
     _check_curves(scene, mistakes)
     return scene
 
@@ -153,34 +154,6 @@ def _parts(
     asked = response is not None and "output" in response.data
     reported = reported_of(parts, output, asked)
     return parts if matrices is None else without_others(top, parts, reported), reported, notes
-
-
-def _curves(scene: Scene, parts: dict[str, Any], swept: list[Swept]) -> tuple[Scene, ...]:
-    """The scene with each combination of swept values; what does not change is shared."""
-    return tuple(_curve(scene, parts, swept, values) for values in combinations(swept))
-
-
-def _curve(scene: Scene, parts: dict[str, Any], swept: list[Swept], values: dict[str, float]) -> Scene:
-    draft = parts
-    for one in swept:
-        for address in one.addresses:
-            draft = replaced(draft, address, values[one.key])
-    modal, contacts, forces, loads = scene.modal, scene.contacts, scene.forces, scene.loads
-    if draft["modal"] is not parts["modal"]:
-        modal = modal_of(draft["modal"], scene.frequency_unit)
-    if draft["contact"] is not parts["contact"]:
-        contacts = tuple(map(contact_of, draft["contact"]))
-    if draft["force"] is not parts["force"] or draft["base"] is not parts["base"]:
-        forces = _forces(draft)
-    if draft["load"] is not parts["load"]:
-        loads = tuple(map(load_of, draft["load"]))
-    return replace(scene, modal=modal, contacts=contacts, forces=forces, loads=loads, parameters=values)
-
-
-def _forces(parts: Parts) -> tuple[Force, ...]:
-    """The harmonic forces, and those by which a base that moves pushes the structure."""
-    of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
-    return (*map(force_of, parts["force"]), *of_base)
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:

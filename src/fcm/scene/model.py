@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from fcm.scene.draft import Draft
 
 FloatArray = npt.NDArray[np.float64]
 NO_RANGE = (np.nan, np.nan)  # of a scene with a schedule and nothing to trace
@@ -99,6 +103,7 @@ class Scene:
     loads: tuple[Load, ...] = ()  # static, beside the forces
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
+    draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 
     @property
     def has_range(self) -> bool:
@@ -114,8 +119,9 @@ class Scene:
         if used.all():
             return self
         modals = {id(curve.modal): curve.modal.at(used) for curve in (self, *self.curves)}
-        curves = tuple(curve._at(used, modals) for curve in self.curves)
-        return replace(self._at(used, modals), curves=curves)
+        draft = None if self.draft is None else self.draft.at(used)
+        curves = tuple(replace(curve._at(used, modals), draft=draft) for curve in self.curves)
+        return replace(self._at(used, modals), curves=curves, draft=draft)
 
     def directions(self) -> list[FloatArray]:
         """The directions of all contacts, forces and loads, each (dof,)."""

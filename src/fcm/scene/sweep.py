@@ -114,12 +114,12 @@ def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
         return None
     if not found:
         return None
-    _check(section, path, values, RULES[_field(found[0])], listed=not isinstance(value, Mapping))
+    _check(section, path, values, RULES[field_of(found[0])], listed=not isinstance(value, Mapping))
     drawn = isinstance(value, Mapping) and "from" not in value
     return Swept(str(key), found, tuple(values.tolist()), ("drawn", len(values)) if drawn else str(key))
 
 
-def _field(address: Address) -> str:
+def field_of(address: Address) -> str:
     """The name of the number's rule: the last word of its address that names one."""
     return next(str(word) for word in reversed(address) if word in RULES)
 

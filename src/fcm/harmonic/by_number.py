@@ -1,0 +1,223 @@
+r"""Derivatives of the balance, and of what is reported, by any number of the scene, its unknowns held.
+
+A law's forces depend on its numbers only through the products k_u u, mu k_v v, mu n_0 and k_v v, n_0: the
+derivatives by those come from the law itself, evaluated with stiffnesses of 1. The structure's modal
+displacements a = c q under the modal forces q = f - P F give
+
+    dR = -d(P^T a) = -(dP^T a + P^T (dc q + c dq)),    dq = df - dP F - P dF
+
+The derivatives of the structure's arrays by a number are differences of sixth order with a step of 0.3 %:
+exact where they are linear, to some 1e-12 elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.law import Law
+from fcm.harmonic.system import System
+from fcm.scene.draft import Number, number_of
+from fcm.scene.model import FloatArray, Scene
+from fcm.structure.linear import Linear, linear_of
+
+ComplexArray = npt.NDArray[np.complex128]
+
+STEP = 3e-3  # of a difference, relative to the number
+STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # of the first derivative, of the sixth order
+LEAST_MU = 1e-9  # in the place of no friction at all, to see what the first of it does
+ARRAYS = ("natural", "damping", "ports", "dofs", "force", "flexibility", "counted")
+
+
+def residual_rate(system: System, z: FloatArray, address: str) -> FloatArray:
+    """Derivative of the balance's residual (unknown,) by a number of the scene at fixed z (unknown + 1,).
+
+    Parameters
+    ----------
+    address : str
+        The number as in [sweep], "contact.shroud.n_0"; with several, of all of them moved together.
+
+    Raises
+    ------
+    SceneError
+        If there is no such number.
+    ValueError
+        If it changes what rigid-body motions a structure has.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import fcm
+    >>> system = System(fcm.load_scene("yang1998-n5"))
+    >>> z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
+    >>> residual_rate(system, z, "force.u.amplitude")[2:].round(4).tolist()
+    [0.0618, -1.1225, 0.0618, -1.1377]
+    """
+    return rates_of(system, address).at(system.balance(), z)[0]
+
+
+def output_rate(system: System, z: FloatArray, address: str) -> FloatArray:
+    """Derivative of the amplitude of each degree of freedom (dof,) by a number at fixed z; see above.
+
+    Of a displacement that is made up of those of contacts, which are unknowns, only what the combination
+    changes. Together with the derivatives by the unknowns it is right at solutions.
+    """
+    balance = system.balance()
+    X = rates_of(system, address).at(balance, z)[1]
+    balance.report(z, np.zeros(z.size))
+    return growth_of(balance, X)
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), and of the structure's arrays."""
+
+    contact: FloatArray
+    linear: Linear  # of rates, not a structure
+    system: System
+
+    def at(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
+        """Rates of the residual (unknown,) and of the displacements X (harmonic, dof) that are reported."""
+        balance.evaluate(z)
+        force = self._layout(np.asarray(balance.force))
+        d_force = self._layout(self._forces(balance, z))
+        if not balance.contacts:
+            force = d_force = np.zeros((0, 1 + len(self.system.harmonics)), dtype=np.complex128)
+        structure, rate, seen = self.system.linear, self.linear, balance.seen
+        rows, shown = np.empty_like(force), np.empty((force.shape[1] - 1, structure.dofs.shape[1]), complex)
+        q = -structure.ports @ force[:, 0]
+        dq = -(rate.ports @ force[:, 0] + structure.ports @ d_force[:, 0])
+        da = rate.flexibility @ q + structure.flexibility @ dq
+        rows[:, 0] = -(rate.ports.T @ (structure.flexibility @ q) + structure.ports.T @ da)
+        for j, h in enumerate(self.system.harmonics):
+            driven = float(j == seen.driven) * balance.load
+            q = driven * structure.force - structure.ports @ force[:, 1 + j]
+            dq = driven * rate.force - rate.ports @ force[:, 1 + j] - structure.ports @ d_force[:, 1 + j]
+            c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
+            a, da = c * q, self._compliance(c, h * z[-1]) * q + c * dq
+            rows[:, 1 + j] = -(rate.ports.T @ a + structure.ports.T @ da)
+            # of combinations of ports, what these no longer are when the ports themselves change
+            of_ports = np.asarray(balance.shown.attached).T @ (rate.ports.T @ a)
+            apart = np.asarray(balance.shown.apart) > 0
+            shown[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
+        return self._flat(rows), shown
+
+    def _compliance(self, c: ComplexArray, w: float) -> ComplexArray:
+        """The rate of c = 1 / (w_i^2 - w^2 + 2 i zeta_i w_i w)."""
+        linear, rate = self.system.linear, self.linear
+        damped = rate.damping * linear.natural + linear.damping * rate.natural
+        return -c * c * (2.0 * linear.natural * rate.natural + 2j * w * damped)
+
+    def _forces(self, balance: Balance, z: FloatArray) -> FloatArray:
+        """Rates of the contacts' forces (unknown,), without those counted to the structure."""
+        found = np.zeros(balance.unknowns)
+        for i, rate in enumerate(self.contact):
+            first = i * balance.width
+            block = z[first : first + balance.width]
+            if rate.any():
+                found[first : first + balance.width] = rate @ law_rates(balance.laws[i], block)
+            found[first + 1] -= self.linear.counted[i] * block[1]
+        return found
+
+    def _layout(self, x: FloatArray) -> ComplexArray:
+        """Numbers laid out as the unknowns by port, (port, 1 + harmonic)."""
+        blocks = x.reshape(len(self.contact), -1)
+        pairs = blocks[:, 2:].reshape(len(self.contact), -1, 2, 2).transpose(0, 2, 1, 3)
+        complex_ones = pairs[..., 0] + 1j * pairs[..., 1]
+        return np.concatenate((blocks[:, :2, None], complex_ones), axis=2).reshape(2 * len(blocks), -1)
+
+    def _flat(self, ports: ComplexArray) -> FloatArray:
+        """The numbers of ports laid out as the unknowns."""
+        each = ports.reshape(len(self.contact), 2, -1)
+        parts = np.stack((each[:, :, 1:].real, each[:, :, 1:].imag), axis=-1).transpose(0, 2, 1, 3)
+        blocks = np.concatenate((each[:, :, 0].real, parts.reshape(len(each), -1)), axis=1)
+        return blocks.ravel()
+
+
+def law_rates(law: Law, x: FloatArray) -> FloatArray:
+    """Derivatives of a contact's forces by mu, k_u, k_v, n_0, (4, width), at its unknowns x (width,)."""
+    mu, k_u, k_v, n_0 = law.mu, law.k_u, law.k_v, law.n_0
+    normal = np.zeros(x.size, dtype=bool)
+    normal[1], normal[4::4], normal[5::4] = True, True, True
+    unit = np.ascontiguousarray(np.where(normal, k_v, k_u) * x)  # with stiffnesses of 1
+    load = unit * normal
+    load[1] += n_0
+    law.k_u, law.k_v, law.mu = 1.0, 1.0, mu or LEAST_MU
+    law.evaluate(unit, 0)
+    slope, force = np.array(law.tangent), np.array(law.force)
+    law.mu = mu
+    if mu == 0.0:
+        law.evaluate(unit, 0)
+        slope = np.array(law.tangent)
+        by_mu = force / LEAST_MU
+    else:
+        by_mu = slope @ load / mu
+    law.k_u, law.k_v = k_u, k_v
+    by_n_0 = slope[:, 1].copy()
+    by_n_0[1] -= float(n_0 > 0.0)  # the preload that the structure at rest is in equilibrium with
+    return np.stack((np.where(normal, 0.0, by_mu), slope @ (x * ~normal), slope @ (x * normal), by_n_0))
+
+
+def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
+    """Rate of each amplitude (dof,) when the displacements just reported have the rates X (harmonic, dof)."""
+    shown, harmonics = balance.shown, np.asarray(balance.seen.harmonics)
+    now = np.asarray(shown.re) + 1j * np.asarray(shown.im)
+    if harmonics.size == 1:
+        size = np.abs(now[0])
+        return np.where(size > 0.0, (np.conj(now[0]) * X[0]).real / np.where(size > 0.0, size, 1.0), 0.0)
+    theta = 2.0 * np.pi * np.arange(shown.samples) / shown.samples
+    samples = (np.exp(1j * np.outer(theta, harmonics)) @ now).real
+    rates = []
+    for extreme in (samples.argmax(axis=0), samples.argmin(axis=0)):
+        at = theta[extreme]
+        for _ in range(4):  # Newton's method, as the extremes themselves are refined
+            turn = 1j * harmonics[:, None] * np.exp(1j * np.outer(harmonics, at)) * now
+            bend = (1j * harmonics[:, None] * turn).sum(axis=0).real
+            at = at - np.where(bend != 0.0, turn.sum(axis=0).real / np.where(bend != 0.0, bend, 1.0), 0.0)
+        rates.append((np.exp(1j * np.outer(harmonics, at)) * X).sum(axis=0).real)
+    growth: FloatArray = 0.5 * (rates[0] - rates[1])
+    return growth
+
+
+def rates_of(system: System, address: str) -> Rates:
+    """The rates of a system when a number moves by one of its unit; ones of several add up."""
+    number = number_of(system.scene, address)
+    assert number is not None
+    contact = np.zeros((len(system.scene.contacts), 4))
+    total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
+    for one, value in number.each(system.scene):
+        contact += _numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0))
+        for name, rate in _linear(system, one, value):
+            total[name] = total[name] + rate
+    return Rates(contact, Linear(**total, adrift=system.linear.adrift), system)
+
+
+def _numbers(scene: Scene) -> FloatArray:
+    """Of each contact; each is linear in whatever number of a scene it depends on."""
+    return np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts]).reshape(-1, 4)
+
+
+def _linear(system: System, number: Number, value: float) -> Iterator[tuple[str, npt.NDArray[np.inexact]]]:
+    """Derivatives of the arrays of the structure."""
+    kind, field = number.addresses[0][0], number.addresses[0][-1]
+    rigid = bool((system.linear.natural == 0.0).any())
+    if (kind == "contact" and field in ("mu", "k_u", "n_0", "gap")) or (field == "k_v" and not rigid):
+        return
+    if rigid and (
+        (kind == "modal" and "damping" not in number.addresses[0]) or (kind == "contact" and not value)
+    ):
+        raise ValueError(f"{number.key} changes the rigid-body motions of the structure")
+    step = STEP if field == "phase" else STEP * (abs(value) or 1.0)
+    around = {k: linear_of(number.put(system.scene, value + k * step)) for k in (-3, -2, -1, 1, 2, 3)}
+    for name in ARRAYS:
+        yield (
+            name,
+            sum(
+                weight / step * (getattr(around[k], name) - getattr(around[-k], name))
+                for k, weight in STENCIL
+            ),
+        )

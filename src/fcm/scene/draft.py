@@ -1,0 +1,147 @@
+"""What a scene was made of, kept so that any number of it can be given another value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.address import Address, Addresses, overlap, replaced
+from fcm.scene.errors import Mistakes, quoted
+from fcm.scene.excitation import DIRECTIONS, base_force, load_of
+from fcm.scene.modal import modal_of
+from fcm.scene.model import Force, Scene
+from fcm.scene.parts import contact_of, force_of
+from fcm.scene.rules import RULES, Rule
+from fcm.scene.sweep import Swept, field_of
+
+Parts = dict[str, Any]  # drafts of modal, contact, force, ..., in the words of the file
+
+
+@dataclass(frozen=True)
+class Draft:
+    """The parts of a scene as read, and its swept keys; the same for all of its curves."""
+
+    parts: Parts
+    swept: tuple[Swept, ...]
+
+    def curve(self, scene: Scene, values: Mapping[str, float], more: Mapping[Address, float] = {}) -> Scene:
+        """The scene with swept values, and then numbers at addresses; what does not change is shared."""
+        parts, draft = self.parts, self.parts
+        for one in self.swept:
+            for address in one.addresses:
+                draft = replaced(draft, address, values[one.key])
+        for address, value in more.items():
+            draft = replaced(draft, address, value)
+        changed: dict[str, Any] = {}
+        if draft["modal"] is not parts["modal"]:
+            changed["modal"] = modal_of(draft["modal"], scene.frequency_unit)
+        if draft["contact"] is not parts["contact"]:
+            changed["contacts"] = tuple(map(contact_of, draft["contact"]))
+        if draft["force"] is not parts["force"] or draft["base"] is not parts["base"]:
+            changed["forces"] = forces_of(draft)
+        if draft["load"] is not parts["load"]:
+            changed["loads"] = tuple(map(load_of, draft["load"]))
+        return replace(scene, parameters=dict(values), **changed)
+
+    def values(self, scene: Scene, addresses: tuple[Address, ...]) -> list[Any]:
+        """What stands at addresses in a curve of the scene."""
+        draft: Any = self.parts
+        for one in self.swept:
+            for address in one.addresses:
+                draft = replaced(draft, address, scene.parameters[one.key])
+        return [_at(draft, address) for address in addresses]
+
+    def at(self, used: npt.NDArray[np.bool_]) -> Draft:
+        """The same at some of the degrees of freedom."""
+        modal = self.parts["modal"]
+        names = tuple(name for name, one in zip(modal["dofs"], used, strict=True) if one)
+        parts = self.parts | {
+            "modal": modal | {"dofs": type(modal["dofs"])(names), "shapes": modal["shapes"][:, used]}
+        }
+        for table, keys in DIRECTIONS.items():
+            parts[table] = [draft | {key: draft[key][used] for key in keys} for draft in parts[table]]
+        return Draft(parts, self.swept)
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a scene under its key path, "contact.shroud.n_0"; with a * in it, or a group, several."""
+
+    key: str
+    addresses: tuple[Address, ...]
+
+    @property
+    def rule(self) -> Rule:
+        """What it may be."""
+        return RULES[field_of(self.addresses[0])]
+
+    def value(self, scene: Scene) -> float:
+        """The value that it has in a scene; NaN where it stands for several that differ."""
+        values = {value for _, value in self.each(scene)}
+        return values.pop() if len(values) == 1 else np.nan
+
+    def each(self, scene: Scene) -> list[tuple[Number, float]]:
+        """Those that it stands for, one by one, with their values."""
+        found = []
+        values = _draft(scene).values(scene, self.addresses)
+        for address, value in zip(self.addresses, values, strict=True):
+            places = [(*address, i) for i in range(len(value))] if np.ndim(value) else [address]
+            found += [
+                (Number(self.key, (place,)), float(one))
+                for place, one in zip(places, np.ravel(value), strict=True)
+            ]
+        return found
+
+    def put(self, scene: Scene, value: float) -> Scene:
+        """The scene with another value of it."""
+        return _draft(scene).curve(scene, scene.parameters, dict.fromkeys(self.addresses, value))
+
+
+def number_of(scene: Scene, key: str, mistakes: Mistakes | None = None, path: str = "") -> Number | None:
+    """The number of a scene with a key path, as in [sweep]; None after a mistake.
+
+    Raises
+    ------
+    SceneError
+        If there is no such number, unless mistakes are collected.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> preload = number_of(scene, "contact.shroud.n_0")
+    >>> preload.value(scene), preload.put(scene, 7.0).contacts[0].n_0
+    (5.0, 7.0)
+    """
+    found = mistakes or Mistakes(scene.name)
+    draft = _draft(scene)
+    addresses = Addresses(draft.parts).find(key, path or quoted(key), found)
+    for one in draft.swept if addresses else ():
+        if any(overlap(mine, its) for mine in addresses for its in one.addresses):
+            found.add(path or quoted(key), f"sets the same number as {quoted(one.key)} of [sweep]")
+            addresses = ()
+    if mistakes is None:
+        found.raise_if_any()
+    return Number(key, addresses) if addresses else None
+
+
+def forces_of(parts: Parts) -> tuple[Force, ...]:
+    """The harmonic forces, and those by which a base that moves pushes the structure."""
+    of_base = (base_force(draft, parts["modal"]["dofs"]) for draft in parts["base"])
+    return (*map(force_of, parts["force"]), *of_base)
+
+
+def _draft(scene: Scene) -> Draft:
+    if not isinstance(scene.draft, Draft):
+        raise ValueError(f"the scene {scene.name!r} was not read from a file or a dict")
+    return scene.draft
+
+
+def _at(tree: Any, address: Address) -> Any:
+    for step in address:
+        tree = tree[step]
+    return tree
