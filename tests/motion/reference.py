@@ -24,7 +24,9 @@ class Law:
         self.modes = modal.mass.size
 
     def external(self, t):
-        total = sum(f.direction * f.amplitude * np.sin(self.omega * t + f.phase) for f in self.scene.forces)
+        total = sum(load.direction * load.force for load in self.scene.loads)
+        for f in self.scene.forces:
+            total = total + f.direction * f.amplitude * self.omega**f.power * np.sin(self.omega * t + f.phase)
         return self.scene.modal.shapes @ total
 
     def rhs(self, t, y, states):

@@ -72,7 +72,10 @@ def test_flows_are_exponentials(scene, omega):
     n = system.size - 2
     a = np.zeros((n + 2, n + 2))
     a[:n, :n] = _logarithm_by_parts(system, states)
-    a[system.p, n], a[system.p, n + 1] = system.sine / scene.modal.mass, system.cosine / scene.modal.mass
+    a[system.p, n], a[system.p, n + 1] = (
+        system.wave.real / scene.modal.mass,
+        system.wave.imag / scene.modal.mass,
+    )
     a[n, n + 1], a[n + 1, n] = omega, -omega
     y = np.zeros(n + 2)
     y[n - 1], y[n + 1] = 1.0, 1.0

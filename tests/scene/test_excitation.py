@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import ResponseError
 from fcm.scene import SceneError, scene_from_dict
 
 # ground - 1 - 2 - 3, along x; node 2 has a y of its own
@@ -187,12 +186,6 @@ def test_mistakes_of_loads(tmp_path, load, words):
     np.savez(tmp_path / "short.npz", [1.0, 2.0])
     np.savez(tmp_path / "flat.npz", np.ones((2, 2)))
     assert words in refused(tmp_path, load=[load], force=[{"dof": "1x", "amplitude": 1.0}])
-
-
-def test_what_no_method_computes_is_refused_and_not_left_out():
-    force = [{"dof": "1x", "amplitude": 1.0, "proportional_to": "omega^2"}]
-    with pytest.raises(ResponseError, match=r"no method computes \[\[load\]\].* and force.proportional_to"):
-        fcm.respond(read(load=[{"dof": "3x", "force": 4.0}], force=force))
 
 
 def test_units_are_labels():

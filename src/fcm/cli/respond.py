@@ -55,7 +55,8 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 )  # fmt: skip
 @click.option(
     "--level", metavar="FROM:TO", callback=balance.level,
-    help="Follow the level of the forces instead, all amplitudes times this, at the frequency --at.",
+    help="Follow the level of the forces instead, all amplitudes times this, at the frequency --at; static "
+    "loads stay.",
 )  # fmt: skip
 @click.option(
     "--at", multiple=True, metavar="F", callback=exact.frequencies,

@@ -54,8 +54,12 @@ def unbalanced(scene: Scene, curve: Curve) -> Unbalanced:
     total, mean = dynamic * q, static * q_mean
     unit = np.zeros(q.shape)
     for force in scene.forces:
-        on_mode = modal.shapes @ force.direction * force.amplitude * np.exp(1j * force.phase)
+        growth = curve.frequency[at][:, None] ** force.power
+        on_mode = growth * (modal.shapes @ force.direction * force.amplitude * np.exp(1j * force.phase))
         total, unit = total - on_mode, unit + np.abs(on_mode)
+    for load in scene.loads:
+        pushed = modal.shapes @ load.direction * load.force
+        mean, unit = mean - pushed, unit + np.abs(pushed)
     for contact in scene.contacts:
         along, across = modal.shapes @ contact.tangential, modal.shapes @ contact.normal
         f_u, f_v, f_b, f_n = contact_forces(contact, x, curve.mean[at])

@@ -11,6 +11,8 @@ cdef class Balance(Problem):
     cdef public int width
     cdef public double span
     cdef public double load
+    cdef public double share
+    cdef public double[::1] rest
     cdef public double[::1] counted
     cdef public double[::1] force
     cdef public double[:, :, ::1] tangent

@@ -3,9 +3,10 @@ r"""Harmonic balance of means and any harmonics, condensed to the contacts, as a
 The modes are summed into the receptance G(h omega) between the contacts' ports, so that the unknowns are the
 relative displacements of the contacts alone, whatever the number of modes:
 
-    X_h = X_external,h - G(h omega) F_h,    x_0 = -G(0) f_0
+    X_h = X_external,h - G(h omega) F_h,    x_0 = x_rest - G(0) f_0
 
-The residual has the unit of a displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
+with x_rest the answer to static loads alone, of which `share` is applied. The residual has the unit of a
+displacement and the Jacobian is 1 + G dF/dX. The parameter is the frequency.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ class Balance(Problem):
         width: cython.int = 2 + 4 * seen.count
         Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs)
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
-        self.counted, self.span, self.load = np.array(counted), span, 1.0
+        self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
+        self.rest = np.zeros(2 * len(laws))
         self.force, self.now, self.rate = (np.zeros(self.unknowns) for _ in range(3))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
@@ -95,7 +97,7 @@ class Balance(Problem):
         k: cython.Py_ssize_t
         for p in range(2 * self.contacts):
             row = (p // 2) * w + p % 2
-            self.residual[row] = 0.0
+            self.residual[row] = -self.share * self.rest[p]
             for q in range(self.contacts):
                 S_u: cython.double = self.seen.static[p, 2 * q]
                 S_v: cython.double = self.seen.static[p, 2 * q + 1]

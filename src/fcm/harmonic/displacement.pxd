@@ -13,6 +13,7 @@ cdef class Displacements:
     cdef public double[:, ::1] d_re
     cdef public double[:, ::1] d_im
     cdef public double[::1] mean
+    cdef public double[::1] rest
     cdef public double[::1] amplitude
     cdef public double[::1] growth
     cdef double[:, ::1] cosine

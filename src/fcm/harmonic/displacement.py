@@ -17,7 +17,8 @@ REFINED = 4  # Newton steps from the greatest sample to the extreme
 class Displacements:
     """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates.
 
-    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate.
+    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; rest: the
+    answer to static loads alone.
     """
 
     def __init__(self, seen: Receptance, linear: Linear) -> None:
@@ -27,6 +28,7 @@ class Displacements:
         self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
+        self.rest = np.zeros(dofs)
         self.attached, self.apart = linear.attached
         harmonics = np.asarray(seen.harmonics)
         self.samples = int(SAMPLES * harmonics[count - 1]) if count > 1 else 0
@@ -53,7 +55,7 @@ class Displacements:
         p: cython.Py_ssize_t
         w: cython.Py_ssize_t = 2 + 4 * self.seen.count
         for d in range(self.dofs):
-            total: cython.double = 0.0
+            total: cython.double = self.rest[d]
             for p in range(self.seen.ports):
                 total -= self.static[d, p] * force[(p // 2) * w + p % 2]
             self.mean[d] = total
@@ -90,8 +92,8 @@ class Displacements:
         for i in range(self.seen.modes):
             f_re: cython.double = driven * self.seen.force_re[i]
             f_im: cython.double = driven * self.seen.force_im[i]
-            g_re: cython.double = 0.0
-            g_im: cython.double = 0.0
+            g_re: cython.double = driven * d_omega * self.seen.slope_re[i]
+            g_im: cython.double = driven * d_omega * self.seen.slope_im[i]
             for p in range(self.seen.ports):
                 k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
                 f_re -= self.seen.shapes[i, p] * force[k]

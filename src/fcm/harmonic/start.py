@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
@@ -24,6 +25,8 @@ BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
+
+ComplexArray = npt.NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -73,17 +76,24 @@ def level_curve(
 
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
-    """Unknowns with the contacts as they are at rest, then all stuck, then all open."""
+    """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
     G, X = system.linear.at(omega)
-    closed = np.repeat([c.n_0 > 0.0 for c in system.scene.contacts], 2)
+    closed = np.repeat(loads_at_rest(system) > 0.0, 2)
     for share in (closed, np.ones_like(closed), np.zeros_like(closed)):
         ports = np.linalg.solve(np.eye(X.size) + G * (system.springs(stuck=True) * share), level * X)
-        yield _unknowns(ports, len(system.harmonics), system.harmonics.index(1))
+        yield _unknowns(system.rest, ports, len(system.harmonics), system.harmonics.index(1))
 
 
-def _unknowns(ports: FloatArray, harmonics: int, driven: int) -> FloatArray:
+def loads_at_rest(system: System) -> FloatArray:
+    """Normal loads (contact,) at rest, negative where a contact is open."""
+    law = np.array([(c.n_0, c.k_v) for c in system.scene.contacts]).reshape(-1, 2)
+    loads: FloatArray = law[:, 0] + law[:, 1] * system.rest[1::2]
+    return loads
+
+
+def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:
     x = np.zeros((ports.size // 2, 2 + 4 * harmonics))
-    pairs = ports.reshape(-1, 2)
+    x[:, :2], pairs = rest.reshape(-1, 2), ports.reshape(-1, 2)
     first = 2 + 4 * driven
     x[:, first : first + 4] = np.stack(
         (pairs[:, 0].real, pairs[:, 0].imag, pairs[:, 1].real, pairs[:, 1].imag), axis=1
@@ -107,12 +117,12 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
 
 def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
-    levels = [1.0]
+    levels, loads = [1.0], np.abs(loads_at_rest(system))
     _, *uniform = linear_responses(system, omega, 1.0)
-    for variation, slip, contact in (one for x in uniform for one in _motions(system, x)):
-        load = abs(contact.n_0)
-        levels += [load / variation] if variation > 0.0 else []
-        levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
+    for x in uniform:
+        for load, (variation, slip, contact) in zip(loads, _motions(system, x), strict=True):
+            levels += [load / variation] if variation > 0.0 else []
+            levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
     return min(BEYOND * max(levels), GREATEST)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import copy
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -45,12 +46,22 @@ class System:
         object.__setattr__(other, "harmonics", harmonics)
         return other
 
+    @cached_property
+    def rest(self) -> FloatArray:
+        """Displacements (port,) at rest under the static loads; see `fcm.harmonic.rest.at_rest`."""
+        from fcm.harmonic.rest import at_rest  # which balances a system
+
+        return at_rest(self)
+
     def balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
         seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
         shown = Displacements(seen, self.linear)
         balance = Balance(seen, self.laws(), shown, self.linear.counted, high - low)
+        if self.scene.loads:
+            balance.rest[:] = self.linear.ports.T @ self.linear.flexibility @ self.linear.load
+            shown.rest[:] = self.linear.dofs.T @ self.linear.flexibility @ self.linear.load
         balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
         return balance
 

@@ -30,16 +30,18 @@ class Powers:
     Parameters
     ----------
     steps : Steps
-    sine, cosine : (mode,)
+    sine, cosine, static : (mode,)
         Modal amplitudes of the forces.
     damper : (mode,)
         2 m zeta omega of the modes.
     """
 
-    def __init__(self, steps: Steps, sine: FloatArray, cosine: FloatArray, damper: FloatArray) -> None:
+    def __init__(
+        self, steps: Steps, sine: FloatArray, cosine: FloatArray, static: FloatArray, damper: FloatArray
+    ) -> None:
         self.steps = steps
         self.work = self.slip = self.damping = self.turnover = 0.0
-        self._sine, self._cosine, self._damper = sine, cosine, damper
+        self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
         self._y = np.zeros((1, steps.flows.size))
         self._nodes, self._weights = _ON_ONE
 
@@ -80,7 +82,8 @@ class Powers:
         rate: cython.double
         ratio: cython.double
         for i in range(m):
-            power += self._y[0, m + i] * (self._sine[i] * self._y[0, n] + self._cosine[i] * self._y[0, n + 1])
+            push: cython.double = self._sine[i] * self._y[0, n] + self._cosine[i] * self._y[0, n + 1]
+            power += self._y[0, m + i] * (push + self._static[i])
             loss += self._damper[i] * self._y[0, m + i] * self._y[0, m + i]
         for j in range(self.steps.flows.contacts):
             state = self.steps.segments.states[self.steps.at, j]

@@ -67,6 +67,7 @@ def _matrix(system: System, states: Codes) -> FloatArray:
     a[system.q, system.p] = np.eye(m)
     a[system.p, system.q] = -np.diag(modal.frequency**2)
     a[system.p, system.p] = -np.diag(2.0 * modal.damping * modal.frequency)
+    a[system.p, -1] = system.static / modal.mass
     for j, (contact, state) in enumerate(zip(system.contacts, states.tolist(), strict=True)):
         f, n = system.f.start + j, system.n.start + j
         push_u, push_v = system.tangential[j] / modal.mass, system.normal[j] / modal.mass

@@ -1,9 +1,9 @@
 """The derivative of the motion by its start and by the frequency.
 
-Across a segment it is the exponential of the segment's matrix. The frequency acts on the forces alone: at a
-fixed time the derivatives of sin(omega t) and cos(omega t) are t cos(omega t) and -t sin(omega t), and
-that of the columns of the forces is known with the flow. Across a transition whose instant moves with the
-start or with the frequency it is the saltation matrix
+Across a segment it is the exponential of the segment's matrix. The frequency acts on the forces alone, which
+may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t) are t cos(omega t) and
+-t sin(omega t), and that of the columns of the forces is known with the flow. Across a transition whose
+instant moves with the start or with the frequency it is the saltation matrix
 
     S = R + (F+ - R F-) g / (g F-),    F = A y at the transition,
 
@@ -170,6 +170,7 @@ class Derivative:
             self.flows.derive(slot, self._grades, j, self._grades, j + 1, h / (j + 1))
             self._grades[j + 1, n] += h / (j + 1) * self._terms[j, n + 1]
             self._grades[j + 1, n + 1] -= h / (j + 1) * self._terms[j, n]
+            self.flows.steepen(self._terms, j, self._grades, j + 1, h / (j + 1))
         summed(self._terms, x, self.columns, u + 1)
         summed(self._grades, x, self.columns, u)
 

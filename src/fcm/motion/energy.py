@@ -56,7 +56,8 @@ def _powers(cycle: Cycle) -> Powers:
     """The integrals of the powers over a cycle."""
     system, modal = cycle.system, cycle.system.scene.modal
     steps = system.steps(cycle.segments)
-    powers = Powers(steps, system.sine, system.cosine, 2.0 * modal.mass * modal.damping * modal.frequency)
+    wave, damper = system.wave, 2.0 * modal.mass * modal.damping * modal.frequency
+    powers = Powers(steps, wave.real.copy(), wave.imag.copy(), system.static, damper)
     system.run(powers, steps)
     return powers
 

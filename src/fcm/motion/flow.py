@@ -175,6 +175,7 @@ class Flows(Series):
             self.derive(slot, self._grades, 0, self._grades, 1, h / (j + 1))
             self._grades[1, n] += h / (j + 1) * self._terms[j, n + 1]
             self._grades[1, n + 1] -= h / (j + 1) * self._terms[j, n]
+            self.steepen(self._terms, j, self._grades, 1, h / (j + 1))
             for i in range(self.size):
                 self._grades[0, i] = self._grades[1, i]
             for i in range(n):

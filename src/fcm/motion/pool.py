@@ -25,7 +25,8 @@ class Pool:
     Parameters
     ----------
     modal : tuple of arrays
-        Squares of the modes' frequencies, 2 zeta omega_0, and the forces of sin and cos by mass (2, mode).
+        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the static forces, those of sin and cos
+        (2, mode), and those that grow as omega^2 (2, mode).
     ports : tuple of arrays (contact, mode)
         Shapes of u and of v, and the same divided by the modal masses.
     law : array (5, contact)
@@ -33,7 +34,10 @@ class Pool:
     """
 
     def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
-        self.stiffness, self.damping, self.drive = (np.ascontiguousarray(x, dtype=np.float64) for x in modal)
+        self.stiffness, self.damping, self.hold, self.constant, self.square = (
+            np.ascontiguousarray(x, dtype=np.float64) for x in modal
+        )
+        self.drive, self.slope = np.array(self.constant), np.zeros_like(self.constant)
         self.tangential, self.normal, self.push_u, self.push_v = (
             np.ascontiguousarray(x, dtype=np.float64) for x in ports
         )
@@ -49,7 +53,11 @@ class Pool:
 
     def at(self, omega: float) -> None:
         """Set the frequency [rad/s]."""
+        if omega == self.omega:
+            return
         self.omega = omega
+        square = np.asarray(self.square)
+        self.drive, self.slope = np.asarray(self.constant) + omega**2 * square, 2.0 * omega * square
 
     def bytes(self) -> int:
         """Memory of the pool."""

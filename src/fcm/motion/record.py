@@ -88,7 +88,8 @@ class Record:
 def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = None) -> Record:
     """Simulate the schedule of a scene, and keep what is reported of it.
 
-    An interruption, or contacts that chatter without end, leave it incomplete with a reason.
+    An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
+    incomplete with a reason.
 
     Examples
     --------
@@ -97,10 +98,11 @@ def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = N
     >>> [round(float(phase.amplitude[0]), 2) for phase in done.phases], done.complete
     ([14.72, 1.73, 1.75], True)
     """
-    begin, state = time.perf_counter(), State.start(scene)
+    begin = time.perf_counter()
     plan = plan or Plan(scene.schedule, len(scene.modal.dofs))
-    recorder, reason = _Recorder(scene, plan, state), ""
+    recorder, reason = _Recorder(scene, plan), ""
     try:
+        recorder.end = State.start(scene)
         for number, phase in enumerate(scene.schedule):
             for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, recorder.end):
                 recorder.add(number, cycle, end)
@@ -117,7 +119,7 @@ def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = N
 
 def unfinished(scene: Scene, plan: Plan) -> Record:
     """The record of a curve that was not begun."""
-    return _Recorder(scene, plan, State.start(scene)).record(NOT_BEGUN)
+    return _Recorder(scene, plan).record(NOT_BEGUN)
 
 
 def total(parts: Sequence[Energy]) -> Energy:
@@ -161,9 +163,9 @@ class _Transitions:
 
 
 class _Recorder:
-    def __init__(self, scene: Scene, plan: Plan, start: State) -> None:
+    def __init__(self, scene: Scene, plan: Plan) -> None:
         dofs, contacts = len(scene.modal.dofs), len(scene.contacts)
-        self.scene, self.plan, self.end, self.done = scene, plan, start, 0
+        self.scene, self.plan, self.end, self.done = scene, plan, State.unloaded(scene), 0
         self.measures = np.full((4, plan.phase.size, dofs), np.nan)
         self.displacement = np.full((plan.instants, dofs), np.nan)
         self.state = np.full((plan.instants, contacts), NOT_REACHED, dtype=np.int8)

@@ -47,7 +47,7 @@ class Series(Pool):
         for i in range(m):
             z[b, i] = factor * y[a, m + i]
             z[b, m + i] = (
-                self.drive[0, i] * sine + self.drive[1, i] * cosine
+                self.drive[0, i] * sine + self.drive[1, i] * cosine + self.hold[i] * y[a, last - 1]
                 - self.stiffness[i] * y[a, i] - self.damping[i] * y[a, m + i]
             )  # fmt: skip
         for j in range(c):
@@ -76,6 +76,24 @@ class Series(Pool):
         z[b, last - 1] = 0.0
         z[b, last] = factor * self.omega * cosine
         z[b, last + 1] = -factor * self.omega * sine
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def steepen(
+        self,
+        y: cython.double[:, ::1],
+        a: cython.Py_ssize_t,
+        z: cython.double[:, ::1],
+        b: cython.Py_ssize_t,
+        factor: cython.double,
+    ) -> cython.void:
+        """Add factor dA / d omega y to row b of z, y being row a, of forces that grow with the frequency."""
+        m: cython.Py_ssize_t = self.modes
+        n: cython.Py_ssize_t = self.linear
+        i: cython.Py_ssize_t
+        for i in range(m):
+            z[b, m + i] += factor * (self.slope[0, i] * y[a, n] + self.slope[1, i] * y[a, n + 1])
 
     @cython.cfunc
     @cython.nogil

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.harmonic.rest import RestError, rest_of
 from fcm.motion.combination import Codes
 from fcm.motion.errors import SimulationError
 from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
@@ -34,7 +35,25 @@ class State:
 
     @staticmethod
     def rest(scene: Scene) -> State:
-        """The structure at rest in equilibrium with its preloads, its contacts unstressed."""
+        """The structure at rest in equilibrium with its preloads and static loads, which alone strain it.
+
+        Raises
+        ------
+        SimulationError
+            If there is no equilibrium with the static loads.
+        """
+        still = State.unloaded(scene)
+        if not scene.loads:
+            return still
+        try:
+            displacement, friction = rest_of(scene)
+        except RestError as error:
+            raise SimulationError(str(error)) from None
+        return State(displacement, still.velocity, friction)
+
+    @staticmethod
+    def unloaded(scene: Scene) -> State:
+        """The structure at rest without static loads."""
         modes = scene.modal.mass.size
         return State(np.zeros(modes), np.zeros(modes), np.zeros(len(scene.contacts)))
 

@@ -6,6 +6,7 @@ from copy import copy
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.motion.combination import Codes, made
 from fcm.motion.derivative import Derivative
@@ -15,6 +16,7 @@ from fcm.motion.march import March
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
 from fcm.scene.model import Contact, FloatArray, Scene
+from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
 
@@ -49,7 +51,9 @@ class System:
         self.mu, self.k_u, self.stiffness, self.preload = law.T.copy()
         shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
         self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
-        self.sine, self.cosine = _modal_force(scene)
+        loads = loads_of(scene)
+        self.constant, self.square = modal.shapes @ loads.constant, modal.shapes @ loads.square
+        self.static: FloatArray = modal.shapes @ loads.static  # modal
         self.flows = self._flows()
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
 
@@ -58,6 +62,12 @@ class System:
         other = copy(self)
         other.omega = _checked(omega)
         return other
+
+    @property
+    def wave(self) -> npt.NDArray[np.complex128]:
+        """Modal amplitudes of the harmonic forces, of Im(wave exp(i theta)): (mode,)."""
+        wave: npt.NDArray[np.complex128] = self.constant + self.omega**2 * self.square
+        return wave
 
     @property
     def period(self) -> float:
@@ -103,7 +113,8 @@ class System:
             (
                 modal.frequency**2,
                 2.0 * modal.damping * modal.frequency,
-                np.array([self.sine, self.cosine]) / modal.mass,
+                self.static / modal.mass,
+                *(np.array([one.real, one.imag]) / modal.mass for one in (self.constant, self.square)),
             ),
             (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
             law,
@@ -119,12 +130,3 @@ def _checked(omega: float) -> float:
 def has_friction(contact: Contact) -> bool:
     """Whether the contact can exert friction at all; without, it is never more than closed or open."""
     return contact.mu > 0.0 and contact.k_u > 0.0
-
-
-def _modal_force(scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """Modal amplitudes of sin(theta) and of cos(theta)."""
-    total = np.zeros(len(scene.modal.dofs), dtype=np.complex128)
-    for force in scene.forces:
-        total += force.direction * force.amplitude * np.exp(1j * force.phase)
-    modal = scene.modal.shapes @ total
-    return modal.real.copy(), modal.imag.copy()

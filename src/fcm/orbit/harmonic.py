@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact import fourier_coefficients, hysteresis_loop, normal_coefficients
+from fcm.contact import hysteresis_loop
+from fcm.contact.closed_form import ClosedForm
+from fcm.harmonic.single import OPENS, SLIPS, SingleHarmonic
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
@@ -57,14 +59,14 @@ def harmonic_state(
     if not (np.isfinite(x).all() and np.isfinite(average).all()):
         raise SimulationError("the point of the response curve to start from is not finite")
     system = System(scene, frequency)
-    wave: npt.NDArray[np.complex128] = system.sine + 1j * system.cosine
-    steady = np.zeros(system.modes)
+    wave, steady = system.wave, system.static.copy()
     friction = np.zeros(len(scene.contacts))
     for j, contact in enumerate(scene.contacts):
-        u, v, v_mean = contact.tangential @ x, contact.normal @ x, float(contact.normal @ average)
-        pair, means, friction[j] = _forces(contact, u, v, v_mean)
+        along, across = contact.tangential, contact.normal
+        at = float(along @ average), float(across @ average)
+        pair, means, friction[j] = _forces(contact, along @ x, across @ x, *at)
         wave = wave - system.tangential[j] * pair[0] - system.normal[j] * pair[1]
-        steady -= system.tangential[j] * means[0] + system.normal[j] * (means[1] - max(contact.n_0, 0.0))
+        steady -= system.tangential[j] * means[0] + system.normal[j] * means[1]
     return _modal(system, wave, steady, friction)
 
 
@@ -103,22 +105,27 @@ def _modal(
 
 
 def _forces(
-    contact: Contact, u: complex, v: complex, v_mean: float
+    contact: Contact, u: complex, v: complex, u_mean: float, v_mean: float
 ) -> tuple[tuple[complex, complex], tuple[float, float], float]:
     """Balanced friction and normal force: their fundamentals, their means; the friction at the angle 0."""
-    a, b, load = abs(u), abs(v), contact.n_0 + contact.k_v * v_mean
-    normal, normal_mean = 0j, max(load, 0.0)
-    if contact.k_v * b > 0.0:
-        n_b, n_s = normal_coefficients(load / (contact.k_v * b))
-        normal, normal_mean = contact.k_v * v * float(n_s), contact.k_v * b * float(n_b)
-    if not has_friction(contact) or a == 0.0:
-        return (0j, normal), (0.0, normal_mean), 0.0
+    law = SingleHarmonic(ClosedForm(), ClosedForm(), contact.mu, contact.k_u, contact.k_v, contact.n_0)
+    x = np.array([u_mean, v_mean, u.real, u.imag, v.real, v.imag])
+    law.evaluate(x, 0)
+    mean_u, mean_v, *parts = (float(f) for f in law.force)
+    pair = complex(*parts[:2]), complex(*parts[2:])
+    a, load = abs(u), contact.n_0 + contact.k_v * v_mean
+    if not has_friction(contact) or a == 0.0 or _stuck(law, x):
+        return pair, (mean_u, mean_v), mean_u + pair[0].imag
     stiff = contact.k_u * a
-    arguments = contact.mu * load / stiff, contact.mu * contact.k_v * b / stiff, _angle(v) - _angle(u)
-    f_b, f_s, f_c = (float(f) for f in fourier_coefficients(*arguments))
-    friction = contact.k_u * u * complex(f_s, f_c)
+    arguments = contact.mu * load / stiff, contact.mu * contact.k_v * abs(v) / stiff, _angle(v) - _angle(u)
     start = stiff * float(hysteresis_loop(*arguments).force(_angle(u)))
-    return (friction, normal), (stiff * f_b, normal_mean), start
+    return pair, (mean_u, mean_v), start
+
+
+def _stuck(law: SingleHarmonic, x: FloatArray) -> bool:
+    """Whether the contact never slips nor opens."""
+    law.bound(x, 0)
+    return bool(law.margin[SLIPS] > 0.0 and law.margin[OPENS] > 0.0)
 
 
 def _angle(z: complex) -> float:

@@ -107,8 +107,10 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
 def unloaded(scene: Scene) -> State:
     """At rest, with the residual friction of the scene's [start]."""
     rest = State.rest(scene)
-    stiff = np.array([contact.k_u for contact in scene.contacts])
-    return State(rest.q, rest.velocity, -stiff * resting(scene))
+    displacement = scene.modal.shapes.T @ rest.q
+    pairs = zip(scene.contacts, resting(scene), strict=True)
+    friction = np.array([contact.k_u * (contact.tangential @ displacement - w) for contact, w in pairs])
+    return State(rest.q, rest.velocity, friction)
 
 
 def _approached(system: System) -> Orbit:

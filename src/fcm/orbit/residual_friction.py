@@ -2,8 +2,8 @@
 
 Its slip motion w can have any value between the greatest lower and the least upper slip limit, and the
 solution is one of a family. A contact that starts with some w ends with the w nearest to it: that one is
-chosen, so that the solutions over the frequency are one curve. It starts unstressed, w = 0, unless the
-scene's [start] says otherwise.
+chosen, so that the solutions over the frequency are one curve. It starts unstressed, w = 0, unless static
+loads have made it slip, or the scene's [start] says otherwise.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 from fcm.motion.measure import Extreme, least
 from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.segments import Segments
+from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import derivative_at
 from fcm.scene.model import Contact, FloatArray, Scene
@@ -34,10 +35,8 @@ class Choice(NamedTuple):
 
 def resting(scene: Scene) -> FloatArray:
     """The slip motions w of the contacts where the scene starts: (contact,)."""
-    start = scene.start
-    if start is None:
-        return np.zeros(len(scene.contacts))
-    return _resting(scene.contacts, scene.modal.shapes.T @ start.displacement, start.friction)
+    start = State.start(scene)
+    return _resting(scene.contacts, scene.modal.shapes.T @ start.q, start.friction)
 
 
 def resting_at(system: System, x: FloatArray) -> FloatArray:

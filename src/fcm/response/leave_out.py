@@ -86,7 +86,7 @@ def _different(curves: tuple[Scene, ...]) -> list[Scene]:
 
     def key(s: Scene) -> tuple[int | bytes, ...]:
         along = [d.tobytes() for c in s.contacts for d in (c.tangential, c.normal)]
-        return (id(s.modal), *along, *(force.direction.tobytes() for force in s.forces))
+        return (id(s.modal), *along, *(direction.tobytes() for direction in s.pushes()))
 
     return list({key(s): s for s in curves}.values())
 
@@ -115,7 +115,7 @@ def _moved(scene: Scene) -> BoolArray:
     """Which modes a force or a contact moves."""
     along = [c.tangential for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0]
     along += [c.normal for c in scene.contacts if c.k_v > 0.0]
-    along += [force.direction for force in scene.forces]
+    along += scene.pushes()
     moved: BoolArray = np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])
     return moved
 

@@ -1,4 +1,8 @@
-"""Response against the level of the forces, all amplitudes times lambda, at fixed frequencies."""
+"""Response against the level of the forces, all amplitudes times lambda, at fixed frequencies.
+
+Static loads keep their full size: the level is that of the harmonic forces, and rest is the equilibrium with
+the static loads.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import numpy as np
 
 from fcm.continuation import Mark, Status
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
+from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
 from fcm.response.result import Curve, Peak, Response
@@ -66,12 +71,16 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
 
     begin = time.perf_counter()
     system = System(scene, harmonics)
+    frequency = float(in_unit(omega, scene.frequency_unit))
+    parameters = {**scene.parameters, AT: frequency}
+    try:
+        system.rest  # noqa: B018  # computed, and kept
+    except RestError as error:
+        return replace(lost_curve(scene, str(error)), parameters=parameters, level=np.empty(0))
     # what folds back into the span from beyond it is part of the curve
     reach = (span[0], max(span[1], highest(system, omega)))
     path = level_curve(system, omega, reach, scene.max_step, (1.0, span[1]))
-    frequency = float(in_unit(omega, scene.frequency_unit))
     empty = lost_curve(scene, "no response was found at the least level")
-    parameters = {**scene.parameters, AT: frequency}
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
     if inside.size == 0:
         return replace(empty, parameters=parameters, level=np.empty(0))

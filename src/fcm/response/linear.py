@@ -39,9 +39,10 @@ def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> Com
     w = omega[:, None]
     compliance = 1.0 / ((natural - w) * (natural + w) + 1j * rate * w)
     G = np.einsum("ip,wi,iq->wpq", linear.ports, compliance, linear.ports, optimize=True)
-    external = (compliance * linear.force) @ linear.ports
+    force = linear.force + w**2 * linear.square
+    external = (compliance * force) @ linear.ports
     matrix = np.eye(springs.size) + G * springs
     ports = np.linalg.solve(matrix, external[..., None])[..., 0]
-    load = linear.force - (springs * ports) @ linear.ports.T
+    load = force - (springs * ports) @ linear.ports.T
     response: ComplexArray = (compliance * load) @ linear.dofs
     return response

@@ -75,9 +75,8 @@ def _unit(columns: FloatArray) -> FloatArray:
 
 
 def _directions(scene: Scene) -> FloatArray:
-    """Directions of all contacts and forces as columns, (dof, direction)."""
-    of_contacts = [d for c in scene.contacts for d in (c.tangential, c.normal)]
-    return np.array([*of_contacts, *(force.direction for force in scene.forces)]).T
+    """Directions of all contacts, forces and loads as columns, (dof, direction)."""
+    return np.array(scene.directions()).T
 
 
 def _linear_error(full: Scene, fewer: Scene) -> float:

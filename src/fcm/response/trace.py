@@ -14,6 +14,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, estimated
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
+from fcm.harmonic.rest import RestError
 from fcm.harmonic.stability import stability, with_points
 from fcm.harmonic.system import System
 from fcm.response.result import Curve, Peak
@@ -72,15 +73,18 @@ def wanted_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: flo
 
 def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     """The response curve of a scene without a sweep."""
+    from fcm.response.groups import lost_curve
+
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
     by_need = wanted.harmonics is None
-    found = accurate(system, wanted.accuracy) if by_need else estimated(system, np.inf)
+    try:
+        found = accurate(system, wanted.accuracy) if by_need else estimated(system, np.inf)
+    except RestError as nowhere:
+        return lost_curve(scene, str(nowhere))
     if wanted.table is not None:
         wanted.table.outside += getattr(system.coarse, "outside", 0)
     if not found.traced.branches.paths:
-        from fcm.response.groups import lost_curve
-
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else ''}")

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from fcm.harmonic.rest import ADRIFT, pushed_adrift
 from fcm.response.result import Curve, Response
 from fcm.response.trace import ResponseError
 from fcm.scene.model import Scene
+from fcm.structure.linear import linear_of
 
 POINTS = ("amplitude", "fundamental", "phase", "mean", "error")  # of curves, arrays over the dofs
 ORBITS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
@@ -17,14 +19,9 @@ CYCLES = ("displacement", "amplitude", "mean", "greatest", "least")  # of histor
 
 
 def check_solvable(scene: Scene) -> None:
-    """Raise ResponseError for what a scene may ask and no method here computes."""
-    unsolved = []
-    if scene.loads:
-        unsolved.append("[[load]]: static loads")
-    if any(force.power for force in scene.forces):
-        unsolved.append("force.proportional_to: forces in proportion to omega^2")
-    if unsolved:
-        raise ResponseError(f"{scene.name}: no method computes {' and '.join(unsolved)} yet")
+    """Raise ResponseError for what no method can compute: static loads that nothing holds."""
+    if any(curve.loads and pushed_adrift(linear_of(curve)) for curve in scene.each_curve()):
+        raise ResponseError(f"{scene.name}: load: {ADRIFT}")
 
 
 def visible(response: Response, scene: Scene) -> Response:

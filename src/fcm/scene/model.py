@@ -126,8 +126,11 @@ class Scene:
     def directions(self) -> list[FloatArray]:
         """The directions of all contacts, forces and loads, each (dof,)."""
         of_contacts = [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
-        of_forces = [force.direction for force in self.forces]
-        return [*of_contacts, *of_forces, *(load.direction for load in self.loads)]
+        return [*of_contacts, *self.pushes()]
+
+    def pushes(self) -> list[FloatArray]:
+        """The directions of all forces and loads, each (dof,)."""
+        return [*(force.direction for force in self.forces), *(load.direction for load in self.loads)]
 
     def _at(self, used: npt.NDArray[np.bool_], modals: dict[int, Modal]) -> Scene:
         contacts = tuple(

@@ -12,7 +12,7 @@ import numpy as np
 
 from fcm.motion.errors import SimulationError
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
-from fcm.response.groups import Group
+from fcm.response.groups import Group, lost_curve
 from fcm.response.result import INTERRUPTED, Curve, Response
 from fcm.response.trace import ResponseError
 from fcm.run import Checkpoint, Interrupted, Progress, Report, fingerprint
@@ -105,7 +105,10 @@ class ExactWork:
 
     def _curve(self, scene: Scene, report: Report) -> Curve:
         begin = time.perf_counter()
-        curve = _traced(scene, report) if self.at is None else _visited(scene, self.at, report)
+        try:
+            curve = _traced(scene, report) if self.at is None else _visited(scene, self.at, report)
+        except SimulationError as error:  # there is no rest to begin with
+            curve = lost_curve(scene, str(error))
         curve = replace(curve, seconds=time.perf_counter() - begin)
         if curve.reason.startswith(STOPPED):
             raise Interrupted([curve])

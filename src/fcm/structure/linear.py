@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.model import FloatArray, Scene
+from fcm.structure.loads import loads_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.rigid import settled
 
@@ -26,13 +27,17 @@ class Linear:
     ports: FloatArray  # (mode, port)
     dofs: FloatArray  # (mode, dof)
     force: npt.NDArray[np.complex128]  # (mode,) of x = Re(X exp(i omega t))
+    square: npt.NDArray[np.complex128]  # (mode,) times omega^2, beside the force
+    load: FloatArray  # (mode,) static
     flexibility: FloatArray  # (mode, mode) displacements under mean forces
     counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
     adrift: npt.NDArray[np.bool_]  # (mode,) rigid-body modes that no closed contact holds
 
     def receptance(self, harmonics: FloatArray) -> Receptance:
         """The structure seen from its ports at some harmonics."""
-        return Receptance(self.ports, self.natural, self.damping, self.force, self.static, harmonics)
+        seen = Receptance(self.ports, self.natural, self.damping, self.force, self.static, harmonics)
+        seen.grows(self.square)
+        return seen
 
     @cached_property
     def static(self) -> FloatArray:
@@ -66,7 +71,7 @@ class Linear:
         stiffness = (self.natural - omega) * (self.natural + omega)
         dynamic = stiffness + 2j * self.damping * self.natural * omega
         weighted = self.ports.T / np.where(dynamic == 0.0, 1j * LEAST_DAMPING * omega * omega, dynamic)
-        return weighted @ self.ports, weighted @ self.force
+        return weighted @ self.ports, weighted @ (self.force + omega * omega * self.square)
 
 
 def linear_of(scene: Scene) -> Linear:
@@ -75,9 +80,7 @@ def linear_of(scene: Scene) -> Linear:
     unit = 1.0 / np.sqrt(modal.mass)[:, None]
     directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
     ports = modal.shapes @ np.array(directions, dtype=np.float64).reshape(len(directions), len(modal.dofs)).T
-    total = np.zeros(len(modal.dofs), dtype=np.complex128)
-    for force in scene.forces:
-        total += force.direction * force.amplitude * np.exp(1j * (force.phase - 0.5 * np.pi))
+    loads = loads_of(scene)
     rigid = modal.frequency == 0.0
     k_v = np.array([c.k_v if rigid.any() else 0.0 for c in scene.contacts])
     ports = ports * unit
@@ -86,7 +89,9 @@ def linear_of(scene: Scene) -> Linear:
         damping=modal.damping,
         ports=np.ascontiguousarray(ports),
         dofs=np.ascontiguousarray(modal.shapes * unit),
-        force=(modal.shapes @ total) * unit[:, 0],
+        force=-1j * (modal.shapes @ loads.constant) * unit[:, 0],
+        square=-1j * (modal.shapes @ loads.square) * unit[:, 0],
+        load=(modal.shapes @ loads.static) * unit[:, 0],
         flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
         counted=k_v,
         adrift=adrift,

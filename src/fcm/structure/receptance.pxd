@@ -9,6 +9,12 @@ cdef class Receptance:
     cdef public double[:, ::1] shapes
     cdef public double[::1] force_re
     cdef public double[::1] force_im
+    cdef public double[::1] slope_re
+    cdef public double[::1] slope_im
+    cdef public double[::1] constant_re
+    cdef public double[::1] constant_im
+    cdef public double[::1] square_re
+    cdef public double[::1] square_im
     cdef public double[:, ::1] static
     cdef public double[:, ::1] c_re
     cdef public double[:, ::1] c_im
@@ -24,6 +30,7 @@ cdef class Receptance:
     cdef public double[::1] dX_im
     cdef public int driven
     cpdef int at(self, double omega) except -1
+    cdef void forces(self) noexcept
     cdef void compliances(self) noexcept
     cdef void sums(self, int j) noexcept
     cdef int large_sums(self) except -1

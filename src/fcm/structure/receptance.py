@@ -21,7 +21,8 @@ LEAST_DAMPING = 1e-9  # twice the damping ratio of an undamped mode exactly at i
 class Receptance:
     """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (port,) the answer to the
     external forces, which act at the harmonic number `driven` of the list; c, s (harmonic, mode) the
-    compliances of the modes and their derivatives; static (port, port) for mean forces."""
+    compliances of the modes and their derivatives; static (port, port) for mean forces; force_re, force_im,
+    slope_re, slope_im (mode,) the external forces at omega and their derivatives."""
 
     def __init__(
         self,
@@ -38,7 +39,10 @@ class Receptance:
         self.harmonics = np.array(harmonics, dtype=np.float64)
         self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
         self.shapes, self.static = np.ascontiguousarray(shapes), np.ascontiguousarray(static)
+        self.constant_re, self.constant_im = np.array(force.real), np.array(force.imag)
         self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
+        self.square_re, self.square_im = np.zeros(modes), np.zeros(modes)
+        self.slope_re, self.slope_im = np.zeros(modes), np.zeros(modes)
         self.c_re, self.c_im = np.zeros((count, modes)), np.zeros((count, modes))
         self.s_re, self.s_im = np.zeros((count, modes)), np.zeros((count, modes))
         self.G_re, self.G_im = np.zeros((count, ports, ports)), np.zeros((count, ports, ports))
@@ -47,6 +51,11 @@ class Receptance:
         self.dX_re, self.dX_im = np.zeros(ports), np.zeros(ports)
         where = [j for j in range(count) if harmonics[j] == 1.0]
         self.driven = where[0] if where else 0
+        self.omega = -1.0
+
+    def grows(self, square: npt.NDArray[np.complex128]) -> None:
+        """Add forces omega^2 square (mode,)."""
+        self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
     @cython.ccall
@@ -58,6 +67,7 @@ class Receptance:
             return 0
         self.omega = omega
         self.compliances()
+        self.forces()
         if self.modes * self.ports * self.ports > LARGE:
             self.large_sums()
         else:
@@ -65,6 +75,17 @@ class Receptance:
                 self.sums(j)
         self.external()
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def forces(self) -> cython.void:
+        """The external forces on the modes."""
+        i: cython.Py_ssize_t
+        w: cython.double = self.omega
+        for i in range(self.modes):
+            self.force_re[i] = self.constant_re[i] + w * w * self.square_re[i]
+            self.force_im[i] = self.constant_im[i] + w * w * self.square_im[i]
+            self.slope_re[i], self.slope_im[i] = 2.0 * w * self.square_re[i], 2.0 * w * self.square_im[i]
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -142,6 +163,8 @@ class Receptance:
             q_im: cython.double = self.c_re[j, i] * f_im + self.c_im[j, i] * f_re
             d_re: cython.double = self.s_re[j, i] * f_re - self.s_im[j, i] * f_im
             d_im: cython.double = self.s_re[j, i] * f_im + self.s_im[j, i] * f_re
+            d_re += self.c_re[j, i] * self.slope_re[i] - self.c_im[j, i] * self.slope_im[i]
+            d_im += self.c_re[j, i] * self.slope_im[i] + self.c_im[j, i] * self.slope_re[i]
             for k in range(self.ports):
                 self.X_re[k] += self.shapes[i, k] * q_re
                 self.X_im[k] += self.shapes[i, k] * q_im

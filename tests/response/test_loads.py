@@ -1,0 +1,246 @@
+"""What loads a structure beside harmonic forces: static loads, forces that grow as omega^2, a moving base."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import fcm
+from fcm.cli import main
+from fcm.harmonic.rest import RestError, rest_of
+from fcm.harmonic.system import System
+from fcm.motion import State, simulate
+from fcm.motion.energy import energy
+from fcm.orbit.shooting import Shooting
+from fcm.response import ResponseError, trace
+from fcm.response.level import trace_levels
+from fcm.response.linear import linear_response
+from fcm.scene import load_scene, scene_from_dict
+from fcm.scene.model import Force, Load
+
+from ..motion.reference import Law, integrate
+
+YANG = load_scene("yang1998-n5")
+U, V = np.eye(2)
+
+
+def loaded(scene=YANG, loads=(), **contact):
+    """With static loads (on u, on v), and a changed contact."""
+    found = tuple(Load(np.asarray(direction), force) for direction, force in loads)
+    return replace(scene, loads=found, contacts=(replace(scene.contacts[0], **contact),))
+
+
+def stiffness(scene):
+    """The static stiffness of the structure without contacts."""
+    modal = scene.modal
+    inverse = np.linalg.inv(modal.shapes)
+    return inverse @ np.diag(modal.mass * modal.frequency**2) @ inverse.T
+
+
+def growing(scene, omega_ref):
+    """With forces in proportion to omega^2 that have at one frequency the amplitudes that are constant."""
+    forces = [replace(one, amplitude=one.amplitude / omega_ref**2, power=2) for one in scene.forces]
+    return replace(scene, forces=tuple(forces))
+
+
+def same(one, other, rel=1e-8):
+    assert one.complete and other.complete
+    assert one.folds == pytest.approx(other.folds, rel=rel)
+    for dof, peak in one.peaks.items():
+        assert peak[:2] == pytest.approx(other.peaks[dof][:2], rel=rel)
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+def test_on_a_contact_that_always_sticks_a_static_load_is_linear_statics(harmonics):
+    scene = loaded(loads=[(U, 2.0), (V, -1.5)], n_0=1e3)
+    (curve,) = trace(scene, harmonics=harmonics).curves
+    held = np.linalg.solve(stiffness(scene) + np.diag([1.0, 1.0]), [2.0, -1.5])  # k_u = k_v = 1
+    assert curve.mean == pytest.approx(np.broadcast_to(held, curve.mean.shape), rel=1e-10)
+    same(curve, trace(loaded(n_0=1e3), harmonics=harmonics).curves[0])  # a linear response has no say in it
+    exact = fcm.respond(scene, "exact", at=[1.3])
+    assert exact["mean"].values[0, 0] == pytest.approx(held, rel=1e-9)
+
+
+@pytest.mark.parametrize("before, after", [(5.0, 12.0), (-5.0, 5.0), (12.0, 5.0), (5.0, -5.0)])
+def test_a_static_normal_load_is_another_preload(before, after):
+    """One that moves the structure along the contact's normal by s, against what the contact gains of it.
+
+    Then n_0 + k_v s is the preload of the displacements counted from there.
+    """
+    s = after - before  # k_v = 1
+    force = stiffness(YANG) @ [0.0, s] + [0.0, max(after, 0.0) - max(before, 0.0)]
+    scene = loaded(loads=[(U, force[0]), (V, force[1])], n_0=before)
+    (shifted,), (plain,) = trace(scene, harmonics=3).curves, trace(loaded(n_0=after), harmonics=3).curves
+    same(shifted, plain)
+    assert shifted.folds or after == 12.0
+    top = [int(np.nanargmax(one.amplitude[:, 0])) for one in (shifted, plain)]
+    assert shifted.mean[top[0]] == pytest.approx(plain.mean[top[1]] + [0.0, s], rel=1e-6)
+    if after == 12.0:
+        exact, other = (fcm.respond(one, "exact", at=[1.35]) for one in (scene, loaded(n_0=after)))
+        assert exact.amplitude.values == pytest.approx(other.amplitude.values, rel=1e-9)
+
+
+def test_a_load_that_makes_the_contact_slip_counts_with_its_friction_in_the_mean():
+    """At rest the sum of all forces vanishes, also where friction is at its limit."""
+    for loads in ([(U, 20.0), (V, 3.0)], [(V, -40.0)], [(U, -1.0), (V, 2.0)]):
+        scene = loaded(loads=loads)
+        q, friction = rest_of(scene)
+        law, y = Law(replace(scene, forces=()), 1.0), np.append(np.concatenate((q, 0.0 * q)), 0.0)
+        load = max(5.0 + law.V[0] @ q, 0.0)
+        assert abs(friction[0]) <= 0.4 * load * (1.0 + 1e-12)
+        y[-1] = law.U[0] @ q - friction[0]  # k_u = 1
+        state = "E" if load > 0.0 else "S"
+        assert law.rhs(0.0, y, [state]) == pytest.approx(np.zeros(y.size), abs=1e-12)
+    assert State.rest(scene).q == pytest.approx(q)
+
+
+@pytest.mark.parametrize("method", ["closed-form", "exact"])
+def test_a_force_that_grows_is_at_one_frequency_a_constant_one(method):
+    omega = 1.3
+    narrow = replace(YANG, frequency_range=(omega, 1.5))
+    ends = []
+    for scene in (narrow, growing(narrow, omega)):
+        found = fcm.respond(scene, method, harmonics=[1, 2, 3] if method != "exact" else None)
+        at = int(np.argmin(np.abs(found.frequency.values[0] - omega)))
+        assert float(found.frequency[0, at]) == omega
+        ends.append(found.amplitude.values[0, at])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+def test_derivatives_by_the_frequency_know_that_forces_grow():
+    scene = loaded(growing(YANG, 1.0), [(U, 0.5), (V, 1.0)])
+    balance = System(scene, (1, 2, 3)).balance()
+    z = np.append(np.random.default_rng(1).normal(size=balance.unknowns), 1.2)
+    step = 1e-6 * np.eye(z.size)[-1]
+    balance.evaluate(z)
+    by_frequency, sides, shown = np.array(balance.jacobian)[:, -1], [], []
+    balance.report(z, np.eye(z.size)[-1])
+    growth = np.array(balance.growth)
+    for sign in (1.0, -1.0):
+        balance.evaluate(z + sign * step)
+        balance.report(z + sign * step, 0.0 * z)
+        sides.append(np.array(balance.residual))
+        shown.append(np.array(balance.output))
+    assert by_frequency == pytest.approx((sides[0] - sides[1]) / 2e-6, rel=1e-6, abs=1e-6)
+    assert growth == pytest.approx((shown[0] - shown[1]) / 2e-6, rel=1e-5, abs=1e-6)
+    problem, x = Shooting(scene), np.array([3.0, 1.0, 2.0, -4.0, 0.5])
+    ends = [problem.residual(x, 1.2 + h) for h in (0.0, 1e-6, -1e-6)]
+    assert ends[0].by_frequency == pytest.approx((ends[1].gap - ends[2].gap) / 2e-6, rel=1e-5, abs=1e-5)
+
+
+def test_the_exact_motion_under_all_of_them_is_that_of_an_ordinary_solver():
+    scene = loaded(growing(YANG, 1.5), [(U, 0.8), (V, 2.0)])
+    scene = replace(scene, forces=(*scene.forces, Force(V, 0.7, 0.4)))
+    times = np.linspace(0.0, 3.0 * 2.0 * np.pi / 1.2, 40)
+    motion = simulate(scene, 1.2, 3, State(np.zeros(2), np.zeros(2), np.zeros(1)))  # loaded all at once
+    assert motion.displacement(times) == pytest.approx(integrate(scene, 1.2, 3, times), abs=1e-8)
+    assert energy(motion).error < 1e-12
+
+
+def test_many_harmonics_come_to_the_exact_motion_under_static_and_growing_loads():
+    scene = loaded(growing(YANG, 1.2), [(U, 0.5), (V, 3.0)])
+    many, exact = trace(scene, harmonics=9).curves[0], fcm.respond(scene, "exact")
+    assert sorted(many.folds) == pytest.approx(sorted(exact.fold_frequency.values[0]), rel=1e-4)
+    assert np.nanmax(many.amplitude, axis=0) == pytest.approx(
+        exact.amplitude.max("point").values[0], rel=1e-3
+    )
+    (one,) = trace(scene, harmonics=1).curves
+    true = float(exact.amplitude.sel(dof="u").max())
+    assert 0.3 < one.peaks["u"].error / abs(one.peaks["u"].amplitude / true - 1.0) < 3.0  # and says so
+    assert {0.0, 1.0} <= set(many.stable[np.isfinite(many.stable)])  # the branch between the folds is not
+
+
+def test_static_loads_do_not_scale_with_the_level():
+    scene = loaded(growing(YANG, 1.2), [(U, 0.5), (V, 3.0)])
+    (curve,) = trace_levels(scene, [1.2], (0.0, 1.0), harmonics=3).curves
+    at_rest = scene.modal.shapes.T @ rest_of(scene)[0]
+    assert curve.level[0] <= 1e-3 and curve.mean[0] == pytest.approx(at_rest, rel=1e-3)
+    (narrow,) = trace(replace(scene, frequency_range=(1.2, 1.25)), harmonics=3).curves
+    ends = [narrow.amplitude[i] for i in np.flatnonzero(narrow.frequency == 1.2)]
+    passing = curve.amplitude[curve.level == 1.0]
+    assert len(ends) and all(np.abs(passing - end).max(axis=1).min() < 1e-7 for end in ends)
+
+
+BODY = {"dofs": ["x", "y"], "mass": [1.0, 1.0], "frequency": [0.5, 0.0], "damping": [0.02, 0.0],
+        "shapes": [[1.0, 0.0], [0.0, 1.0]]}  # fmt: skip
+CONTACT = {"name": "c", "tangential": "x", "normal": "y", "mu": 0.4, "k_u": 1.0, "k_v": 2.0}
+
+
+def body(load, modal=BODY, **contact):
+    return {
+        "modal": modal,
+        "contact": [CONTACT | contact],
+        "force": [{"dof": "x", "amplitude": 1.0}, {"dof": "y", "amplitude": 0.5}],
+        "load": [{"dof": dof, "force": force} for dof, force in load.items()],
+        "response": {"frequency": [0.3, 1.7], "max_step": 0.2, "harmonics": 1},
+    }
+
+
+@pytest.mark.parametrize("before", [-3.0, 1.0])
+def test_a_free_body_that_a_load_presses_onto_a_contact(before):
+    """Beside its gap it has no place of its own; the load moves it until the contact bears that."""
+    modal = BODY | {"frequency": [0.0, 2.0], "damping": [0.02, 0.02], "shapes": [[0.8, 0.3], [-0.3, 0.9]]}
+    after, k_v = 20.0, 1.0
+    s = (after - before) / k_v
+    free = scene_from_dict(body({"x": 1.0}, modal, n_0=before, k_v=k_v))
+    force = stiffness(free) @ [0.0, s] + [0.0, after - max(before, 0.0)]
+    scene = scene_from_dict(body(dict(zip("xy", force, strict=True)), modal, n_0=before, k_v=k_v))
+    (curve,), (plain,) = (
+        trace(each).curves for each in (scene, scene_from_dict(body({}, modal, n_0=after, k_v=k_v)))
+    )
+    same(curve, plain)
+    q, friction = rest_of(scene)
+    assert scene.modal.shapes.T @ q == pytest.approx([0.0, s], abs=1e-9)
+    assert friction == pytest.approx([0.0], abs=1e-9)
+
+
+def test_what_nothing_can_hold_is_refused_in_plain_words(tmp_path):
+    adrift = BODY | {"frequency": [0.0, 0.0], "damping": 0.0}
+    with pytest.raises(ResponseError, match="push the structure along a rigid-body mode that no contact"):
+        fcm.respond(scene_from_dict(body({"x": 0.1}, adrift, n_0=5.0)))
+    pulled = scene_from_dict(body({"y": -6.0}, n_0=1.0))  # off its contact
+    with pytest.raises(RestError, match="no equilibrium"):
+        rest_of(pulled)
+    (curve,) = trace(pulled).curves
+    assert not curve.complete and "no equilibrium with the static loads" in curve.reason
+    path = tmp_path / "pulled.toml"
+    path.write_text(
+        '[modal]\ndofs = ["x", "y"]\nmass = [1, 1]\nfrequency = [0.5, 0]\ndamping = [0.02, 0]\n'
+        "shapes = [[1, 0], [0, 1]]\n[[contact]]\nname = 'c'\ntangential = 'x'\nnormal = 'y'\nmu = 0.4\n"
+        "k_u = 1\nk_v = 2\nn_0 = 1\n[[force]]\ndof = 'x'\namplitude = 1\n[[load]]\ndof = 'y'\nforce = -6\n"
+        "[response]\nfrequency = [0.3, 2]\n[[schedule]]\nfrequency = 1\ncycles = 3\n"
+    )
+    for options in ([], ["--method", "exact"], ["--method", "exact", "--at", "1"]):
+        result = CliRunner().invoke(main, ["respond", str(path), "-o", str(tmp_path / "a.nc"), *options])
+        assert result.exit_code == 3 and "no equilibrium" in result.output
+
+
+def test_a_moving_base_is_the_forces_of_inertia():
+    """-M d a on the relative displacements: here with a full mass matrix, a contact, and slip."""
+    M, K = np.array([[2.0, 0.3], [0.3, 1.0]]), np.array([[3.0, -1.0], [-1.0, 2.0]])
+    contact = [
+        {"name": "c", "tangential": "1x", "normal": "1y", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 2.0}
+    ]
+    table = {"dofs": ["1x", "1y"], "mass": M.tolist(), "stiffness": K.tolist(), "damping": 0.01}
+    top = {"structure": table, "contact": contact, "response": {"frequency": [0.6, 2.2], "harmonics": 3}}
+    push = -M @ [1.0, 0.0] * 1.5
+    forces = [
+        {"dof": dof, "amplitude": f, "phase": "30deg"} for dof, f in zip(table["dofs"], push, strict=True)
+    ]
+    based = top | {"base": {"acceleration": 1.5, "direction": "x", "phase": "30deg"}}
+    (one,), (other,) = (trace(scene_from_dict(each)).curves for each in (based, top | {"force": forces}))
+    assert one.complete and one.folds == pytest.approx(other.folds, rel=1e-8)
+    assert np.ptp([len(set(row[0])) for row in one.regime]) > 0  # it slips somewhere
+    for dof in table["dofs"]:
+        assert one.peaks[dof][:2] == pytest.approx(other.peaks[dof][:2], rel=1e-8)
+
+
+def test_the_linear_response_grows_with_the_forces():
+    scene = growing(YANG, 1.0)
+    springs = np.array([1.0, 1.0])
+    for omega in (0.8, 1.7):
+        one, other = (linear_response(each, np.array([omega]), springs) for each in (scene, YANG))
+        assert one == pytest.approx(omega**2 * other, rel=1e-12)
