@@ -285,7 +285,7 @@ class Front:
     def crosses(self) -> cython.bint:
         """Whether a margin changes sign from here to there."""
         k: cython.Py_ssize_t
-        for k in range(self.problem.margins):  # noqa: SIM110 - a loop in C
+        for k in range(self.problem.margins):
             if self.here.margin[k] * self.margin(k, self.there) < 0.0:
                 return True
         return False

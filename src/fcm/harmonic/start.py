@@ -80,7 +80,8 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
     G, X = system.linear.at(omega)
     closed = np.repeat(loads_at_rest(system) > 0.0, 2)
     for share in (closed, np.ones_like(closed), np.zeros_like(closed)):
-        ports = np.linalg.solve(np.eye(X.size) + G * (system.springs(stuck=True) * share), level * X)
+        stuck = np.eye(X.size) + G * (system.springs(stuck=True) * share)
+        ports = np.linalg.solve(stuck, level * X).astype(np.complex128)
         yield _unknowns(system.rest, ports, len(system.harmonics), system.harmonics.index(1))
 
 

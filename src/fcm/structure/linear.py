@@ -58,7 +58,7 @@ class Linear:
         ports, dofs = self.ports, self.dofs
         shares = np.zeros((ports.shape[1], dofs.shape[1]))
         if ports.size:
-            shares = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
+            shares[:] = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
         shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
         size = np.abs(dofs).max(axis=0, initial=0.0)
         off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
@@ -70,7 +70,8 @@ class Linear:
         """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
         stiffness = (self.natural - omega) * (self.natural + omega)
         dynamic = stiffness + 2j * self.damping * self.natural * omega
-        weighted = self.ports.T / np.where(dynamic == 0.0, 1j * LEAST_DAMPING * omega * omega, dynamic)
+        safe = np.where(dynamic == 0.0, 1j * LEAST_DAMPING * omega * omega, dynamic)
+        weighted = (self.ports.T / safe).astype(np.complex128)
         return weighted @ self.ports, weighted @ (self.force + omega * omega * self.square)
 
 

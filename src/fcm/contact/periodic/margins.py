@@ -28,14 +28,13 @@ if cython.compiled:
         LOAD_RATE,
         MIXED,
         OPEN,
-        REACH,
         UNKNOWN,
     )
 else:
     from fcm.contact.periodic.crossings import Crossings
     from fcm.contact.periodic.cycle import STUCK, Cycle
     from fcm.contact.periodic.events import BOTTOM, TOP
-    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, REACH, UNKNOWN
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN
 
 CLOSES = cython.declare(cython.int, 0)  # kinds of margins
 OPENS = cython.declare(cython.int, 1)
