@@ -101,7 +101,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
 def located(front: Front, kind: int, k: int, limit: float, mark: int) -> list[Found]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     at = root(front, kind, k, front.step)
-    return [found(front, at, mark, front.between)] if at <= limit and front.put(at) else []
+    return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
 
 
 @cython.cfunc
@@ -131,9 +131,9 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     count: cython.int
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
-        if high - low <= FINE * step or not low < at < high or not front.put(at):
+        if high - low <= FINE * step or not low < at < high or not front.put(at, kind == MARGIN, False):
             return high
-        if kind != MARGIN and not front.sharpen():
+        if kind != MARGIN and not front.sharpen(False, kind == PEAK):
             return high
         now = value(front, front.between, kind, k)
         if now == 0.0:

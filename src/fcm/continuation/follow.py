@@ -172,8 +172,9 @@ class _Follower:
                 return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if front.crosses():
-                    if front.missed < 1.0:
-                        return self.corner()
+                    status = self.corner() if front.missed < 1.0 else Status.STALLED
+                    if status is not Status.STALLED:
+                        return status
                 elif reach >= step and self.good():
                     return self.smooth()
             # the curve may turn back in a corner, so that nothing is to be found beyond
@@ -214,7 +215,10 @@ class _Follower:
 
     @cython.cfunc
     def corner(self) -> object:
-        """Go on from the first corner of the step, in the direction that the curve has beyond."""
+        """Go on from the first corner of the step, in the direction that the curve has beyond.
+
+        STALLED where the curve is not found up to there.
+        """
         front: Front = self.front
         led: cython.double = front.step
         at, which = events.first_margin(front)
@@ -222,17 +226,16 @@ class _Follower:
             return Status.STALLED
         if self.keep(front.step):
             return self.end()
-        if not front.put(at):
-            return Status.STALLED
+        place: Place = front.between if front.put(at, True, True) else front.there
         self.repeated = self.repeated + 1 if at < SHARP * led else 0
-        point = events.found(front, at, Mark.CORNER, front.between)
-        same = front.partner(which, front.between.kind, front.between.angle)
+        point = events.found(front, at, Mark.CORNER, place)
+        same = front.partner(which, place.kind, place.angle)
         if same >= 0:
-            front.between.margin[same] = front.here.margin[which]
-        front.between.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
-        front.between.growth[:] = front.there.growth
-        front.between.orientation = front.there.orientation
-        front.accept(front.between, at)
+            place.margin[same] = front.here.margin[which]
+        place.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
+        place.growth[:] = front.there.growth
+        place.orientation = front.there.orientation
+        front.accept(place, at)
         return self.turn(same, point)
 
     @cython.cfunc

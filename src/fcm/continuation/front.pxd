@@ -26,7 +26,7 @@ cdef class Front:
     cdef double[::1] guess
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
     cpdef bint go(self, double step) except -1
-    cpdef bint put(self, double at) except -1
+    cpdef bint put(self, double at, bint margins, bint outputs) except -1
     cpdef bint land(self, double parameter) except -1
     cpdef int accept(self, Place place, double length) except -1
     cpdef double ahead(self, double step) except -1
@@ -34,14 +34,15 @@ cdef class Front:
     cpdef bint crosses(self) except -1
     cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
     cpdef double margin(self, Py_ssize_t k, Place place) except -1e300
-    cpdef bint sharpen(self) except -1
+    cpdef bint sharpen(self, bint margins, bint outputs) except -1
     cpdef bint shorten(self, double at) except -1
     cpdef double length(self, Place place) except -1e300
     cpdef double extent(self) except -1
     cpdef double unforeseen(self) except -1
-    cdef bint crossed(self) noexcept
+    cdef bint crossed(self, double step) except -1
+    cdef double value(self, Py_ssize_t k) noexcept
     cdef bint sought(self, double step) except -1
-    cdef int record(self, Place place) except -1
+    cdef int record(self, Place place, bint margins, bint outputs) except -1
     cdef void predict(self, double step) noexcept
     cdef void interpolate(self, double at) noexcept
 

@@ -63,7 +63,7 @@ class Front:
         self.newton.scale[:] = self.problem.scale
         if not self.newton.correct(1.0):
             return 0
-        self.record(self.here)
+        self.record(self.here, True, True)
         self.bend[:] = 0.0
         return 1
 
@@ -72,36 +72,52 @@ class Front:
     def ahead(self, step: cython.double) -> cython.double:
         """The step, or where on it the prediction comes to the first change of sign of a margin: of which."""
         count: cython.int
+        at: cython.double
+        before: cython.double
+        after: cython.double
         low: cython.double = 0.0
         high: cython.double = step
-        if self.problem.margins == 0:
+        width: cython.double = 2.0 * step
+        aside: cython.double = KNOWN / 3.0  # of the root, to come to either side of it
+        if self.problem.margins == 0 or not self.crossed(step):
             return step
-        self.predict(step)
-        self.problem.bound(self.guess)
-        if not self.crossed():
-            return step
-        for count in range(LOOKS):  # noqa: B007
+        before, after = self.here.margin[self.which], self.value(self.which)
+        for count in range(LOOKS):
             if high - low < KNOWN * high:
                 break
-            self.predict(0.5 * (low + high))
-            self.problem.bound(self.guess)
-            if self.crossed():
-                high = 0.5 * (low + high)
+            at = (low * after - high * before) / (after - before) + aside * high
+            if not low < at < high or (count % 3 == 2 and high - low > 0.5 * width):
+                at = 0.5 * (low + high)
+            width = high - low if count % 3 == 0 else width
+            which: cython.Py_ssize_t = self.which
+            if self.crossed(at):
+                high, after, aside = at, self.value(self.which), -KNOWN / 3.0
+                before = before if which == self.which else -after  # of another: by halves at first
             else:
-                low = 0.5 * (low + high)
+                low, aside = at, KNOWN / 3.0
+                before = self.value(which) or before
         return high
 
     @cython.cfunc
-    @cython.exceptval(check=False)
-    def crossed(self) -> cython.bint:
-        """Whether a margin has the other sign at the guess than here; which is then one of those."""
+    @cython.exceptval(-1, check=False)
+    def crossed(self, step: cython.double) -> cython.bint:
+        """Whether the prediction a step ahead has a margin of the other sign than here; which is then one
+        of those."""
         k: cython.Py_ssize_t
+        self.predict(step)
+        self.problem.bound(self.guess)
         for k in range(self.problem.margins):
-            i: cython.Py_ssize_t = self.partner(k, self.problem.kind, self.problem.angle)
-            if i >= 0 and self.problem.margin[i] * self.here.margin[k] < 0.0:
+            if self.value(k) * self.here.margin[k] < 0.0:
                 self.which = k
                 return True
         return False
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def value(self, k: cython.Py_ssize_t) -> cython.double:
+        """The margin last asked for that is the one with number k here; 0 if none is."""
+        i: cython.Py_ssize_t = self.partner(k, self.problem.kind, self.problem.angle)
+        return self.problem.margin[i] if i >= 0 else 0.0
 
     @cython.ccall
     @cython.exceptval(-2, check=False)
@@ -143,7 +159,7 @@ class Front:
             self.turn += self.here.tangent[i] * self.newton.tangent[i]
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
         self.step, self.missed = step, sqrt(missed) / step
-        self.record(self.there)
+        self.record(self.there, True, True)
         return True
 
     @cython.cfunc
@@ -168,14 +184,14 @@ class Front:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def put(self, at: cython.double) -> cython.bint:
-        """Find the place between here and there at a length from here."""
+    def put(self, at: cython.double, margins: cython.bint, outputs: cython.bint) -> cython.bint:
+        """Find the place between here and there at a length from here, with its margins, its outputs."""
         self.interpolate(at)
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
         if not self.newton.correct(at):
             return False
-        self.record(self.between)
+        self.record(self.between, margins, outputs)
         return True
 
     @cython.ccall
@@ -192,7 +208,7 @@ class Front:
         if not self.newton.correct(self.step) or self.newton.moved > self.step:
             return False
         self.newton.z[n] = parameter
-        self.record(self.between)
+        self.record(self.between, False, False)
         return True
 
     @cython.ccall
@@ -230,14 +246,14 @@ class Front:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def sharpen(self) -> cython.bint:
+    def sharpen(self, margins: cython.bint, outputs: cython.bint) -> cython.bint:
         """Give the place between here and there the direction that it has exactly there.
 
         That of the corrector is from before its last step.
         """
         if not self.newton.look():
             return False
-        self.record(self.between)
+        self.record(self.between, margins, outputs)
         return True
 
     @cython.ccall
@@ -246,7 +262,7 @@ class Front:
         """Make the place at a length from here the one there, with the direction that it has exactly
         there."""
         i: cython.Py_ssize_t
-        if not self.put(at) or not self.sharpen():
+        if not self.put(at, False, False) or not self.sharpen(True, True):
             return False
         self.step, self.turn = at, 0.0
         for i in range(self.here.tangent.shape[0]):
@@ -326,17 +342,18 @@ class Front:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def record(self, place: Place) -> cython.int:
-        """The corrector's result as a place."""
+    def record(self, place: Place, margins: cython.bint, outputs: cython.bint) -> cython.int:
+        """The corrector's result as a place, with its margins, its outputs."""
         i: cython.Py_ssize_t
         place.z[:] = self.newton.z
         place.tangent[:] = self.newton.tangent
         place.orientation = self.newton.orientation
-        self.problem.bound(place.z)
-        place.margin[:] = self.problem.margin
-        place.kind[:] = self.problem.kind
-        place.angle[:] = self.problem.angle
-        if self.problem.outputs:
+        if margins and self.problem.margins:
+            self.problem.bound(place.z)
+            place.margin[:] = self.problem.margin
+            place.kind[:] = self.problem.kind
+            place.angle[:] = self.problem.angle
+        if outputs and self.problem.outputs:
             for i in range(place.z.shape[0]):
                 self.guess[i] = self.newton.scale[i] * place.tangent[i]
             self.problem.report(place.z, self.guess)

@@ -18,11 +18,15 @@ cdef class Displacements:
     cdef public double[::1] growth
     cdef double[:, ::1] cosine
     cdef double[:, ::1] sine
+    cdef double[::1] wave
+    cdef double[::1] c
+    cdef double[::1] s
+    cdef double value
+    cdef double rate
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
     cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
     cdef void single(self, Py_ssize_t d) noexcept
     cdef void several(self, Py_ssize_t d) noexcept
-    cdef double refined(self, Py_ssize_t d, double theta) noexcept
-    cdef double value(self, Py_ssize_t d, double theta) noexcept
-    cdef double rate(self, Py_ssize_t d, double theta) noexcept
+    cdef void extreme(self, Py_ssize_t d, Py_ssize_t k) noexcept
+    cdef void turn(self, double theta) noexcept

@@ -10,7 +10,8 @@ from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance
 
 SAMPLES = 12  # for each period of the highest harmonic, among which the extremes are sought
-REFINED = 4  # Newton steps from the greatest sample to the extreme
+REFINED = cython.declare(cython.int, 4)  # Newton steps from the greatest sample to the extreme, at most
+CLOSE = cython.declare(cython.double, 1e-9)  # [rad] the last of them, at which the value errs by its square
 
 
 @cython.cclass
@@ -33,7 +34,9 @@ class Displacements:
         harmonics = np.asarray(seen.harmonics)
         self.samples = int(SAMPLES * harmonics[count - 1]) if count > 1 else 0
         theta = 2.0 * np.pi * np.arange(self.samples) / self.samples
-        self.cosine, self.sine = np.cos(np.outer(theta, harmonics)), np.sin(np.outer(theta, harmonics))
+        self.cosine, self.sine = np.cos(np.outer(harmonics, theta)), np.sin(np.outer(harmonics, theta))
+        self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
+        self.value = self.rate = 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -157,59 +160,64 @@ class Displacements:
         j: cython.int
         highest: cython.Py_ssize_t = 0
         lowest: cython.Py_ssize_t = 0
-        most: cython.double = -1e300
-        least: cython.double = 1e300
         for k in range(self.samples):
-            x: cython.double = 0.0
-            for j in range(self.seen.count):
-                x += self.re[j, d] * self.cosine[k, j] - self.im[j, d] * self.sine[k, j]
-            if x > most:
-                most, highest = x, k
-            if x < least:
-                least, lowest = x, k
-        step: cython.double = 6.283185307179586 / self.samples
-        top: cython.double = self.refined(d, highest * step)
-        bottom: cython.double = self.refined(d, lowest * step)
-        self.amplitude[d] = 0.5 * (self.value(d, top) - self.value(d, bottom))
-        self.growth[d] = 0.5 * (self.rate(d, top) - self.rate(d, bottom))
+            self.wave[k] = 0.0
+        for j in range(self.seen.count):
+            re: cython.double = self.re[j, d]
+            im: cython.double = self.im[j, d]
+            for k in range(self.samples):
+                self.wave[k] += re * self.cosine[j, k] - im * self.sine[j, k]
+        for k in range(1, self.samples):
+            if self.wave[k] > self.wave[highest]:
+                highest = k
+            if self.wave[k] < self.wave[lowest]:
+                lowest = k
+        self.extreme(d, highest)
+        self.amplitude[d], self.growth[d] = 0.5 * self.value, 0.5 * self.rate
+        self.extreme(d, lowest)
+        self.amplitude[d] -= 0.5 * self.value
+        self.growth[d] -= 0.5 * self.rate
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def refined(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
-        """The extreme next to an angle."""
+    def extreme(self, d: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
+        """`value` at the extreme next to a sample, and the `rate` of that."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
-        first: cython.double = theta
+        theta: cython.double = k * step
+        slope: cython.double
+        curvature: cython.double
         for _ in range(REFINED):
-            slope: cython.double = 0.0
-            curvature: cython.double = 0.0
+            self.turn(theta)
+            slope = curvature = 0.0
             for j in range(self.seen.count):
                 h: cython.double = self.seen.harmonics[j]
-                c: cython.double = cos(h * theta)
-                s: cython.double = sin(h * theta)
-                slope -= h * (self.re[j, d] * s + self.im[j, d] * c)
-                curvature -= h * h * (self.re[j, d] * c - self.im[j, d] * s)
+                slope -= h * (self.re[j, d] * self.s[j] + self.im[j, d] * self.c[j])
+                curvature -= h * h * (self.re[j, d] * self.c[j] - self.im[j, d] * self.s[j])
             if curvature == 0.0 or fabs(slope) > fabs(curvature) * step:
-                return first
+                theta = k * step
+                break
             theta -= slope / curvature
-        return theta
+            if fabs(slope) < fabs(curvature) * CLOSE:
+                break
+        self.turn(theta)
+        self.value = self.rate = 0.0
+        for j in range(self.seen.count):
+            self.value += self.re[j, d] * self.c[j] - self.im[j, d] * self.s[j]
+            self.rate += self.d_re[j, d] * self.c[j] - self.d_im[j, d] * self.s[j]
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def value(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
+    def turn(self, theta: cython.double) -> cython.void:
+        """c, s (harmonic,): cosine and sine of each harmonic at an angle."""
+        c_1: cython.double = cos(theta)
+        s_1: cython.double = sin(theta)
+        c: cython.double = 1.0
+        s: cython.double = 0.0
+        h: cython.int = 0
         j: cython.int
-        x: cython.double = 0.0
         for j in range(self.seen.count):
-            h: cython.double = self.seen.harmonics[j]
-            x += self.re[j, d] * cos(h * theta) - self.im[j, d] * sin(h * theta)
-        return x
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def rate(self, d: cython.Py_ssize_t, theta: cython.double) -> cython.double:
-        j: cython.int
-        x: cython.double = 0.0
-        for j in range(self.seen.count):
-            h: cython.double = self.seen.harmonics[j]
-            x += self.d_re[j, d] * cos(h * theta) - self.d_im[j, d] * sin(h * theta)
-        return x
+            while h < self.seen.harmonics[j]:
+                c, s = c * c_1 - s * s_1, s * c_1 + c * s_1
+                h += 1
+            self.c[j], self.s[j] = c, s
