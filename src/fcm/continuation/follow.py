@@ -111,8 +111,8 @@ class _Follower:
     trail: Trail
     greatest: FloatArray
     most: cython.double[::1]  # the same
-    start: FloatArray
-    heading: FloatArray
+    first: cython.double[::1]  # point,
+    head: cython.double[::1]  # and its tangent
     interior: cython.bint
     repeated: cython.int  # corners at one point
     progress: Progress | None
@@ -144,7 +144,7 @@ class _Follower:
             return self.path(Status.STALLED)
         here.z[self.n] = start[-1]
         self.interior = self.low < start[-1] < self.high
-        self.start, self.heading = np.array(here.z), np.array(here.tangent)
+        self.first, self.head = np.array(here.z), np.array(here.tangent)
         self.size = self.front.extent()
         self.trail.add(here, self.front.newton.scale, 0 if self.interior else END, self.front.there.shift)
         self.step = min(FIRST, self.max_step)
@@ -153,7 +153,7 @@ class _Follower:
             if status is not None:
                 return self.path(status)
             if self.progress is not None and count % 16 == 0:
-                self.progress(abs(here.z[self.n] - self.start[-1]) / (self.high - self.low))
+                self.progress(abs(here.z[self.n] - self.first[self.n]) / (self.high - self.low))
         return self.path(Status.TOO_LONG)
 
     @cython.cfunc
@@ -274,7 +274,7 @@ class _Follower:
     @cython.cfunc
     def end(self) -> object:
         """The status of a curve that has left its range."""
-        back = not self.interior and self.trail.last()[-1] == self.start[-1]
+        back = not self.interior and self.trail.last()[-1] == self.first[self.n]
         return Status.RETURNED if back else Status.COMPLETE
 
     @cython.cfunc
@@ -282,13 +282,24 @@ class _Follower:
     def closed(self) -> cython.bint:
         """Whether the step passes the point where the curve began, in the same direction."""
         front: Front = self.front
-        scale = np.asarray(front.newton.scale)
-        before = (np.asarray(front.here.z) - self.start) / scale
-        after = (np.asarray(front.there.z) - self.start) / scale
-        if min(np.linalg.norm(before), np.linalg.norm(after)) > front.step:
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.n + 1
+        before: cython.double = 0.0
+        after: cython.double = 0.0
+        far: cython.double = 0.0
+        farther: cython.double = 0.0
+        along: cython.double = 0.0
+        for i in range(size):
+            one: cython.double = (front.here.z[i] - self.first[i]) / front.newton.scale[i]
+            other: cython.double = (front.there.z[i] - self.first[i]) / front.newton.scale[i]
+            far += one * one
+            farther += other * other
+            before += one * self.head[i]
+            after += other * self.head[i]
+            along += front.here.tangent[i] * self.head[i]
+        if sqrt(min(far, farther)) > front.step:
             return False
-        passes = before @ self.heading < 0.0 <= after @ self.heading
-        return bool(passes and np.asarray(front.here.tangent) @ self.heading > 0.5)
+        return before < 0.0 <= after and along > 0.5
 
     @cython.cfunc
     @cython.exceptval(check=False)

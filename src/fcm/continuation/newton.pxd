@@ -12,9 +12,12 @@ cdef class Newton:
     cdef public double moved
     cdef public int evaluations
     cdef double[::1] guess
+    cdef double[::1] delta
+    cdef double[::1] closing
     cpdef bint correct(self, double reach) except -1
     cpdef bint look(self) except -1
     cdef bint factor(self) except -1
+    cdef int solve(self) except -1
     cdef double step(self) except -1
     cdef bint direct(self) except -1
     cdef double rounding(self) except -1

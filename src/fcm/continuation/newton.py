@@ -36,7 +36,8 @@ class Newton:
     def __init__(self, problem: Problem) -> None:
         size = problem.unknowns + 1
         self.problem = problem
-        self.solver = Solver(size)
+        self.solver = Solver(problem.rank + 1 if problem.rank else size)
+        self.delta, self.closing = np.zeros(size), np.zeros(size)
         self.z, self.guess = np.zeros(size), np.zeros(size)
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
         self.orientation, self.moved = 0.0, 0.0
@@ -64,7 +65,7 @@ class Newton:
             if not step < FAR or (count > 2 and step > 2.0 * before):
                 return False
             for i in range(size):
-                self.z[i] += self.scale[i] * self.solver.right[i]
+                self.z[i] += self.scale[i] * self.delta[i]
             ratio = step / before
             # the first step says nothing of the convergence yet
             if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
@@ -91,6 +92,11 @@ class Newton:
         unit: cython.double
         self.problem.evaluate(self.z)
         self.evaluations += 1
+        if self.problem.rank:
+            for i in range(n + 1):
+                self.closing[i] = self.row[i] / self.scale[i]
+            self.problem.condense(self.closing, self.solver.matrix)
+            return self.solver.factor()
         for i in range(n):
             unit = 1.0 / self.scale[i]
             for j in range(n + 1):
@@ -101,20 +107,40 @@ class Newton:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
+    def solve(self) -> cython.int:
+        """Replace delta, a right side, by the solution of the system as it is factored."""
+        i: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.problem.unknowns
+        if not self.problem.rank:
+            self.solver.right[:] = self.delta
+            self.solver.solve()
+            self.delta[:] = self.solver.right
+            return 0
+        for i in range(n):
+            self.delta[i] *= self.scale[i]
+        self.problem.shorten(self.delta, self.solver.right)
+        self.solver.solve()
+        self.problem.lengthen(self.solver.right, self.delta)
+        for i in range(n + 1):
+            self.delta[i] /= self.scale[i]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
     def step(self) -> cython.double:
-        """Length of the Newton step, which is left in the solver."""
+        """Length of the Newton step, which is left in delta."""
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         total: cython.double = 0.0
         off: cython.double = 0.0
         for i in range(n):
-            self.solver.right[i] = -self.problem.residual[i] / self.scale[i]
+            self.delta[i] = -self.problem.residual[i] / self.scale[i]
         for i in range(n + 1):
             off += self.row[i] * (self.z[i] - self.guess[i]) / self.scale[i]
-        self.solver.right[n] = -off
-        self.solver.solve()
+        self.delta[n] = -off
+        self.solve()
         for i in range(n + 1):
-            total += self.solver.right[i] * self.solver.right[i]
+            total += self.delta[i] * self.delta[i]
         return sqrt(total) if isfinite(total) else 2.0 * FAR
 
     @cython.cfunc
@@ -127,16 +153,16 @@ class Newton:
         moved: cython.double = 0.0
         self.orientation = self.solver.orientation
         for i in range(size):
-            self.solver.right[i] = 0.0
-        self.solver.right[size - 1] = 1.0
-        self.solver.solve()
+            self.delta[i] = 0.0
+        self.delta[size - 1] = 1.0
+        self.solve()
         for i in range(size):
-            total += self.solver.right[i] * self.solver.right[i]
+            total += self.delta[i] * self.delta[i]
             moved += ((self.z[i] - self.guess[i]) / self.scale[i]) ** 2
         if not (isfinite(total) and total > 0.0):
             return False
         for i in range(size):
-            self.tangent[i] = self.solver.right[i] / sqrt(total)
+            self.tangent[i] = self.delta[i] / sqrt(total)
         self.moved = sqrt(moved)
         return True
 
@@ -145,6 +171,8 @@ class Newton:
     def rounding(self) -> cython.double:
         """Length of the Newton step that a relative error of EPS in every number makes, after Skeel."""
         size: cython.Py_ssize_t = self.problem.unknowns + 1
+        if self.problem.rank:
+            return ROUNDINGS * EPS * sqrt(size)
         scale = np.asarray(self.scale)
         inverse = np.zeros((size, size))
         inner = np.asarray(self.problem.jacobian) * scale / scale[: size - 1, None]

@@ -4,6 +4,7 @@ cdef class Problem:
     cdef public int unknowns
     cdef public int margins
     cdef public int outputs
+    cdef public int rank
     cdef public bint coarse
     cdef public double[::1] residual
     cdef public double[:, ::1] jacobian
@@ -18,3 +19,6 @@ cdef class Problem:
     cpdef int bound(self, double[::1] z) except -1
     cpdef int refine(self, bint exact) except -1
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
+    cpdef int condense(self, double[::1] row, double[:, ::1] matrix) except -1
+    cpdef int shorten(self, double[::1] right, double[::1] out) except -1
+    cpdef int lengthen(self, double[::1] reduced, double[::1] out) except -1

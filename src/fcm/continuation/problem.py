@@ -20,14 +20,18 @@ class Problem:
     residual (n,), jacobian (n, n + 1): by `evaluate`, the derivative by the parameter in the last column.
     scale (n + 1,): by `measure`. margin, kind, angle (margins,): by `bound`. output, growth (outputs,): by
     `report`.
+    rank: 0; or the size of a smaller system to which that of Newton's method is condensed. Then jacobian is
+    (n, 1), the derivative by the parameter alone; see `condense`.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
     """
 
-    def __init__(self, unknowns: cython.int, margins: cython.int, outputs: cython.int) -> None:
-        self.unknowns, self.margins, self.outputs = unknowns, margins, outputs
+    def __init__(
+        self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
+    ) -> None:
+        self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.coarse = False
         self.residual = np.zeros(unknowns)
-        self.jacobian = np.zeros((unknowns, unknowns + 1))
+        self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
@@ -66,4 +70,22 @@ class Problem:
     @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
         """What is reported of z, positive numbers, and their growth along a direction (n + 1,)."""
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
+        """Fill the condensed matrix (rank + 1, rank + 1) of the equations closed by a row (n + 1,)."""
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        """The right side (rank + 1,) of the condensed system for one (n + 1,)."""
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        """The solution (n + 1,) from that of the condensed system with the right side given last."""
         return 0

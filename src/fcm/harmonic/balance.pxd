@@ -7,6 +7,7 @@ cdef class Balance(Problem):
     cdef public Receptance seen
     cdef public Displacements shown
     cdef public list laws
+    cdef public object condensed
     cdef public int contacts
     cdef public int width
     cdef public double span

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import sqrt
 
+from fcm.harmonic.condensed import Condensed, rank_of
 from fcm.harmonic.displacement import Displacements
 from fcm.structure.receptance import Receptance
 
@@ -40,15 +41,18 @@ class Balance(Problem):
         shown: Displacements,
         counted: npt.NDArray[np.float64],
         span: cython.double,
+        flexibility: npt.NDArray[np.float64],
     ) -> None:
         width: cython.int = 2 + 4 * seen.count
-        Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs)
+        rank: cython.int = rank_of(seen.modes, seen.ports, seen.count)
+        Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs, rank)
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest = np.zeros(2 * len(laws))
         self.force, self.now, self.rate = (np.zeros(self.unknowns) for _ in range(3))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
+        self.condensed = Condensed(seen, flexibility, np.asarray(self.tangent)) if rank else None
         self.largest, self.size = np.zeros(2 * len(laws)), np.zeros(2 * len(laws))
 
     @cython.ccall
@@ -65,7 +69,8 @@ class Balance(Problem):
         self.evaluated[:] = z
         for i in range(self.unknowns):
             self.residual[i] += z[i]
-            self.jacobian[i, i] += 1.0
+            if not self.rank:
+                self.jacobian[i, i] += 1.0
         return 0
 
     @cython.cfunc
@@ -102,7 +107,7 @@ class Balance(Problem):
                 S_u: cython.double = self.seen.static[p, 2 * q]
                 S_v: cython.double = self.seen.static[p, 2 * q + 1]
                 self.residual[row] += S_u * self.force[q * w] + S_v * self.force[q * w + 1]
-                for k in range(w):
+                for k in range(0 if self.rank else w):
                     self.jacobian[row, q * w + k] = S_u * self.tangent[q, 0, k] + S_v * self.tangent[q, 1, k]
 
     @cython.cfunc
@@ -128,7 +133,7 @@ class Balance(Problem):
                 self.residual[row] += v_re * self.force[f + 2] - v_im * self.force[f + 3]
                 self.residual[row + 1] += u_im * self.force[f] + u_re * self.force[f + 1]
                 self.residual[row + 1] += v_im * self.force[f + 2] + v_re * self.force[f + 3]
-                for k in range(w):
+                for k in range(0 if self.rank else w):
                     a: cython.double = self.tangent[q, at, k]
                     b: cython.double = self.tangent[q, at + 1, k]
                     c: cython.double = self.tangent[q, at + 2, k]
@@ -144,7 +149,7 @@ class Balance(Problem):
     def by_parameter(self) -> cython.void:
         """Derivative by the frequency; the means have none."""
         w: cython.Py_ssize_t = self.width
-        n: cython.Py_ssize_t = self.unknowns
+        n: cython.Py_ssize_t = 0 if self.rank else self.unknowns
         j: cython.int
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -255,4 +260,23 @@ class Balance(Problem):
         for c in range(self.contacts):
             law: Law = self.laws[c]
             law.refine(exact)
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
+        by = np.asarray(self.jacobian)[:, 0]
+        self.condensed.matrix(np.asarray(row), by, np.asarray(matrix))
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        self.condensed.shorten(np.asarray(right), np.asarray(out))
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        self.condensed.lengthen(np.asarray(reduced), np.asarray(out))
         return 0

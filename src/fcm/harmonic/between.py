@@ -13,7 +13,7 @@ class Between(Problem):
     """A problem of which a part of the residual that it has at some point is taken away."""
 
     def __init__(self, inner: Problem) -> None:
-        Problem.__init__(self, inner.unknowns, 0, 0)
+        Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)
         self.inner, self.taken, self.removed = inner, 0.0, np.zeros(inner.unknowns)
         self.jacobian = inner.jacobian
 
@@ -25,3 +25,18 @@ class Between(Problem):
         for i in range(self.unknowns):
             self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
+        return self.inner.condense(row, matrix)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        return self.inner.shorten(right, out)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        return self.inner.lengthen(reduced, out)

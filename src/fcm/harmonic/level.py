@@ -20,7 +20,7 @@ class Level(Problem):
     """A balance at omega, followed in the level of its forces."""
 
     def __init__(self, balance: Balance, omega: cython.double) -> None:
-        Problem.__init__(self, balance.unknowns, balance.margins, 0)
+        Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.balance, self.omega = balance, omega
         self.z = np.zeros(balance.unknowns + 1)
 
@@ -30,17 +30,19 @@ class Level(Problem):
         b: Balance = self.balance
         n: cython.Py_ssize_t = self.unknowns
         j: cython.Py_ssize_t = 2 + 4 * b.seen.driven
+        last: cython.Py_ssize_t = 0 if self.rank else n
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
         self.place(z)
         b.evaluate(self.z)
         self.residual[:] = b.residual
-        self.jacobian[:, :n] = b.jacobian[:, :n]
-        self.jacobian[:, n] = 0.0
+        if not self.rank:
+            self.jacobian[:, :n] = b.jacobian[:, :n]
+        self.jacobian[:, last] = 0.0
         for p in range(2 * b.contacts):
             row = (p // 2) * b.width + j + 2 * (p % 2)
-            self.jacobian[row, n] = -b.seen.X_re[p]
-            self.jacobian[row + 1, n] = -b.seen.X_im[p]
+            self.jacobian[row, last] = -b.seen.X_re[p]
+            self.jacobian[row + 1, last] = -b.seen.X_im[p]
         return 0
 
     @cython.ccall
@@ -68,3 +70,19 @@ class Level(Problem):
         self.z[:] = z
         self.z[self.unknowns] = self.omega
         self.balance.load = z[self.unknowns]
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
+        self.balance.jacobian[:, :] = self.jacobian
+        return self.balance.condense(row, matrix)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        return self.balance.shorten(right, out)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        return self.balance.lengthen(reduced, out)

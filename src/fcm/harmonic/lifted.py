@@ -103,7 +103,7 @@ class Lifted:
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
             for i in range(self.guess.shape[0]):
-                newton.z[i] += newton.scale[i] * newton.solver.right[i]
+                newton.z[i] += newton.scale[i] * newton.delta[i]
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()

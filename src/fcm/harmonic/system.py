@@ -58,10 +58,11 @@ class System:
         low, high = self.scene.frequency_range
         seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
         shown = Displacements(seen, self.linear)
-        balance = Balance(seen, self.laws(), shown, self.linear.counted, high - low)
+        linear = self.linear
+        balance = Balance(seen, self.laws(), shown, linear.counted, high - low, linear.flexibility)
         if self.scene.loads:
-            balance.rest[:] = self.linear.ports.T @ self.linear.flexibility @ self.linear.load
-            shown.rest[:] = self.linear.dofs.T @ self.linear.flexibility @ self.linear.load
+            balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
+            shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
         balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
         return balance
 

@@ -1,0 +1,85 @@
+"""The linear system of many contacts on few modes, condensed to the modes, beside the system itself."""
+
+import numpy as np
+import pytest
+
+from fcm.continuation.newton import Newton
+from fcm.harmonic.system import System
+from fcm.scene import scene_from_dict
+
+
+def many_contacts(contacts=12, modes=4):
+    rng = np.random.default_rng(5)
+    dofs = [f"x{i}" for i in range(2 * contacts)]
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": dofs,
+                "frequency": [1.0, 1.7, 2.9, 4.1][:modes],
+                "damping": [0.02] * modes,
+                "shapes": rng.normal(size=(modes, len(dofs))).tolist(),
+            },
+            "contact": [
+                {
+                    "name": f"c{i}",
+                    "tangential": dofs[2 * i],
+                    "normal": dofs[2 * i + 1],
+                    "mu": 0.3,
+                    "k_u": 0.1,
+                    "k_v": 0.2,
+                    "n_0": float(rng.uniform(-0.5, 1.0)),
+                }
+                for i in range(contacts)
+            ],
+            "force": [{"dof": "x0", "amplitude": 1.0}],
+            "response": {"frequency": [0.8, 1.3]},
+        }
+    )
+
+
+def jacobian(system, z):
+    """By central differences of the residual, (unknown, unknown + 1)."""
+    columns = []
+    for i in range(z.size):
+        step = 1e-6 * max(abs(z[i]), 1e-2)
+        ends = []
+        for sign in (1.0, -1.0):
+            problem, moved = system.balance(), z.copy()
+            moved[i] += sign * step
+            problem.evaluate(moved)
+            ends.append(np.array(problem.residual))
+        columns.append((ends[0] - ends[1]) / (2.0 * step))
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
+def test_direction_and_orientation_are_those_of_the_whole_system(harmonics):
+    system = System(many_contacts(), harmonics)
+    problem = system.balance()
+    assert 0 < problem.rank < problem.unknowns
+    rng = np.random.default_rng(2)
+    z = np.append(rng.normal(size=problem.unknowns), 1.05)
+    newton = Newton(problem)
+    problem.measure(z)
+    scale = np.array(problem.scale)
+    row = rng.normal(size=z.size)
+    row /= np.linalg.norm(row)
+    newton.scale[:], newton.row[:], newton.z[:] = scale, row, z
+    assert newton.look()
+    whole = np.vstack((jacobian(system, z) * scale / scale[:-1, None], row))
+    tangent = np.linalg.solve(whole, np.append(np.zeros(z.size - 1), 1.0))
+    np.testing.assert_allclose(newton.tangent, tangent / np.linalg.norm(tangent), atol=1e-6)
+    assert newton.orientation == np.sign(np.linalg.det(whole))
+
+
+def test_points_of_the_curve_balance():
+    system = System(many_contacts(), (1,))
+    newton = Newton(system.balance())
+    z = np.append(np.zeros(newton.problem.unknowns), 0.9)
+    newton.problem.measure(np.append(np.ones(newton.problem.unknowns), 0.9))
+    newton.scale[:] = newton.problem.scale
+    newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
+    newton.z[:] = z
+    assert newton.correct(1.0)
+    newton.problem.evaluate(newton.z)
+    assert np.abs(newton.problem.residual).max() < 1e-12 * np.abs(newton.z).max()
