@@ -63,14 +63,13 @@ class Truth:
     def __init__(self, system, many=MANY):
         self.system, self.many = system, system.with_harmonics(many)
         self.corrector = Corrector(system, again=False, enough=1e-9)
-        self.corrector.chosen = lambda share: many
 
     def at(self, z, direction):
         """The motion of many harmonics at the frequency of z, on the curve next to it; None if there is none.
 
         From the point normal to the curve, then along the curve of many harmonics to the frequency.
         """
-        if np.isnan(self.corrector.displaced(z, direction, None, None)).any():
+        if np.isnan(self.corrector.displaced(z, direction, self.many.harmonics, None)).any():
             return None
         (lifted,) = self.corrector.known.values()
         newton = lifted.newton

@@ -49,8 +49,8 @@ def all_branches(
     stations = sorted({float(z[-1]) for z in solutions})
     paths: list[Path] = []
     lost: list[FloatArray] = []
+    problem = new_problem()
     for z in solutions:
-        problem = new_problem()
         if any(contains(path, z, problem) for path in paths):
             continue
         path = _through(new_problem, z, span, max_step, stations, progress)

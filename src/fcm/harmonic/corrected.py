@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.further import HIGHEST, Further
+from fcm.harmonic.further import Further
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -23,7 +23,6 @@ class Corrected:
     """From the points of a path to the corrected curve, relative: of the frequency, then of the amplitudes.
 
     linear (point,): where no contact slips or separates, so that nothing is to be corrected.
-    share (point, harmonic): see `Further.shares`; at the points that were displaced, else zero.
     """
 
     def __init__(self, system: System, path: Path, amplitude: FloatArray) -> None:
@@ -31,7 +30,6 @@ class Corrected:
         self.further, self.corrector = Further(system), Corrector(system)
         count, dofs = amplitude.shape
         self.force, self.linear = self.further.forces(path.z)
-        self.share = np.zeros((count, HIGHEST))
         self.change = np.zeros((count, 1 + dofs))
         self.known = self.linear.copy()
 
@@ -97,10 +95,13 @@ class Corrected:
     def find(self, places: Indices) -> None:
         """The displacements of some points, which are then known."""
         places = places[~self.known[places]]
+        if not places.size:
+            return
         z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
-        self.share[places] = self.further.shares(z[places], self.force[places], now[:, 1:])
-        for i, before in zip(places.tolist(), now, strict=True):
-            found = self.corrector.displaced(z[i], self.path.direction[i], self.share[i], before[1:])
+        share = self.further.shares(z[places], self.force[places], now[:, 1:])
+        sets = self.corrector.sets(share)
+        for i, before, more in zip(places.tolist(), now, sets, strict=True):
+            found = self.corrector.displaced(z[i], self.path.direction[i], more, before[1:])
             if found is not None:
                 self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
         self.known[places] = True

@@ -29,15 +29,14 @@ class Corrector:
         self.second: dict[tuple[int, ...], tuple[Further, Corrector]] = {}
 
     def displaced(
-        self, z: FloatArray, direction: FloatArray, share: FloatArray, amplitude: FloatArray
+        self, z: FloatArray, direction: FloatArray, more: tuple[int, ...], amplitude: FloatArray
     ) -> FloatArray | None:
         """Frequency and amplitudes (1 + dof,) of the corrected curve in the plane normal to the curve at z.
 
-        direction is that of the curve at z, amplitude (dof,) what it has there, share (harmonic,) what each
-        harmonic left out would do. None if no harmonic does anything; NaN if the corrected curve is not
-        found, or too far to be believed.
+        direction is that of the curve at z, amplitude (dof,) what it has there, more the harmonics of the
+        corrected curve. None if they are those of the curve; NaN if the corrected curve is not found, or too
+        far to be believed.
         """
-        more = self.chosen(share)
         if more == self.system.harmonics:
             return None
         lifted = self.lifted(more)
@@ -65,17 +64,38 @@ class Corrector:
             self.second[more] = Further(system), Corrector(system, again=False)
         further, corrector = self.second[more]
         force, _ = further.forces(z[None])
-        share = further.shares(z[None], force, found[None, 1:])[0]
-        again = corrector.displaced(z, direction, share, found[1:])
+        share = further.shares(z[None], force, found[None, 1:])
+        again = corrector.displaced(z, direction, corrector.sets(share)[0], found[1:])
         return found if again is None else again
 
-    def chosen(self, share: FloatArray) -> tuple[int, ...]:
-        """The harmonics of the system and those that would do most."""
-        order = np.argsort(-share)[:FURTHER]
-        order = order[share[order] > LEAST * share[order[0]]]
+    def sets(self, share: FloatArray) -> list[tuple[int, ...]]:
+        """The harmonics of the system and those that would do most, for shares (point, harmonic).
+
+        A set that is there already is taken where it covers nearly as much.
+        """
         square = share * share
-        enough = COVERED**2 * square[order].sum()
+        most = -np.sort(-square, axis=1)[:, :FURTHER]
+        enough = COVERED**2 * np.where(most > LEAST**2 * most[:, :1], most, 0.0).sum(axis=1)
+        chosen: list[tuple[int, ...] | None] = [None] * len(share)
         for more in self.known:
-            if square[np.array(more) - 1].sum() >= enough:
-                return more
-        return tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
+            self._fill(chosen, more, square, enough)
+        for i in range(len(share)):
+            if chosen[i] is None:
+                order = np.argsort(-share[i])[:FURTHER]
+                order = order[share[i, order] > LEAST * share[i, order[0]]]
+                more = tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
+                chosen[i] = more
+                self._fill(chosen, more, square, enough)
+        return [more for more in chosen if more is not None]
+
+    def _fill(
+        self,
+        chosen: list[tuple[int, ...] | None],
+        more: tuple[int, ...],
+        square: FloatArray,
+        enough: FloatArray,
+    ) -> None:
+        """Take a set where it is enough and nothing is chosen yet."""
+        covers = square[:, np.array(more) - 1].sum(axis=1) >= enough
+        for i in np.flatnonzero(covers).tolist():
+            chosen[i] = chosen[i] or more

@@ -39,7 +39,7 @@ class Share(Problem):
     """The balance without harmonic forces, followed in the share of the static loads."""
 
     def __init__(self, balance: Balance, omega: float) -> None:
-        Problem.__init__(self, balance.unknowns, balance.margins, 0)
+        Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
         self.by_share = np.zeros(balance.unknowns)
         for p, displacement in enumerate(balance.rest):
@@ -50,7 +50,8 @@ class Share(Problem):
         """Residual and derivatives."""
         self.balance.evaluate(self._placed(z))
         self.residual[:] = self.balance.residual
-        np.asarray(self.jacobian)[:] = self.balance.jacobian
+        if not self.rank:
+            np.asarray(self.jacobian)[:] = self.balance.jacobian
         np.asarray(self.jacobian)[:, -1] = self.by_share
         return 0
 
@@ -65,7 +66,21 @@ class Share(Problem):
         """Margins."""
         self.balance.bound(self._placed(z))
         self.margin[:] = self.balance.margin
+        self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
         return 0
+
+    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
+        """The condensed system."""
+        self.balance.jacobian[:, :] = self.jacobian
+        return self.balance.condense(row, matrix)
+
+    def shorten(self, right: FloatArray, out: FloatArray) -> int:
+        """A right-hand side of it."""
+        return self.balance.shorten(right, out)
+
+    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
+        """Unknowns from its solution."""
+        return self.balance.lengthen(reduced, out)
 
     def _placed(self, z: FloatArray) -> FloatArray:
         self.at_omega[:-1] = np.asarray(z)[:-1]

@@ -78,10 +78,10 @@ def level_curve(
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
     """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
     G, X = system.linear.at(omega)
-    closed = np.repeat(loads_at_rest(system) > 0.0, 2)
-    for share in (closed, np.ones_like(closed), np.zeros_like(closed)):
-        stuck = np.eye(X.size) + G * (system.springs(stuck=True) * share)
-        ports = np.linalg.solve(stuck, level * X).astype(np.complex128)
+    stuck, one = system.springs(stuck=True), np.eye(X.size)
+    at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
+    for share in (at_rest, 1.0, 0.0):
+        ports = np.linalg.solve(one + G * (stuck * share), level * X)
         yield _unknowns(system.rest, ports, len(system.harmonics), system.harmonics.index(1))
 
 
@@ -94,11 +94,9 @@ def loads_at_rest(system: System) -> FloatArray:
 
 def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:
     x = np.zeros((ports.size // 2, 2 + 4 * harmonics))
-    x[:, :2], pairs = rest.reshape(-1, 2), ports.reshape(-1, 2)
+    x[:, :2] = rest.reshape(-1, 2)
     first = 2 + 4 * driven
-    x[:, first : first + 4] = np.stack(
-        (pairs[:, 0].real, pairs[:, 0].imag, pairs[:, 1].real, pairs[:, 1].imag), axis=1
-    )
+    x[:, first : first + 4] = ports.view(np.float64).reshape(-1, 4)
     return x.ravel()
 
 
