@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import lapack
 
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
@@ -83,10 +82,11 @@ class Multipliers:
         matrix = monodromy.matrix()
         if not np.isfinite(matrix).all():
             return None
-        real, imaginary, _, _, failed = lapack.dgeev(matrix, compute_vl=0, compute_vr=0, overwrite_a=1)
-        if failed:
+        try:
+            found = np.linalg.eigvals(matrix)
+        except np.linalg.LinAlgError:
             return None
-        values = [complex(re, im) for re, im in zip(real.tolist(), imaginary.tolist(), strict=True)]
+        values: list[complex] = found.astype(np.complex128).tolist()
         for _ in range(2 * self.adrift):
             nearest = min(values, key=_from_one)
             if _from_one(nearest) < NEUTRAL:
