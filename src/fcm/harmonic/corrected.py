@@ -66,6 +66,11 @@ class Corrected:
         most: FloatArray = self.further.shares(self.path.z[places], self.force[places], sizes).max(axis=0)
         return most
 
+    def sets(self, places: Indices) -> tuple[int, ...]:
+        """The harmonics of a corrected curve beside all of some places."""
+        share = self.further.shares(self.path.z[places], self.force[places], self.amplitude[places])
+        return self.corrector.sets(share.max(axis=0)[None])[0]
+
     def bridge(self, place: int) -> None:
         """Where the corrected curve is missed, as at a corner that has moved: the mean of those beside it."""
         if np.isfinite(self.change[place]).all():

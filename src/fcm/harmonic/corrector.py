@@ -10,7 +10,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 FURTHER = 8  # harmonics beyond those of the balance: those that would do most
-LEAST = 0.03  # of what the first of them would do; what does less is not taken
+LEAST = 0.01  # of what the first of them would do; what does less is not taken
 COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
 LARGE = 0.05  # a change of an amplitude beyond which the corrected point is corrected once more
 ENOUGH = 0.02  # of a displacement, to which it is found

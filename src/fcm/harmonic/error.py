@@ -18,6 +18,7 @@ from fcm.harmonic.corrected import Corrected, Indices
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.shifted import Beside
+from fcm.harmonic.stretch import heights
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -82,7 +83,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     typical = np.median(error, axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
     inside = (tops > 0) & (tops < len(path.z) - 1)
-    error[tops[inside], d[inside]] = _heights(shown, change[:, 1:], tops)[inside]
+    error[tops[inside], d[inside]] = _heights(corrected, change[:, 1:], tops)[inside]
     size = shown.amplitude.max(axis=1)
     return Errors(
         amplitude=error,
@@ -131,25 +132,31 @@ def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
     return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))
 
 
-def _heights(shown: Reported, amplitude: FloatArray, tops: Indices) -> FloatArray:
+def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatArray:
     """Relative change of the greatest amplitudes (dof,).
 
-    Unknown where that of the highest point is, or of a stretch nearly as high, which may become the highest.
+    Unknown where the corrected curve is not known at the highest point, or along a stretch that is nearly as
+    high and may become the highest.
     """
-    corrected = shown.amplitude * (1.0 + amplitude)
+    amplitude = corrected.amplitude
     d = np.arange(len(tops))
-    now = shown.amplitude[tops, d]
-    lost = _stretches(np.isnan(amplitude[:, 0]))[:, None]
-    unknown = np.isnan(corrected[tops, d]) | (lost & (shown.amplitude > RIVAL * now)).any(axis=0)
-    greatest = np.where(np.isfinite(corrected), corrected, 0.0).max(axis=0)
-    change: FloatArray = np.abs(greatest - now) / np.where(now > 0.0, now, 1.0)
-    return np.where(unknown, np.nan, change)
+    now = amplitude[tops, d]
+    greatest = np.where(np.isfinite(change), amplitude * (1.0 + change), 0.0).max(axis=0)
+    unknown = np.zeros(len(tops), dtype=np.bool_)
+    for first, end in _stretches(np.isnan(change[:, 0])):
+        may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
+        rivals = may | ((first <= tops) & (tops < end))
+        if rivals.any():
+            found = heights(corrected, first - 1, end)
+            if found is None:
+                unknown |= rivals
+            else:
+                greatest = np.maximum(greatest, found)
+    relative: FloatArray = np.abs(greatest - now) / np.where(now > 0.0, now, 1.0)
+    return np.where(unknown, np.nan, relative)
 
 
-def _stretches(lost: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """The points of those that are more than a few in a row."""
+def _stretches(lost: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First of each run of points and the one behind its last."""
     ends = np.flatnonzero(np.diff(np.concatenate(([False], lost, [False]))))
-    out = np.zeros_like(lost)
-    for first, end in ends.reshape(-1, 2):
-        out[first:end] = end - first > FEW
-    return out
+    return [(int(first), int(end)) for first, end in ends.reshape(-1, 2)]
