@@ -1,11 +1,11 @@
 """A mass with rigid Coulomb friction, as Den Hartog (1931) solved it: the limit of ever stiffer contacts.
 
-With tau = omega t, r = omega / omega_0 and forces over that of the excitation, the mass that moves down follows
+With tau = omega t, r = omega / omega_0 and forces over the exciting one, the mass that moves down follows
 
     r^2 x'' + x = cos tau + F,    x = F + Q cos tau + A cos(tau / r) + B sin(tau / r),    Q = 1 / (1 - r^2)
 
-and half a period later the same with the other sign. If it never stops in between, the four conditions x = x_0,
-x' = 0 at the one turn and x = -x_0, x' = 0 at the other give x_0 = sqrt(Q^2 - (F U)^2).
+and half a period later the same with the other sign. If it never stops in between, the conditions x = x_0, x' = 0
+at the one turn and x = -x_0, x' = 0 at the other give x_0 = sqrt(Q^2 - (F U)^2).
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def exact(k_u, r):
 
 @pytest.mark.parametrize("r", [0.6, 0.7, 0.8])
 def test_the_exact_motion_comes_to_the_closed_form(r):
-    """By the root of the stiffness: the spring of the contact turns the mass round in a time of that order."""
+    """By the root of the stiffness: the contact's spring turns the mass round in a time of that order."""
     rigid, k_u = without_stops(r), (1e4, 1e6)
     amplitude = [exact(k, r) for k in k_u]
     off = [rigid - each for each in amplitude]
@@ -75,7 +75,7 @@ def test_the_exact_motion_comes_to_the_closed_form(r):
 def test_with_stops_too():
     """There the mass rests before it turns, and the spring of the contact counts by its compliance."""
     rigid, rest = with_stops(0.5)
-    assert rest > 0.1 and not rigid == pytest.approx(without_stops(0.5), rel=1e-2)
+    assert rest > 0.1 and rigid != pytest.approx(without_stops(0.5), rel=1e-2)
     assert exact(1e4, 0.5) == pytest.approx(rigid, rel=1e-4)
     assert exact(1e2, 0.5) == pytest.approx(rigid, rel=2e-2)
 
