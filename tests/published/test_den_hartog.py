@@ -4,8 +4,8 @@ With tau = omega t, r = omega / omega_0 and forces over the exciting one, the ma
 
     r^2 x'' + x = cos tau + F,    x = F + Q cos tau + A cos(tau / r) + B sin(tau / r),    Q = 1 / (1 - r^2)
 
-and half a period later the same with the other sign. If it never stops in between, the conditions x = x_0, x' = 0
-at the one turn and x = -x_0, x' = 0 at the other give x_0 = sqrt(Q^2 - (F U)^2).
+and half a period later the same with the other sign. If it never stops in between, the conditions x = x_0,
+x' = 0 at the one turn and x = -x_0, x' = 0 at the other give x_0 = sqrt(Q^2 - (F U)^2).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """TMDSimPy's example `2dof_eldry_fric` (github.com/tmd-lab/tmdsimpy), by that program, 1024 samples a cycle.
 
-Its amplitudes are those of the fundamental. The integral over a corner of the force between two samples errs by up
-to an eighth of the square of their distance, (2 pi / 1024)^2 / 8 = 5e-6: so far may these be off.
+Its amplitudes are those of the fundamental. The integral over a corner of the force between two samples errs
+by up to an eighth of the square of their distance, (2 pi / 1024)^2 / 8 = 5e-6: so far may these be off.
 """
 
 from __future__ import annotations
