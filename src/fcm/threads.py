@@ -6,6 +6,11 @@ Threads that wait for one another made a large scene ten times slower on a machi
 from __future__ import annotations
 
 import os
+import threading
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -19,3 +24,34 @@ def one_by_default() -> None:
 def one_each() -> dict[str, str]:
     """What the environment of a process says that has one core for itself."""
     return dict.fromkeys(_VARIABLES, "1")
+
+
+class one_thread:  # noqa: N801
+    """``with one_thread():`` in a process of others, where numpy has been imported with as many as it likes.
+
+    Needs threadpoolctl, without which it has no effect. The number is the whole process's: the first of the
+    threads that are inside sets it, the last gives it back.
+    """
+
+    _lock, _inside = threading.Lock(), 0
+    _limits: Any = None
+
+    def __enter__(self) -> None:
+        with self._lock:
+            one_thread._inside += 1
+            if one_thread._inside == 1:
+                one_thread._limits = _limited()
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            one_thread._inside -= 1
+            if one_thread._inside == 0 and one_thread._limits is not None:
+                one_thread._limits.restore_original_limits()
+
+
+def _limited() -> Any:
+    try:
+        from threadpoolctl import threadpool_limits
+    except ImportError:
+        return None
+    return threadpool_limits(1, user_api="blas")

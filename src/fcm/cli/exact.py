@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -10,7 +10,6 @@ from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
     from fcm.response import Response
-    from fcm.run import Checkpoint
     from fcm.scene.model import Scene
 
 MOST_FREQUENCIES = 100_000
@@ -67,14 +66,14 @@ def check_options(method: str, at: tuple[float, ...] | None, level: object = Non
 
 
 def traced(
-    messages: Messages, scene: Scene, at: tuple[float, ...] | None, jobs: int, checkpoint: Checkpoint | None
+    messages: Messages, scene: Scene, at: tuple[float, ...] | None, options: dict[str, Any]
 ) -> Response:
     """The exact curves of a scene, or its steady motions at frequencies."""
     from fcm.run.progress import part
     from fcm.simulate import trace_exact
 
     shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
-    response = trace_exact(scene, at, shown, jobs=jobs, keep=checkpoint)
+    response = trace_exact(scene, at, shown, **options)
     messages.clear()
     for remark in remarks(response):
         messages.info(remark)

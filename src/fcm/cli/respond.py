@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import balance, exact, schedule
+from fcm.cli import cluster as cluster_option
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
@@ -74,6 +75,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "--jobs", type=click.IntRange(min=0), default=0, metavar="N",
     help="Processes for sweeps of many curves; 0 for one on each core.  [default: 0]",
 )  # fmt: skip
+@click.option(
+    "--cluster", metavar="ADDRESS",
+    help="Instead, the workers of the dask.distributed scheduler there, as in tcp://127.0.0.1:8786.",
+)  # fmt: skip
 @click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE.")
 @click.option(
     "--leave-out-tolerance", "tolerance", type=click.FloatRange(min=0.0), default=1e-5, show_default=True,
@@ -103,6 +108,7 @@ def respond(
     table: str | None,
     max_step: float | None,
     jobs: int,
+    cluster: str | None,
     resume: bool,
     tolerance: float,
     keep_all: bool,
@@ -123,6 +129,7 @@ def respond(
         compared = _loaded(messages, scene, max_step, None, largest_file)
         write_comparison(messages, compared, table, tolerance, output, to_json)
         return
+    cluster_option.check_options(cluster, level)
     exact.check_options(method, at, level)
     balance.check_level(level, at, accuracy, method)
     balance.check_options(harmonics, accuracy, method, table)
@@ -135,16 +142,16 @@ def respond(
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
-    options: dict[str, Any] = {"jobs": jobs, "tolerance": None if keep_all else tolerance}
-    options |= {"harmonics": harmonics, "accuracy": accuracy}
+    balanced = {"tolerance": None if keep_all else tolerance, "harmonics": harmonics, "accuracy": accuracy}
     outputs = Outputs(messages, output, csv, history_csv)
-    with outputs.kept(resume) as checkpoint:
+    with outputs.kept(resume) as checkpoint, cluster_option.place_of(cluster) as place:
+        options: dict[str, Any] = {"jobs": jobs, "place": place, "keep": checkpoint}
         if method == "exact" and (loaded.has_range or at):
-            response = exact.traced(messages, loaded, at, jobs, checkpoint)
+            response = exact.traced(messages, loaded, at, options)
         elif level is not None and at is not None:
             response = _levels(loaded, at, level, harmonics)
         elif loaded.has_range:
-            response = _traced(messages, loaded, method, table, {**options, "keep": checkpoint})
+            response = _traced(messages, loaded, method, table, {**options, **balanced})
         else:
             response = _without_curves(loaded)
         if loaded.schedule and level is None:

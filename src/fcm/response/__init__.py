@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 from fcm.response.result import Curve, Response
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS, ResponseError
+from fcm.run import Factory, place_of
 from fcm.scene.model import Scene
 from fcm.scene.rules import step_fault
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import xarray
 
 __all__ = ["METHODS", "Curve", "Response", "ResponseError", "respond", "trace"]
@@ -26,6 +29,7 @@ def respond(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     max_step: float | None = None,
+    executor: Executor | None = None,
 ) -> xarray.Dataset:
     """Response curves of a scene, and the motion of its schedule, as the dataset of ``fcm respond``.
 
@@ -45,6 +49,8 @@ def respond(
         scene's by default, and 1e-2 where it says neither.
     max_step : float, optional
         Longest step along a curve, relative to its extent; the scene's by default.
+    executor : concurrent.futures.Executor, optional
+        Where the curves of a sweep are computed, in batches; its owner ends it. In this process by default.
 
     Returns
     -------
@@ -57,6 +63,9 @@ def respond(
     ------
     ResponseError
         If the method is unknown, or does not fit the other arguments.
+    fcm.run.Gone
+        If the executor takes nothing any more, and nothing is finished. Later what is finished is returned,
+        with a warning; the other curves are not complete.
 
     Examples
     --------
@@ -75,7 +84,8 @@ def respond(
             raise ResponseError(f"max_step {fault}")
         curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
         scene = replace(scene, max_step=max_step, curves=curves)
-    response = _curves(scene, method, at, harmonics, accuracy)
+    place = None if executor is None else place_of(executor)
+    response = _curves(scene, method, at, harmonics, accuracy, place)
     response.notes, response.units = list(scene.notes), scene.units
     if scene.schedule:
         from fcm.motion import histories
@@ -90,6 +100,7 @@ def _curves(
     at: Sequence[float] | None,
     harmonics: int | Sequence[int] | None,
     accuracy: float | None,
+    place: Factory | None,
 ) -> Response:
     if method not in (*METHODS, "exact"):
         raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
@@ -102,5 +113,5 @@ def _curves(
             raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
         from fcm.simulate import trace_exact
 
-        return trace_exact(scene, at)
-    return trace(scene, method, harmonics=harmonics, accuracy=accuracy)
+        return trace_exact(scene, at, place=place)
+    return trace(scene, method, harmonics=harmonics, accuracy=accuracy, place=place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -9,15 +10,16 @@ from pathlib import Path
 
 from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
 from fcm.response.result import NOT_BEGUN, Curve
-from fcm.run import Checkpoint, Compute, Lost, Progress, Results, fingerprint, place_for, sweep
+from fcm.run import Checkpoint, Compute, Factory, Lost, Progress, Results, fingerprint, place_for, sweep
 
 
 @dataclass
 class CurveSweep:
     """Where curves are computed and kept: the same for everything that one run computes."""
 
-    jobs: int  # processes
+    jobs: int  # processes of this machine
     checkpoint: Checkpoint | None
+    place: Factory | None = None  # instead: an executor or a cluster
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
 
     def curves(
@@ -37,7 +39,10 @@ class CurveSweep:
         if self.checkpoint is not None:
             whole = fingerprint(mark, [anonymous(batch) for batch in batches])
             kept = self.checkpoint.results(whole, (*KINDS, *states), lambda i, found: fit(batches, i, found))
-        outcome = sweep(compute, batches, place_for(self.jobs if len(batches) > 1 else 1), kept, progress)
+        place = self.place or place_for(self.jobs if len(batches) > 1 else 1)
+        outcome = sweep(compute, batches, place, kept, progress)
+        if outcome.lost:
+            warnings.warn(outcome.lost, stacklevel=2)
         curves: list[Curve] = []
         for number, batch in enumerate(batches):
             found = outcome.of(number)

@@ -15,7 +15,7 @@ from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
 from fcm.response.put_back import checked, restored
 from fcm.response.result import Response
 from fcm.response.trace import METHODS, ResponseError, Wanted, wanted_of
-from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part
 from fcm.scene.model import Scene
 from fcm.table import Table
@@ -34,6 +34,7 @@ def trace(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     jobs: int = 1,
+    place: Factory | None = None,
     tolerance: float | None = TOLERANCE,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
@@ -58,6 +59,8 @@ def trace(
         where there are no harmonics given.
     jobs : int
         Processes for the groups of curves; 0 for one on each core.
+    place : optional
+        Where they are computed instead: `fcm.run.place_of` an executor, or `fcm.run.cluster.connected`.
     tolerance : float, optional
         Greatest relative change of the response by what is left out; 0 leaves out only what has no effect
         at all, None nothing.
@@ -73,6 +76,8 @@ def trace(
         If the method is unknown, or the scene has no range of frequencies.
     CheckpointError
         If another run is at work on that file.
+    Gone
+        If that place takes nothing any more, and nothing is finished; else what is finished is returned.
     """
     if method not in METHODS:
         raise ResponseError(f"method {method!r} is not one of {', '.join(METHODS)}")
@@ -80,7 +85,7 @@ def trace(
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
     with checkpoint_of(keep, resume) as checkpoint:
-        curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint)
+        curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
         wanted = wanted_of(scene, harmonics, accuracy)
         response = _traced(_Sweep(scene, method, table, wanted, curves), tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:

@@ -5,10 +5,11 @@ keeps what is finished; `fingerprint` says of what the results depend.
 """
 
 from fcm.run.checkpoint import Checkpoint, CheckpointError, Results
+from fcm.run.elsewhere import Elsewhere
 from fcm.run.fingerprint import fingerprint
-from fcm.run.places import Elsewhere, Here, Place, Threads
+from fcm.run.places import Factory, Gone, Here, Place, Threads
 from fcm.run.processes import Processes
-from fcm.run.sweep import Outcome, place_for, sweep
+from fcm.run.sweep import Outcome, place_for, place_of, sweep
 from fcm.run.work import Compute, Interrupted, Lost, Progress, Report
 
 __all__ = [
@@ -16,6 +17,8 @@ __all__ = [
     "CheckpointError",
     "Compute",
     "Elsewhere",
+    "Factory",
+    "Gone",
     "Here",
     "Interrupted",
     "Lost",
@@ -28,5 +31,6 @@ __all__ = [
     "Threads",
     "fingerprint",
     "place_for",
+    "place_of",
     "sweep",
 ]

@@ -1,11 +1,11 @@
-"""Where batches are computed: in this process, in threads of it, or by an executor of the user's."""
+"""Where batches are computed: one small contract, and this process or threads of it as the nearest places."""
 
 from __future__ import annotations
 
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from typing import Protocol
+from concurrent.futures import Future, ThreadPoolExecutor
 
 from fcm.run.work import Attempt, Batch, Compute, Report, attempt
 
@@ -14,25 +14,40 @@ class Died(Exception):  # noqa: N818
     """The process that computed a batch has ended before its time."""
 
 
-class Place(Protocol):
-    """Somewhere to compute; a future of it may raise `Died`."""
+class Again(Exception):  # noqa: N818
+    """A batch has not been computed, and is to be given to the place once more."""
 
-    width: int  # batches that are given to it at a time
 
+class Gone(Exception):  # noqa: N818
+    """The place takes no batch any more; the message says why."""
+
+
+class Place(ABC):
+    """Somewhere to compute: batches are given to it, results fetched as they come, the rest cancelled."""
+
+    width = 1  # batches that are given to it at a time
+
+    @abstractmethod
     def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
         """Begin to compute a batch; the report is called now and then, from whatever thread."""
 
-    def stop(self) -> None:
+    def result(self, future: Future[Attempt]) -> Attempt:
+        """What came of a batch whose future is done; or `Died`, `Again` or `Gone`."""
+        return future.result()
+
+    def look(self) -> None:  # noqa: B027
+        """See now and then how it is; or `Gone`."""
+
+    def stop(self) -> None:  # noqa: B027
         """Ask everybody to stop; their futures then have the part that is finished."""
 
     def close(self) -> None:
         """Leave nothing running."""
+        self.stop()
 
 
-class Here:
+class Here(Place):
     """This process, one batch after the other."""
-
-    width = 1
 
     def __init__(self, compute: Compute) -> None:
         self.compute = compute
@@ -42,14 +57,8 @@ class Here:
         future.set_result(attempt(self.compute, batch, report))
         return future
 
-    def stop(self) -> None:
-        pass
 
-    def close(self) -> None:
-        pass
-
-
-class Threads:
+class Threads(Place):
     """Threads of this process, for a compute function that lets others run meanwhile."""
 
     def __init__(self, compute: Compute, count: int) -> None:
@@ -67,28 +76,6 @@ class Threads:
         self._executor.shutdown(wait=True, cancel_futures=True)
 
 
-class Elsewhere:
-    """An executor of the user's, as of a cluster; its owner ends it."""
-
-    width = 1_000_000  # it knows best how many it takes at a time
-
-    def __init__(self, compute: Compute, executor: Executor) -> None:
-        self.compute, self.executor = compute, executor
-        self._futures: list[Future[Attempt]] = []
-
-    def submit(self, batch: Batch, report: Report) -> Future[Attempt]:
-        future = self.executor.submit(attempt, self.compute, batch, Report(_nobody, report.saved))
-        self._futures.append(future)
-        return future
-
-    def stop(self) -> None:
-        for future in self._futures:
-            future.cancel()
-
-    def close(self) -> None:
-        self.stop()
-
-
 def until(stopped: threading.Event, report: Report) -> Report:
     """The report of work that is interrupted once the event is set."""
 
@@ -98,10 +85,6 @@ def until(stopped: threading.Event, report: Report) -> Report:
         report(fraction, text)
 
     return Report(show, report.saved, report.save)
-
-
-def _nobody(_fraction: float, _text: str) -> None:
-    pass
 
 
 Factory = Callable[[Compute, int], Place]  # a place of so many workers

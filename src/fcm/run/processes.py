@@ -18,12 +18,12 @@ from typing import BinaryIO, cast
 
 from fcm import signals
 from fcm.run.frames import BATCH, PROGRESS, SHARE, STATE, STOP, WORK, receive, send
-from fcm.run.places import Died
+from fcm.run.places import Died, Place
 from fcm.run.work import Attempt, Batch, Compute, Report
 from fcm.threads import one_each
 
 
-class Processes:
+class Processes(Place):
     """So many processes, each begun when it is first needed."""
 
     def __init__(self, compute: Compute, count: int) -> None:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from concurrent.futures import CancelledError, Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from fcm.run.checkpoint import Results
-from fcm.run.places import Died, Factory, Here, Place, Threads
+from fcm.run.elsewhere import Elsewhere
+from fcm.run.places import Again, Died, Factory, Gone, Here, Place, Threads
 from fcm.run.processes import Processes
 from fcm.run.progress import Bar
 from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
@@ -26,6 +29,7 @@ class Outcome:
     results: dict[int, list[Any]] = field(default_factory=dict)
     parts: dict[int, list[Any]] = field(default_factory=dict)  # of batches that were interrupted
     interrupted: bool = False
+    lost: str = ""  # why, where it was the place that took nothing any more
 
     def of(self, number: int) -> list[Any]:
         """What there is of a batch."""
@@ -38,6 +42,11 @@ def place_for(jobs: int, *, threads: bool = False) -> Factory:
         return lambda compute, _count: Here(compute)
     kind = Threads if threads else Processes
     return lambda compute, count: kind(compute, min(jobs, count))
+
+
+def place_of(executor: Executor) -> Factory:
+    """An executor of the caller's, who ends it."""
+    return lambda compute, _count: Elsewhere(compute, executor)
 
 
 def sweep(
@@ -58,8 +67,8 @@ def sweep(
     batches
         Their results do not depend on where and in which order they are computed.
     at
-        Where to compute: `place_for(jobs)`, or for any executor of `concurrent.futures`
-        ``lambda compute, count: Elsewhere(compute, executor)``; by default this process.
+        Where to compute: `place_for(jobs)`, `place_of(executor)`, or a cluster (`fcm.run.cluster.connected`);
+        by default this process.
     kept
         What is finished already, and where every batch goes that is finished from now on.
 
@@ -67,6 +76,8 @@ def sweep(
     ------
     KeyboardInterrupt
         If it is interrupted before anything is finished; later, what is finished is returned.
+    Gone
+        If the place takes nothing any more before anything is finished; later, as an interruption.
     """
     return _Sweep(compute, batches, at or place_for(1), kept or Results(), progress).run()
 
@@ -84,6 +95,7 @@ class _Sweep:
         self.outcome = Outcome(dict(kept.finished))
         self.bar = Bar([len(batch) for batch in batches], kept.finished, progress)
         self.waiting: dict[Future[Attempt], int] = {}
+        self.done: SimpleQueue[Future[Attempt]] = SimpleQueue()  # of those, as they come
         self.states: deque[tuple[int, Any]] = deque()  # not kept yet
 
     def run(self) -> Outcome:
@@ -94,7 +106,7 @@ class _Sweep:
                 self.outcome.results[number] = [Lost(DIED) for _ in self.batches[number]]
         outcome = self.outcome
         if outcome.interrupted and not outcome.results and not any(outcome.parts.values()):
-            raise KeyboardInterrupt
+            raise Gone(outcome.lost) if outcome.lost else KeyboardInterrupt
         return outcome
 
     def _at_once(self, left: Sequence[int]) -> list[int]:
@@ -102,6 +114,7 @@ class _Sweep:
         if not left:
             return []
         place, died = self.at(self.compute, len(left)), []
+        self.waiting, self.done = {}, SimpleQueue()
         try:
             for number, done in self._computed(place, left):
                 if done is None:
@@ -115,24 +128,46 @@ class _Sweep:
             if isinstance(stop, _Stopped):
                 self.outcome.parts[stop.number] = stop.results
             self._hand_over(place)
+        except Gone as gone:
+            self.outcome.interrupted, self.outcome.lost = True, str(gone)
+            self._hand_over(place)
         finally:
             place.close()
-            self.waiting.clear()
         return died
 
     def _computed(self, place: Place, left: Sequence[int]) -> Iterator[tuple[int, Attempt | None]]:
-        todo, draw = deque(left), isinstance(place, Here)
+        todo = deque(left)
         while todo or self.waiting:
             while todo and len(self.waiting) < place.width:
-                number = todo.popleft()
-                saved, save = self.kept.states.get(number, ()), self._saver(number, draw)
-                report = Report(self.bar.of(number, draw), saved, save)
-                self.waiting[place.submit(self.batches[number], report)] = number
-            done, _ = wait(self.waiting, POLL, FIRST_COMPLETED)
-            self._keep_states()
-            for future in done:
-                yield self.waiting.pop(future), _result(future)
+                self._submit(place, todo.popleft())
+            for future in self._arrived():
+                number = self.waiting.pop(future)
+                try:
+                    found = _result(place, future)
+                except Again:
+                    todo.appendleft(number)
+                else:
+                    yield number, found
+            place.look()
             self.bar.draw()
+
+    def _submit(self, place: Place, number: int) -> None:
+        at_once = isinstance(place, Here)
+        saved, save = self.kept.states.get(number, ()), self._saver(number, at_once)
+        future = place.submit(self.batches[number], Report(self.bar.of(number, at_once), saved, save))
+        self.waiting[future] = number
+        future.add_done_callback(self.done.put)
+
+    def _arrived(self) -> list[Future[Attempt]]:
+        """The futures that are done, waited for a little; what was saved meanwhile is kept."""
+        found = []
+        try:
+            found.append(self.done.get(timeout=POLL))
+            while True:
+                found.append(self.done.get_nowait())
+        except Empty:
+            self._keep_states()
+        return found
 
     def _saver(self, number: int, at_once: bool) -> Callable[[Any], None]:
         """What keeps a state of a batch; other threads leave it to this one."""
@@ -156,7 +191,9 @@ class _Sweep:
         done, _ = wait(self.waiting, GRACE)
         self._keep_states()
         for future in done:
-            number, found = self.waiting[future], _result(future)
+            number, found = self.waiting[future], None
+            with suppress(Again, Gone):
+                found = _result(place, future)
             if found is not None and not found.interrupted:
                 self._finish(number, found.results)
             elif found is not None:
@@ -171,8 +208,9 @@ class _Stopped(KeyboardInterrupt):
         self.number, self.results = number, results
 
 
-def _result(future: Future[Attempt]) -> Attempt | None:
+def _result(place: Place, future: Future[Attempt]) -> Attempt | None:
+    """What came of a batch; None if its process has died."""
     try:
-        return future.result()
+        return place.result(future)
     except (Died, CancelledError):
         return None

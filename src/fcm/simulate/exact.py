@@ -15,7 +15,7 @@ from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
 from fcm.response.result import INTERRUPTED, Curve, Response
 from fcm.response.trace import ResponseError
-from fcm.run import Checkpoint, Interrupted, Progress, Report, fingerprint
+from fcm.run import Checkpoint, Factory, Interrupted, Progress, Report, fingerprint
 from fcm.scene.model import Scene
 from fcm.simulate.branch import shown
 from fcm.simulate.explore import Explorer
@@ -33,6 +33,7 @@ def trace_exact(
     progress: Progress | None = None,
     *,
     jobs: int = 1,
+    place: Factory | None = None,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
 ) -> Response:
@@ -51,7 +52,7 @@ def trace_exact(
         downward sweep, each point continuing the last; without it the curve is followed through its range.
     progress : optional
         Called now and then with the finished fraction and a text.
-    jobs, keep, resume
+    jobs, place, keep, resume
         As in `fcm.response.trace`.
 
     Raises
@@ -68,7 +69,7 @@ def trace_exact(
     """
     begin, scenes, frequencies = time.perf_counter(), scene.each_curve(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint)
+        sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
         mark = fingerprint(METHOD, frequencies)
         curves = sweep.curves(ExactWork(frequencies), [(one,) for one in scenes], mark, progress, STATES)
         contacts = tuple(contact.name for contact in scenes[0].contacts)
