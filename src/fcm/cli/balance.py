@@ -61,6 +61,14 @@ def check_level(
         raise click.UsageError("--accuracy is of no use with --level: give --harmonics.")
 
 
+def check_peaks_only(wanted: bool, span: tuple[float, float] | None, csv: object) -> None:
+    """A usage error if only peaks are wanted of what has none, or where there is a row for each point."""
+    if wanted and span is not None:
+        raise click.UsageError("--peaks-only is of no use with --level, whose curves have no peaks.")
+    if wanted and csv is not None:
+        raise click.UsageError("--csv has a row for each point; with --peaks-only use -o FILE.nc or --json.")
+
+
 def check_options(
     chosen: tuple[int, ...] | None, error: float | None, method: str, table: str | None
 ) -> None:

@@ -22,6 +22,7 @@ OF_NO_USE = {  # with --compare, and why
     "csv": "it has no curves to write; -o FILE.nc holds the errors",
     "jobs": "the methods are timed on one core",
     "cluster": "the methods are timed on one core",
+    "peaks_only": "it has no curves to write; -o FILE.nc holds the errors",
     "resume": "it is not kept in between",
     "keep_all": "it runs every method with and without what is left out",
 }

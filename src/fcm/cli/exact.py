@@ -18,6 +18,7 @@ OF_NO_USE = {  # with --method exact, and why
     "table": "it needs no coefficients",
     "tolerance": "it leaves nothing out",
     "keep_all": "it leaves nothing out anyway",
+    "peaks_only": "its points say which of them are not unique",
 }
 
 

@@ -84,6 +84,9 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "--leave-out-tolerance", "tolerance", type=click.FloatRange(min=0.0), default=1e-5, show_default=True,
     metavar="X", help="Greatest relative change of the response by what is left out.",
 )  # fmt: skip
+@click.option(
+    "--peaks-only", is_flag=True, help="Write peaks, folds and errors of each curve, not its points."
+)
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
 @largest_file_option
 @about_scenes
@@ -111,6 +114,7 @@ def respond(
     cluster: str | None,
     resume: bool,
     tolerance: float,
+    peaks_only: bool,
     keep_all: bool,
     largest_file: int,
     compare: bool,
@@ -132,6 +136,7 @@ def respond(
     cluster_option.check_options(cluster, level)
     exact.check_options(method, at, level)
     balance.check_level(level, at, accuracy, method)
+    balance.check_peaks_only(peaks_only, level, csv)
     balance.check_options(harmonics, accuracy, method, table)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
@@ -143,6 +148,7 @@ def respond(
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
     announce(messages, loaded, method, at)
     balanced = {"tolerance": None if keep_all else tolerance, "harmonics": harmonics, "accuracy": accuracy}
+    balanced["peaks_only"] = peaks_only
     outputs = Outputs(messages, output, csv, history_csv)
     with outputs.kept(resume) as checkpoint, cluster_option.place_of(cluster) as place:
         options: dict[str, Any] = {"jobs": jobs, "place": place, "keep": checkpoint}

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
-from fcm.plot.read import BoolArray, FloatArray, floats, read_response
+from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 IntArray = npt.NDArray[np.intp]
 
-_NEEDED = ("peak_amplitude", "peak_frequency", "complete")
+_NEEDED = ("dof", "peak_amplitude", "peak_frequency", "complete")
 _DECADES = 100.0  # positive swept values that span more are on a logarithmic axis
 _MOST_LINES = 12  # more combinations of the other swept values than this are a cloud of points
 _MARK = "#c03020"
@@ -43,22 +43,16 @@ class Peaks:
 
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    from netCDF4 import Dataset
-
-    response = read_response(path)
-    with Dataset(str(path)) as data:
-        missing = [name for name in _NEEDED if name not in data.variables]
-        if missing:
-            raise PlotError(f"{path}: not a response file: it has no variable {', '.join(missing)}")
-        amplitude, frequency, complete = (floats(data.variables[name]) for name in _NEEDED)
-    shape = (len(response.curves), len(response.dofs))
-    if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
-        raise PlotError(f"{path}: not a response file: its peaks have shape {amplitude.shape}, not {shape}")
-    keys = response.curves[0].parameters if response.curves else {}
-    swept = {key: np.array([curve.parameters[key] for curve in response.curves]) for key in keys}
-    return Peaks(
-        response.dofs, response.frequency_unit, swept, amplitude, frequency, complete == 1, response.length
-    )
+    with opened(path, "a response file", _NEEDED) as data:
+        variables = data.variables
+        dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
+        amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
+        swept = swept_values(variables)
+        shape = (len(complete), len(dofs))
+        if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
+            raise ValueError(f"its peaks have shape {amplitude.shape}, not {shape}")
+        unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
+    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length))
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:

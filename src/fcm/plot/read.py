@@ -93,7 +93,7 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
 
 def _hint(dataset: Any) -> str:
     """Which command draws the file, if one does."""
-    kinds = {"displacement": "history", "amplitude": "response"}
+    kinds = {"displacement": "history", "amplitude": "response", "peak_amplitude": "peak"}
     found = next((what for name, what in kinds.items() if name in dataset.variables), "")
     return f"; try fcm plot {found}" if found else ""
 

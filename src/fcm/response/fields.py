@@ -10,6 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.response.gist import gist_of
+from fcm.response.padded import Padded, by_fold, by_point
 from fcm.response.result import Curve, Response
 from fcm.units import in_unit
 
@@ -68,6 +70,7 @@ LENGTHS = (
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
     "harmonic_amplitude", "slip_path",
 )  # fmt: skip
+CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
 FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
 
 
@@ -75,7 +78,7 @@ class Field(NamedTuple):
     """One variable of the file."""
 
     dims: tuple[str, ...]
-    values: npt.NDArray[Any]
+    values: npt.NDArray[Any] | Padded
     attrs: dict[str, str]
 
 
@@ -90,7 +93,8 @@ def fields_of(response: Response) -> dict[str, Field]:
         values = np.array([parameters[key] for parameters in swept])
         out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"})
     if response.curves or response.histories is None:
-        out |= _point_fields(response)
+        out |= _gist_fields(response) if response.peaks_only else _point_fields(response)
+        out |= _curve_fields(response)
     if response.histories is not None:
         from fcm.motion import output
 
@@ -109,14 +113,13 @@ def _with_units(fields: dict[str, Field], units: tuple[str, str]) -> dict[str, F
 def _point_fields(response: Response) -> dict[str, Field]:
     """Every variable of the curves."""
     curves, unit = response.curves, response.frequency_unit
-    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
     out: dict[str, Field] = {}
 
     def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
-        out[name] = Field(("curve", "point", *dims), _padded([pick(c) for c in curves]), attrs)
+        out[name] = Field(("curve", "point", *dims), by_point(curves, pick), attrs)
 
     excitation = "excitation frequency"
-    points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=cf_unit)
+    points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=CF_UNIT[unit])
     if any(c.level is not None for c in curves):
         level = "level of the forces: all amplitudes times this"
         points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
@@ -149,7 +152,6 @@ def _point_fields(response: Response) -> dict[str, Field]:
             out[name].attrs["long_name"] = meaning
         for name, (dims, attrs) in ORBITS.items():
             points(name, partial(_of_orbits, name=name), dims, **attrs)
-    out |= _curve_fields(response, cf_unit)
     return out
 
 
@@ -157,12 +159,15 @@ def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
     """Amplitude and phase of each harmonic, by its number; NaN for those that a curve has not."""
     numbers = sorted({h for curve in curves for h in curve.harmonics})
     dims = ("curve", "point", "harmonic", "dof")
-    X = _padded([_by_number(curve, numbers) for curve in curves])
+
+    def picked(part: Callable[[Any], FloatArray]) -> Padded:
+        return by_point(curves, lambda curve: part(_by_number(curve, numbers)))
+
     sine = "as harmonic_amplitude * sin(harmonic omega t + harmonic_phase)"
     return {
         "harmonic": Field(("harmonic",), np.array(numbers), {"long_name": "number of the harmonic"}),
-        "harmonic_amplitude": Field(dims, np.abs(X), {"long_name": "amplitude of the harmonic"}),
-        "harmonic_phase": Field(dims, np.angle(X), {"long_name": f"phase, {sine}", "units": "radian"}),
+        "harmonic_amplitude": Field(dims, picked(np.abs), {"long_name": "amplitude of the harmonic"}),
+        "harmonic_phase": Field(dims, picked(np.angle), {"long_name": f"phase, {sine}", "units": "radian"}),
     }
 
 
@@ -193,13 +198,35 @@ def _of_cycle(curve: Curve, column: int) -> FloatArray:
     return curve.cycle[..., column]
 
 
-def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
+def _gist_fields(response: Response) -> dict[str, Field]:
+    """What is known of all points of each curve, where they are not written."""
+    gists = [curve.gist or gist_of(curve) for curve in response.curves]
+    of_all = {
+        "greatest_table_error": ("largest table_error of the curve", [one.table_error for one in gists]),
+        "greatest_truncation_error": (
+            "largest truncation_error of the curve",
+            [one.truncation_error for one in gists],
+        ),
+        "points": ("points that were computed", [one.points for one in gists]),
+    }
+    out = {
+        name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
+        for name, (meaning, values) in of_all.items()
+    }
+    if not response.complete:
+        reasons = np.array([curve.reason for curve in response.curves])
+        out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
+    return out
+
+
+def _curve_fields(response: Response) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
+    cf_unit = CF_UNIT[unit]
     peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
-    folds = _padded([in_unit(c.folds, unit) for c in curves])
+    folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
-    by_dof, by_fold = ("curve", "dof"), ("curve", "fold")
+    by_dof = ("curve", "dof")
     return {
         "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
         "peak_frequency": Field(
@@ -213,7 +240,7 @@ def _curve_fields(response: Response, cf_unit: str) -> dict[str, Field]:
             {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
         ),
         "fold_frequency": Field(
-            by_fold,
+            ("curve", "fold"),
             folds,
             {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
         ),
@@ -231,17 +258,5 @@ def _level_folds(curves: Sequence[Curve]) -> dict[str, Field]:
     if all(curve.level is None for curve in curves):
         return {}
     text = "levels of the forces at the folds in order along the curve"
-    levels = _padded([np.array(curve.level_folds) for curve in curves])
+    levels = by_fold(curves, lambda curve: np.array(curve.level_folds))
     return {"fold_level": Field(("curve", "level_fold"), levels, {"long_name": text, "units": "1"})}
-
-
-def _padded(parts: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
-    """Arrays of different length stacked; padded with NaN, or '' for text."""
-    longest = max((part.shape[0] for part in parts), default=0)
-    text = bool(parts) and parts[0].dtype.kind == "U"
-    tail = parts[0].shape[1:] if parts else ()
-    kind = np.result_type("<U6" if text else np.float64, *parts)
-    out = np.full((len(parts), longest, *tail), "" if text else np.nan, dtype=kind)
-    for row, part in zip(out, parts, strict=True):
-        row[: part.shape[0]] = part
-    return out

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.response.gist import Gist, without_points
 from fcm.response.jumps import Jump
 from fcm.response.result import DEFECT, Curve, Orbits, Peak
 from fcm.response.trace import Wanted, traced_curve
@@ -15,7 +16,7 @@ from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
-KINDS = (Curve, Orbits, Jump, Peak)  # what results consist of
+KINDS = (Curve, Gist, Orbits, Jump, Peak)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
     *("table_error", "error", "truncation_error"),
@@ -27,12 +28,15 @@ class Work:
     """What all groups are traced with."""
 
     wanted: Wanted
+    peaks_only: bool = False
+    samples: int = 0  # points that are kept all the same
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         curves = []
         for number, scene in enumerate(group):
             report(number / len(group), "")
-            curves.append(traced_curve(scene, self.wanted))
+            curve = traced_curve(scene, self.wanted)
+            curves.append(without_points(curve, self.samples) if self.peaks_only else curve)
         return curves
 
 

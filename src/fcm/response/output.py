@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy as np
 import fcm
 from fcm.files import replacing
 from fcm.response.fields import ORBIT_KINDS, Field, fields_of
+from fcm.response.padded import Padded
 from fcm.response.result import Orbits, Response
 from fcm.units import in_unit
 
@@ -56,8 +58,15 @@ def attributes(response: Response) -> dict[str, str]:
         "layout": LAYOUT,
         "source": f"fcm {fcm.__version__}, {_kind(response)}",
         "frequency_unit": response.frequency_unit,
-        "summary": json.dumps(summary(response), allow_nan=False),
+        "summary": json.dumps(_summary(response), allow_nan=False),
     }
+
+
+def _summary(response: Response) -> dict[str, Any]:
+    """What the file says of itself; of curves without points it has all that in its variables."""
+    if not response.peaks_only:
+        return summary(response)
+    return {key: value for key, value in summary(replace(response, curves=[])).items() if key != "curves"}
 
 
 def _kind(response: Response) -> str:
@@ -76,7 +85,7 @@ def to_dataset(response: Response) -> xarray.Dataset:
     import xarray
 
     fields = fields_of(response)
-    variables = {name: (f.dims, f.values, f.attrs) for name, f in fields.items()}
+    variables = {name: (f.dims, np.asarray(f.values), f.attrs) for name, f in fields.items()}
     coords = {name: variables.pop(name) for name in ["dof", "contact", *_coordinates(response, fields)]}
     return xarray.Dataset(variables, coords, attributes(response))
 
@@ -96,24 +105,40 @@ def write_netcdf(response: Response, path: str | Path) -> None:
     with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
         file.setncatts(attributes(response))
         for name, field in fields.items():
-            for dim, size in zip(field.dims, field.values.shape, strict=True):
-                if dim not in file.dimensions:
-                    file.createDimension(dim, size)
-            text = field.values.dtype.kind == "U"
-            kind: Any = str if text else field.values.dtype
-            options: dict[str, Any] = (
-                {}
-                if text
-                else {"zlib": True}
-                if field.values.dtype.kind == "i"
-                else {"fill_value": np.nan, "zlib": True}
-            )
-            variable = file.createVariable(name, kind, field.dims, **options)
-            variable[...] = field.values.astype(object) if text else field.values
+            variable = _written(file, name, field)
             variable.setncatts(field.attrs)
             of = [x for x in coordinates if set(fields[x].dims) <= set(field.dims)]
             if of and name not in coordinates:
                 variable.coordinates = " ".join(of)
+
+
+def _written(file: Any, name: str, field: Field) -> Any:
+    """A variable of an open file; what is of many curves is made and written some curves at a time."""
+    for dim, size in zip(field.dims, field.values.shape, strict=True):
+        if dim not in file.dimensions:
+            file.createDimension(dim, size)
+    if not isinstance(field.values, Padded):
+        variable = _variable(file, name, field.dims, field.values.dtype)
+        variable[...] = _storable(field.values)
+        return variable
+    step, (count, *rest) = field.values.step, field.values.shape
+    chunks = (max(min(step, count), 1), *(max(size, 1) for size in rest))
+    variable = _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks)
+    for begin in range(0, count, step):
+        variable[begin : begin + step] = _storable(field.values.part(begin, begin + step))
+    return variable
+
+
+def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], **options: Any) -> Any:
+    if kind.kind == "U":
+        return file.createVariable(name, str, dims, **options)
+    if kind.kind == "f":
+        options["fill_value"] = np.nan
+    return file.createVariable(name, kind, dims, zlib=True, **options)
+
+
+def _storable(values: Any) -> Any:
+    return values.astype(object) if values.dtype.kind == "U" else values
 
 
 def write_csv(response: Response, path: str | Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.response.gist import Gist, gist_of, worst
 from fcm.response.jumps import Jump, jumps
 from fcm.scene.model import Scene
 from fcm.units import in_unit
@@ -76,6 +77,7 @@ class Curve:
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
+    gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
 
     @property
     def points(self) -> int:
@@ -86,18 +88,6 @@ class Curve:
     def branch(self) -> npt.NDArray[np.intp]:
         """Number of the branch of each point, (point,); a row of NaN stands between branches."""
         return np.cumsum(np.isnan(self.frequency))
-
-    def worst(self, errors: FloatArray) -> float | None:
-        """Largest error of the curve that is known."""
-        known = errors[np.isfinite(errors)]
-        return float(known.max()) if known.size else None
-
-    def _stable(self) -> bool | None:
-        """Whether all of the curve is stable; None where that is not known."""
-        stable = self.stable[np.isfinite(self.frequency)]
-        if (stable == 0.0).any():
-            return False
-        return True if stable.size and (stable == 1.0).all() else None
 
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
@@ -115,15 +105,9 @@ class Curve:
             "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
         }
 
-    def _peak(self, peak: Peak, unit: str) -> dict[str, Any]:
+    def _peak(self, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
         """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
-        known = self.frequency[np.isfinite(self.frequency)]
-        at_edge = (
-            self.complete
-            and self.level is None
-            and known.size > 1
-            and peak.frequency in (known.min(), known.max())
-        )
+        at_edge = self.complete and self.level is None and peak.frequency in gist.ends
         return {
             "amplitude": peak.amplitude,
             "frequency": float(in_unit(peak.frequency, unit)),
@@ -133,20 +117,21 @@ class Curve:
 
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
+        gist = self.gist or gist_of(self)
         return {
             "parameters": self.parameters,
-            "points": self.points,
+            "points": gist.points,
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
             **({"harmonics": list(self.harmonics)} if self.harmonics else {}),
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
-            "peak": {d: self._peak(peak, unit) for d, peak in self.peaks.items()},
+            "peak": {d: self._peak(peak, gist, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
             **({} if self.level is None else {"level_folds": self.level_folds}),
-            "jumps": [self._jump(jump, unit) for jump in self.jumps()],
-            "stable": self._stable(),
-            "table_error": self.worst(self.table_error),
-            "truncation_error": self.worst(self.truncation_error),
+            "jumps": [self._jump(jump, unit) for jump in gist.jumps],
+            "stable": gist.stable,
+            "table_error": gist.table_error,
+            "truncation_error": gist.truncation_error,
             **({} if self.orbits is None else self._of_orbits(self.orbits)),
             "seconds": self.seconds,
         }
@@ -161,7 +146,7 @@ class Curve:
             for k in np.flatnonzero(known & (self.frequency == omega))[:1]
         }
         return {
-            "closure_error": self.worst(orbits.closure_error),
+            "closure_error": worst(orbits.closure_error),
             "repeats": sorted({int(x) for x in orbits.repeats[here]}),
             "not_unique": int(known.sum()),
             **({"peak_range": families} if families else {}),
@@ -190,6 +175,11 @@ class Response:
         """The response of a scene that has a schedule, but no range of frequencies."""
         contacts = tuple(contact.name for contact in scene.contacts)
         return Response(scene.title, scene.modal.dofs, contacts, [], "none", scene.frequency_unit)
+
+    @property
+    def peaks_only(self) -> bool:
+        """Whether there are peaks and folds, and no points."""
+        return any(curve.gist is not None for curve in self.curves)
 
     @property
     def complete(self) -> bool:

@@ -12,7 +12,7 @@ from fcm.response import sentences
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
 from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
-from fcm.response.put_back import checked, restored
+from fcm.response.put_back import EACH_CHECKED, checked, restored
 from fcm.response.result import Response
 from fcm.response.trace import METHODS, ResponseError, Wanted, wanted_of
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
@@ -35,6 +35,7 @@ def trace(
     accuracy: float | None = None,
     jobs: int = 1,
     place: Factory | None = None,
+    peaks_only: bool = False,
     tolerance: float | None = TOLERANCE,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
@@ -61,6 +62,8 @@ def trace(
         Processes for the groups of curves; 0 for one on each core.
     place : optional
         Where they are computed instead: `fcm.run.place_of` an executor, or `fcm.run.cluster.connected`.
+    peaks_only : bool
+        Keep peaks, folds and errors of each curve, and not its points.
     tolerance : float, optional
         Greatest relative change of the response by what is left out; 0 leaves out only what has no effect
         at all, None nothing.
@@ -87,7 +90,7 @@ def trace(
     with checkpoint_of(keep, resume) as checkpoint:
         curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
         wanted = wanted_of(scene, harmonics, accuracy)
-        response = _traced(_Sweep(scene, method, table, wanted, curves), tolerance, progress)
+        response = _traced(_Sweep(scene, method, table, wanted, peaks_only, curves), tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
     response.defects = curves.defects
@@ -121,18 +124,26 @@ class _Sweep:
     """One after the other the sweeps of a run, each with less left out; one bar for all of them."""
 
     def __init__(
-        self, scene: Scene, method: str, table: Table | None, wanted: Wanted, curves: CurveSweep
+        self,
+        scene: Scene,
+        method: str,
+        table: Table | None,
+        wanted: Wanted,
+        peaks_only: bool,
+        curves: CurveSweep,
     ) -> None:
         self.scene, self.method, self.table, self.curves = scene, method, table, curves
-        self.wanted = wanted
+        self.wanted, self.peaks_only = wanted, peaks_only
         self.table_idle = method == "table" and table is None  # until it is opened
         # of the table before it is used, for it counts its look-ups
-        self.mark = b"" if curves.checkpoint is None else fingerprint(method, table)
+        options = (method, table, wanted.harmonics, wanted.accuracy, peaks_only)
+        self.mark = b"" if curves.checkpoint is None else fingerprint(*options)
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
         batches = in_batches(lighter.curves)
-        work = Work(replace(self.wanted, table=self._table(lighter)))
+        samples = EACH_CHECKED if lighter.above is not None else 0
+        work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         scene, contacts = self.scene, tuple(c.name for c in batches[0][0].contacts)
         curves = self.curves.curves(work, batches, self.mark, progress)
         return Response(scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit)

@@ -46,7 +46,8 @@ def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
     found: Curve = _at(curve, POINTS, shown)
     harmonic = None if curve.harmonic is None else curve.harmonic[..., shown]
     peaks = {name: curve.peaks[name] for name in dofs}
-    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic)
+    gist = None if curve.gist is None else curve.gist.at(shown)
+    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic, gist=gist)
 
 
 def _record(record: Any, shown: Any) -> Any:

@@ -30,7 +30,7 @@ from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.rules import ANY, RULES, Rule
 from fcm.scene.section import Section
 
-MOST_CURVES = 100_000
+MOST_CURVES = 1_000_000
 
 FORMS = (
     "a list of numbers, { from = , to = , count = }, "

@@ -1,0 +1,70 @@
+"""What all points of a curve say together, and curves of which little more than that is kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.response.jumps import Jump
+
+if TYPE_CHECKING:
+    from fcm.response.result import Curve
+
+NO_ENDS = (np.nan, np.nan)
+
+
+@dataclass(frozen=True)
+class Gist:
+    """Numbers of a curve for which all its points are needed."""
+
+    points: int
+    ends: tuple[float, float]  # [rad/s] lowest and highest frequency; of a single point, and of none, NaN
+    stable: bool | None  # whether all of the curve is; None where that is not known
+    jumps: list[Jump]  # of a slow upward and a slow downward sweep
+    table_error: float | None  # the largest that is known
+    truncation_error: float | None
+
+    def at(self, shown: npt.NDArray[np.bool_]) -> Gist:
+        """At some of the degrees of freedom."""
+        found = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
+        return replace(self, jumps=found)
+
+
+def gist_of(curve: Curve) -> Gist:
+    """The gist of a curve that has all its points."""
+    known = curve.frequency[np.isfinite(curve.frequency)]
+    return Gist(
+        points=known.size,
+        ends=(float(known.min()), float(known.max())) if known.size > 1 else NO_ENDS,
+        stable=_stable(curve),
+        jumps=curve.jumps(),
+        table_error=worst(curve.table_error),
+        truncation_error=worst(curve.truncation_error),
+    )
+
+
+def without_points(curve: Curve, most: int = 0) -> Curve:
+    """A curve with its gist and so many of its points at most: where displacements are greatest."""
+    at = np.flatnonzero(np.isfinite(curve.frequency))
+    if at.size:
+        at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
+    values = {field.name: getattr(curve, field.name) for field in fields(curve)}
+    kept = {name: value[at] for name, value in values.items() if isinstance(value, np.ndarray)}
+    return replace(curve, **kept, gist=gist_of(curve))
+
+
+def worst(errors: FloatArray) -> float | None:
+    """The largest error that is known."""
+    known = errors[np.isfinite(errors)]
+    return float(known.max()) if known.size else None
+
+
+def _stable(curve: Curve) -> bool | None:
+    stable = curve.stable[np.isfinite(curve.frequency)]
+    if (stable == 0.0).any():
+        return False
+    return True if stable.size and (stable == 1.0).all() else None
