@@ -238,9 +238,9 @@ def test_two_keys_for_one_number(data, mistakes, one, other):
 
 
 def test_too_many_curves(data, mistakes):
-    values = {"from": 1, "to": 2, "count": 1000}
+    values = {"from": 1, "to": 2, "count": 1001}
     data["sweep"] = dict.fromkeys(["contact.shroud.n_0", "contact.shroud.k_u"], values)
-    assert "sweep: asks for 1000000 curves; there can be 100000" in mistakes(data)
+    assert "sweep: asks for 1002001 curves; there can be 1000000" in mistakes(data)
 
 
 def test_a_key_path_without_quotes(data, mistakes):

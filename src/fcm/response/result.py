@@ -169,17 +169,13 @@ class Response:
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
+    peaks_only: bool = False  # whether the curves were asked for without their points
 
     @staticmethod
     def without_curves(scene: Scene) -> Response:
         """The response of a scene that has a schedule, but no range of frequencies."""
         contacts = tuple(contact.name for contact in scene.contacts)
         return Response(scene.title, scene.modal.dofs, contacts, [], "none", scene.frequency_unit)
-
-    @property
-    def peaks_only(self) -> bool:
-        """Whether there are peaks and folds, and no points."""
-        return any(curve.gist is not None for curve in self.curves)
 
     @property
     def complete(self) -> bool:

@@ -146,7 +146,11 @@ class _Sweep:
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         scene, contacts = self.scene, tuple(c.name for c in batches[0][0].contacts)
         curves = self.curves.curves(work, batches, self.mark, progress)
-        return Response(scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit)
+        response = Response(
+            scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit
+        )
+        response.peaks_only = self.peaks_only
+        return response
 
     def _table(self, lighter: Lighter) -> Table | None:
         """What the curves are followed with; a table only if a contact needs it."""

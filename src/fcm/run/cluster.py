@@ -86,45 +86,63 @@ def _client(address: str) -> Any:
 
 
 class Workers:
-    """The workers that a scheduler has, and which of them are of this fcm."""
+    """The workers that a scheduler has, and which of them have this fcm."""
 
     def __init__(self, client: Any, address: str) -> None:
         self.client, self.address, self.lost = client, address, f"the scheduler at {address} was lost"
-        self.refused: dict[str, str] = {}  # why, by address
-        self._looked, self._alone = -LOOK, 0.0
-        self.width = AHEAD
+        self.threads: dict[str, int] = {}  # of those that are there, by address
+        self.fits: dict[str, bool] = {}  # of all that were asked
+        self._looked, self._last = -LOOK, time.monotonic()
         try:
             client.wait_for_workers(1, timeout=FIRST)
         except Exception:
             raise ClusterError(
                 f"the scheduler at {address} has no workers; one is started with: dask worker {address}"
             ) from None
-        if not self.good():
+        self.look()
+        if not self.good:
             raise ClusterError(f"the scheduler at {address} has no worker with this fcm")
 
+    @property
     def good(self) -> list[str]:
-        """The addresses of those that have this fcm; of others a warning says why they are given nothing."""
-        asked_by, good = identity(), []
-        for address, found in self.client.run(identity, on_error="return").items():
-            if found == asked_by:
-                good.append(address)
-            elif address not in self.refused:
-                other = f"it has no fcm ({_first_line(found)})"
-                self.refused[address] = other_fcm(found, asked_by) if isinstance(found, tuple) else other
-                warnings.warn(f"worker {address} is refused: {self.refused[address]}", stacklevel=2)
-        return good
+        """The addresses of those that have this fcm."""
+        return [address for address in self.threads if self.fits[address]]
+
+    @property
+    def width(self) -> int:
+        """Batches for them at a time; none as long as there is nobody to compute one."""
+        return AHEAD * sum(self.threads[address] for address in self.good)
 
     def look(self) -> None:
-        """How many there are now; `Gone` if there have been none for long."""
+        """See who is there, and ask those who are new; `Gone` if there has been nobody for long."""
         if (now := time.monotonic()) - self._looked < LOOK:
             return
         self._looked = now
         with suppress(Exception):  # that the scheduler is lost is told by every batch it has
-            threads = self.client.nthreads(callback_timeout=LOOK)
-            self.width = AHEAD * max(sum(threads.values()), 1)
-            self._alone = 0.0 if threads else self._alone or now
-        if self._alone and now - self._alone > ALONE:
-            raise Gone(f"the scheduler at {self.address} has had no workers for {ALONE:.0f} s")
+            threads = self.client.nthreads(callback_timeout=ANSWER)
+            self._ask([address for address in threads if address not in self.fits])
+            self.threads = {address: count for address, count in threads.items() if address in self.fits}
+        if self.good:
+            self._last = now
+        elif now - self._last > ALONE:
+            raise Gone(f"the scheduler at {self.address} has had no worker with this fcm for {ALONE:.0f} s")
+
+    def look_again(self) -> None:
+        """Somebody is there who was not: see at the next look."""
+        self._looked = -LOOK
+
+    def _ask(self, new: list[str]) -> None:
+        """Whether new ones have this fcm; of those that have not a warning says why they are refused."""
+        if not new:
+            return
+        asked_by = identity()
+        answers = self.client.run(identity, workers=new, on_error="return", callback_timeout=ANSWER)
+        for address, found in answers.items():
+            self.fits[address] = found == asked_by
+            if not self.fits[address]:
+                none = f"it has no fcm ({_first_line(found)})"
+                why = other_fcm(found, asked_by) if isinstance(found, tuple) else none
+                warnings.warn(f"worker {address} is refused: {why}", stacklevel=2)
 
 
 class Cluster(Elsewhere):
@@ -137,7 +155,6 @@ class Cluster(Elsewhere):
                 warnings.simplefilter("ignore")  # of its size; it goes to each worker once
                 work = workers.client.submit(pickle.loads, pickle.dumps(compute, protocol=5), pure=False)
             super().__init__(work, workers.client.get_executor(pure=False))
-            self.good = workers.good() if workers.refused else []
         except Exception as error:
             raise Gone(workers.lost) from error
         self.look()
@@ -148,18 +165,21 @@ class Cluster(Elsewhere):
 
     def result(self, future: Future[Attempt]) -> Attempt:
         try:
-            if isinstance(future.exception(), Refused):  # by a worker that has come meanwhile
+            if isinstance(future.exception(), Refused):  # by one that has just come, or was there to take it
                 del self._sizes[future]
-                self.good = self.workers.good()
-                raise (
-                    Again if self.good else Gone(f"no worker of {self.workers.address} has this fcm any more")
-                )
+                self.workers.look_again()
+                raise Again
         except CancelledError:
             raise Gone(self.workers.lost) from None
         return super().result(future)
 
     def _given(self, compute: Any, task: bytes) -> Future[Attempt]:
-        only = {"workers": self.good, "allow_other_workers": True} if self.good else {}
+        good, only = self.workers.good, {}
+        if len(good) < len(self.workers.threads):
+            only = {
+                "workers": good,
+                "allow_other_workers": True,
+            }  # should they all die: it comes back from others
         future: Future[Attempt] = self.executor.submit(there, compute, task, self.asked_by, **only)
         return future
 
