@@ -44,10 +44,14 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
 
 
 def check_level(
-    span: tuple[float, float] | None, at: tuple[float, ...] | None, error: float | None, method: str
+    span: tuple[float, float] | None,
+    at: tuple[float, ...] | None,
+    error: float | None,
+    method: str,
+    mode: int | None = None,
 ) -> None:
     """A usage error if a span of levels lacks its frequency, or is given with what means nothing then."""
-    if span is None:
+    if span is None or mode is not None:
         return
     if at is None:
         raise click.UsageError(

@@ -13,6 +13,7 @@ from fcm.cli.messages import Messages, pass_messages
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "modes": ("fcm.cli.modes:modes", "The modes of a scene and what moves them, as a table."),
+    "mode": ("fcm.cli.nonlinear_mode:mode", "Frequency and damping of a nonlinear mode against amplitude."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
     "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),

@@ -22,6 +22,10 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     if not curves:
         return "no curve"
     names = list(short_names(curves[0]["parameters"]).values())
+    if any("mode" in curve for curve in curves):
+        from fcm.cli.nonlinear_mode import as_table as of_modes
+
+        return of_modes(summary, names, unit)
     dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length)]
     if any(curve.get("jumps") for curve in curves):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import balance, exact, schedule
+from fcm.cli import balance, exact, nonlinear_mode, schedule
 from fcm.cli import cluster as cluster_option
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
@@ -60,6 +60,11 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "loads stay.",
 )  # fmt: skip
 @click.option(
+    "--mode", type=click.IntRange(min=1), metavar="N",
+    help="Follow the nonlinear mode N instead: its frequency and damping against its modal amplitude, "
+    "over the span --level.",
+)  # fmt: skip
+@click.option(
     "--at", multiple=True, metavar="F", callback=exact.frequencies,
     help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
     "for more. With --method exact.",
@@ -107,6 +112,7 @@ def respond(
     harmonics: tuple[int, ...] | None,
     accuracy: float | None,
     level: tuple[float, float] | None,
+    mode: int | None,
     at: tuple[float, ...] | None,
     table: str | None,
     max_step: float | None,
@@ -134,8 +140,9 @@ def respond(
         write_comparison(messages, compared, table, tolerance, output, to_json)
         return
     cluster_option.check_options(cluster, level)
+    nonlinear_mode.check_options(mode, level, at)
     exact.check_options(method, at, level)
-    balance.check_level(level, at, accuracy, method)
+    balance.check_level(level, at, accuracy, method, mode)
     balance.check_peaks_only(peaks_only, level, csv)
     balance.check_options(harmonics, accuracy, method, table)
     if table is not None and method != "table":
@@ -146,7 +153,9 @@ def respond(
 
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
-    announce(messages, loaded, method, at)
+    announce(
+        messages, loaded, method if mode is None else f"nonlinear mode {mode}", at if mode is None else ()
+    )
     balanced = {"tolerance": None if keep_all else tolerance, "harmonics": harmonics, "accuracy": accuracy}
     balanced["peaks_only"] = peaks_only
     outputs = Outputs(messages, output, csv, history_csv)
@@ -154,6 +163,8 @@ def respond(
         options: dict[str, Any] = {"jobs": jobs, "place": place, "keep": checkpoint}
         if method == "exact" and (loaded.has_range or at):
             response = exact.traced(messages, loaded, at, options)
+        elif mode is not None and level is not None:
+            response = nonlinear_mode.traced(loaded, mode, level, harmonics, accuracy)
         elif level is not None and at is not None:
             response = _levels(loaded, at, level, harmonics)
         elif loaded.has_range:

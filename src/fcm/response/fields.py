@@ -65,6 +65,25 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 }
 
 
+def _of_mode(name: str) -> Callable[[Curve], Any]:
+    """What picks an array of a nonlinear mode; none of a curve that was lost."""
+    return lambda c: c.frequency if c.mode is None else getattr(c.mode, name)
+
+
+MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] = {  # of nonlinear modes
+    "modal_amplitude": (_of_mode("amplitude"), (), {"long_name": "modal amplitude, of modes of mass 1"}),
+    "damping_ratio": (_of_mode("damping"), (), {"long_name": "damping ratio of the mode", "units": "1"}),
+    "modal_force": (_of_mode("force"), (), {"long_name": "what the scene's forces do on the mode"}),
+    "resonant_level": (
+        _of_mode("resonant_level"),
+        (),
+        {
+            "long_name": "level of the scene's forces with which the resonance has the amplitude",
+            "units": "1",
+        },
+    ),
+}
+
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
@@ -123,6 +142,20 @@ def _point_fields(response: Response) -> dict[str, Field]:
     if any(c.level is not None for c in curves):
         level = "level of the forces: all amplitudes times this"
         points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
+    if any(c.mode is not None for c in curves):
+        out["frequency"].attrs["long_name"] = "frequency of the nonlinear mode"
+        for name, (picked, tail, about) in MODE.items():
+            points(name, picked, tail, **about)
+        beside = (
+            "frequency of the scene's forces with which they give the amplitude, below and above resonance"
+        )
+        points(
+            "flank_frequency",
+            lambda c: np.empty((0, 2)) if c.mode is None else in_unit(c.mode.flanks, unit),
+            ("flank",),
+            long_name=beside,
+            units=cf_unit,
+        )
     points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"

@@ -10,13 +10,13 @@ import numpy as np
 
 from fcm.response.gist import Gist, without_points
 from fcm.response.jumps import Jump
-from fcm.response.result import DEFECT, Curve, Orbits, Peak
+from fcm.response.result import DEFECT, Curve, NonlinearMode, Orbits, Peak, Resonance
 from fcm.response.trace import Wanted, traced_curve
 from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
-KINDS = (Curve, Gist, Orbits, Jump, Peak)  # what results consist of
+KINDS = (Curve, Gist, Orbits, Jump, Peak, NonlinearMode, Resonance)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
     *("table_error", "error", "truncation_error"),

@@ -146,6 +146,7 @@ def write_csv(response: Response, path: str | Path) -> None:
     keys = list(response.parameters[0]) if response.parameters else []
     exact = response.method == "exact"
     levels = any(curve.level is not None for curve in response.curves)
+    modes = ("modal_amplitude", "damping_ratio") if any(c.mode is not None for c in response.curves) else ()
     kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
     unit = f" [{response.units[0]}]" if response.units[0] else ""
     bare = ("phase", "error")
@@ -160,6 +161,7 @@ def write_csv(response: Response, path: str | Path) -> None:
                 *keys,
                 f"frequency [{response.frequency_unit}]",
                 *(["level"] if levels else []),
+                *modes,
                 *columns,
                 *regimes,
                 *LAST_COLUMNS,
@@ -176,6 +178,11 @@ def write_csv(response: Response, path: str | Path) -> None:
                 writer.writerow(
                     [number, c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
                     + ([] if c.level is None else [repr(float(c.level[k]))])
+                    + (
+                        []
+                        if c.mode is None
+                        else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
+                    )
                     + [repr(float(value)) for value in values[k]]
                     + [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -45,6 +46,52 @@ class Orbits:
     periods: int = 0  # of the motion that were computed to trace the curve
 
 
+class Resonance(NamedTuple):
+    """Of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
+
+    frequency: float  # [rad/s] of the forces
+    modal_amplitude: float
+    amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
+
+
+@dataclass
+class NonlinearMode:
+    """What only the points of a nonlinear mode have; `frequency` of the curve is that of the mode."""
+
+    number: int
+    amplitude: FloatArray  # (point,) modal amplitude a, of modes of mass 1
+    damping: FloatArray  # (point,) ratio
+    force: FloatArray  # (point,) p that the scene's forces do on the mode
+    resonant_level: FloatArray  # (point,) of the scene's forces, with which the resonance has the amplitude
+    flanks: FloatArray  # (point, 2) [rad/s] where the scene's forces give the amplitude, below and above it
+    folds: list[float]  # modal amplitudes at which the curve turns back
+    resonances: list[Resonance]  # with the scene's forces
+
+    def summary(self, frequency: FloatArray, unit: str, dofs: Iterable[str]) -> dict[str, Any]:
+        """As `fcm respond --json` prints it."""
+        top = int(self.damping.argmax())
+        return {
+            "number": self.number,
+            "frequency": in_unit(frequency[[0, -1]], unit).tolist(),
+            "damping": self.damping[[0, -1]].tolist(),
+            "modal_amplitude": self.amplitude[[0, -1]].tolist(),
+            "greatest_damping": {
+                "damping": float(self.damping[top]),
+                "frequency": float(in_unit(frequency[top], unit)),
+                "modal_amplitude": float(self.amplitude[top]),
+            },
+            "folds": self.folds,
+            "resonances": [
+                {
+                    "frequency": float(in_unit(one.frequency, unit)),
+                    "modal_amplitude": one.modal_amplitude,
+                    "amplitude": {dof: one.amplitude[dof] for dof in dofs},
+                }
+                for one in self.resonances
+            ],
+        }
+
+
 @dataclass
 class Curve:
     """One response curve; frequencies in rad/s.
@@ -78,6 +125,7 @@ class Curve:
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
+    mode: NonlinearMode | None = None
 
     @property
     def points(self) -> int:
@@ -93,7 +141,7 @@ class Curve:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
         if self.orbits is not None and self.orbits.jumps is not None:
             return self.orbits.jumps
-        if self.level is not None:
+        if self.level is not None or self.mode is not None:
             return []
         return jumps(self.frequency, self.amplitude, self.stable != 0.0)  # what is unknown is no jump
 
@@ -133,6 +181,7 @@ class Curve:
             "table_error": gist.table_error,
             "truncation_error": gist.truncation_error,
             **({} if self.orbits is None else self._of_orbits(self.orbits)),
+            **({} if self.mode is None else {"mode": self.mode.summary(self.frequency, unit, self.peaks)}),
             "seconds": self.seconds,
         }
 

@@ -1,0 +1,104 @@
+"""``fcm respond --mode`` and ``fcm plot mode``: frequency and damping of a mode against its amplitude."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.report import aligned, counted, number, short, swept
+
+if TYPE_CHECKING:
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+
+OF_NO_USE = {  # with --mode, and why
+    "method": "modes are followed by the balance",
+    "table": "their forces are exact",
+    "resume": "nothing is kept of it",
+    "tolerance": "nothing is left out",
+    "keep_all": "nothing is left out",
+    "history_csv": "no schedule is simulated",
+}
+
+
+def check_options(mode: int | None, level: tuple[float, float] | None, at: tuple[float, ...] | None) -> None:
+    """A usage error if --mode lacks its span, or is given with what means nothing then."""
+    if mode is None:
+        return
+    if level is None:
+        raise click.UsageError(
+            "--mode needs --level FROM:TO, the modal amplitudes over which it is followed."
+        )
+    if not level[0] > 0.0:
+        raise click.UsageError("--mode needs a --level from more than 0: it is followed in proportion to it.")
+    if at is not None:
+        raise click.UsageError("--at is of no use with --mode: a mode has a frequency of its own.")
+    context = click.get_current_context()
+    for name, why in OF_NO_USE.items():
+        if context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
+            (option,) = (param.opts[-1] for param in context.command.params if param.name == name)
+            raise click.UsageError(f"{option} is of no use with --mode: {why}.")
+
+
+def traced(
+    scene: Scene,
+    mode: int,
+    level: tuple[float, float],
+    harmonics: tuple[int, ...] | None,
+    accuracy: float | None,
+) -> Response:
+    """The nonlinear mode of every curve of a scene."""
+    from fcm.response.mode import trace_modes
+
+    return trace_modes(scene, mode, level, harmonics=harmonics, accuracy=accuracy)
+
+
+def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
+    """One line a mode: at its ends, where it is damped most, and in resonance with the scene's forces."""
+    header = [*names, f"frequency {unit}", f"to {unit}", "damping", "to", "greatest", f"at {unit}",
+              "harmonics", "error", "points", "time [s]", f"resonances at {unit}", ""]  # fmt: skip
+    rows = []
+    for curve in summary["curves"]:
+        mode, state = curve.get("mode"), ""
+        if not curve["complete"]:
+            state = f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
+        if mode is None:
+            rows.append([*swept(curve), *["-"] * (len(header) - len(names) - 1), state])
+            continue
+        top = mode["greatest_damping"]
+        rows.append(
+            [
+                *swept(curve),
+                *map(number, mode["frequency"]),
+                *(f"{D:.4g}" for D in mode["damping"]),
+                f"{top['damping']:.4g}",
+                number(top["frequency"]),
+                counted(curve["harmonics"]),
+                short(curve["truncation_error"]),
+                str(curve["points"]),
+                f"{curve['seconds']:.3f}",
+                "  ".join(number(one["frequency"]) for one in mode["resonances"]) or "none",
+                state,
+            ]
+        )
+    return aligned([header, *rows], left=2)
+
+
+@click.command()
+@draws_file("-mode.png")
+@pass_messages
+def mode(messages: Messages, file: Path, output: Path | None) -> None:
+    """Draw the nonlinear modes of FILE, the netCDF file of `fcm respond --mode N --level FROM:TO -o FILE`.
+
+    Frequency and damping ratio against the modal amplitude; where a mode is damped most is marked.
+    """
+    from fcm.plot.mode import draw_modes, read_modes
+
+    output = picture_of(file, output, "-mode.png")
+    save_picture(draw_modes(read_modes(file)), output)
+    messages.info(f"wrote {output}")

@@ -1,0 +1,150 @@
+"""Nonlinear modes of a scene: frequency and damping of a mode against its amplitude, for each curve."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Mark, Status
+from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
+from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
+from fcm.harmonic.record import cycles, loops, states
+from fcm.harmonic.system import System
+from fcm.response.result import Curve, NonlinearMode, Resonance, Response
+from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
+from fcm.scene.model import Scene
+from fcm.scene.rules import MOST_HARMONICS
+
+WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
+WORK = 1e8  # evaluations times unknowns squared beyond which no more harmonics are tried
+
+
+def trace_modes(
+    scene: Scene,
+    number: int,
+    span: tuple[float, float],
+    *,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+) -> Response:
+    """The mode of each curve of the scene over a span of modal amplitudes.
+
+    The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
+    mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
+    are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene.
+
+    Raises
+    ------
+    ResponseError
+        If the span is out of range, or there is no such mode.
+    """
+    low, high = span
+    if not 0.0 < low < high <= WIDEST * low:
+        raise ResponseError(
+            f"level is from {low:g} to {high:g}, but the modal amplitudes must rise, from more than 0, by at "
+            f"most a factor of {WIDEST:g}"
+        )
+    begin = time.perf_counter()
+    wanted = wanted_of(scene, harmonics, accuracy)
+    try:
+        curves = [_curve(one, number, span, wanted) for one in scene.each_curve()]
+    except ModeError as error:
+        raise ResponseError(f"{scene.name}: {error}") from None
+    contacts = tuple(contact.name for contact in scene.contacts)
+    method = f"nonlinear mode {number}"
+    response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
+    response.seconds = time.perf_counter() - begin
+    return response
+
+
+def _curve(scene: Scene, number: int, span: tuple[float, float], wanted: Wanted) -> Curve:
+    begin = time.perf_counter()
+    system = System(scene, wanted.harmonics or (1,))
+    mode = nonlinear_mode(system, number, span, scene.max_step)
+    error = truncation(mode)
+    while wanted.harmonics is None and not _enough(mode, error, wanted.accuracy):
+        highest = min(2 * mode.system.harmonics[-1] + 1, MOST_HARMONICS)
+        more = nonlinear_mode(
+            system.with_harmonics(tuple(range(1, highest + 1))), number, span, scene.max_step
+        )
+        if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
+            break
+        mode, error = more, truncation(more)
+    curve = _recorded(mode, number, error)
+    if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
+        count = len(mode.system.harmonics)
+        curve.short_of = f"with {count} harmonics an estimated error of {_worst(error):.1e} remains"
+    curve.seconds = time.perf_counter() - begin
+    return curve
+
+
+def _worst(error: np.typing.NDArray[np.float64]) -> float:
+    known = error[np.isfinite(error)]
+    return float(known.max()) if known.size else np.inf
+
+
+def _enough(mode: Mode, error: np.typing.NDArray[np.float64], accuracy: float) -> bool:
+    """Whether no more harmonics are needed, or can be afforded."""
+    work = mode.path.evaluations * float(mode.problem.unknowns) ** 2
+    return _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS or work > WORK
+
+
+def _recorded(mode: Mode, number: int, error: np.typing.NDArray[np.float64]) -> Curve:
+    from fcm.response.groups import lost_curve
+
+    system, path = mode.system, mode.path
+    scene, first = system.scene, system.harmonics.index(1)
+    empty = lost_curve(scene, "no motion was found at the least amplitude; try another")
+    if path.z.shape[0] == 0:
+        return empty
+    X, mean = mode.displacements()
+    amplitude = half_peak_to_peak(X, system.harmonics)
+    X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
+    whole = path.status is Status.COMPLETE
+    return replace(
+        empty,
+        frequency=mode.omega,
+        amplitude=amplitude,
+        fundamental=np.abs(X[:, first]),
+        phase=np.angle(X[:, first]),
+        mean=mean,
+        regime=pick(states(system, mode.contacts), rows),
+        loop=loops(system, mode.contacts),
+        cycle=cycles(system, mode.contacts),
+        stable=unknown,
+        table_error=unknown,
+        error=np.full(amplitude.shape, np.nan),
+        truncation_error=error,
+        complete=whole,
+        reason="" if whole else f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}",
+        evaluations=path.evaluations,
+        harmonics=system.harmonics,
+        harmonic=X if len(system.harmonics) > 1 else None,
+        mode=NonlinearMode(
+            number=number,
+            amplitude=mode.amplitude,
+            damping=mode.damping,
+            force=modal_force(mode),
+            resonant_level=resonant_level(mode),
+            flanks=flanks(mode),
+            folds=mode.amplitude[(path.mark & Mark.FOLD) > 0].tolist(),
+            resonances=_resonances(mode),
+        ),
+    )
+
+
+def _resonances(mode: Mode) -> list[Resonance]:
+    """With the scene's own forces."""
+    found = resonances(mode)
+    if found is None:
+        return []
+    amplitude = half_peak_to_peak(found.displacements()[0], found.system.harmonics)
+    frequency = found.omega * np.sqrt(1.0 - 2.0 * found.damping**2)
+    dofs = found.system.scene.modal.dofs
+    return [
+        Resonance(float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)))
+        for w, a, x in zip(frequency, found.amplitude, amplitude, strict=True)
+    ]

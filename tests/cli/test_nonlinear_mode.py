@@ -1,0 +1,73 @@
+"""``fcm respond --mode`` and ``fcm plot mode``."""
+
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+MODE = ("respond", "yang1998-n5", "--mode", 1, "--level", "0.1:100", "--harmonics", 1)
+
+
+@pytest.fixture
+def result(fcm, tmp_path):
+    path = tmp_path / "mode.nc"
+    assert fcm(*MODE, "-o", path, "--csv", "mode.csv").code == 0
+    return path
+
+
+def test_the_file_holds_frequency_and_damping_against_amplitude(result, tmp_path):
+    with netCDF4.Dataset(result) as data:
+        data.set_auto_mask(False)
+        a, D, w = (data[name][0] for name in ("modal_amplitude", "damping_ratio", "frequency"))
+        assert (a[0], a[-1]) == pytest.approx((0.1, 100.0))
+        assert w[0] == pytest.approx(np.sqrt(2.0), rel=1e-3) and D.max() > 4.0 * D[0]
+        level, force, flank = (data[x][0] for x in ("resonant_level", "modal_force", "flank_frequency"))
+        assert level == pytest.approx(2.0 * D * w**2 * np.sqrt(1.0 - D**2) * a / force)
+        assert np.array_equal(np.isfinite(flank[:, 1]), level <= 1.0)
+        summary = json.loads(data.summary)["curves"][0]
+    assert summary["mode"]["greatest_damping"]["damping"] == D.max()
+    rows = (tmp_path / "mode.csv").read_text().splitlines()
+    assert len(rows) == a.size + 1 and "modal_amplitude,damping_ratio" in rows[0]
+
+
+def test_json_says_where_the_forces_of_the_scene_are_in_resonance(fcm):
+    done = fcm(*MODE, "--json")
+    (one,) = json.loads(done.out)["curves"][0]["mode"]["resonances"]
+    assert done.code == 0 and one["frequency"] == pytest.approx(1.19, abs=0.01)
+    assert one["amplitude"]["u"] == pytest.approx(15.831, rel=0.02)  # the peak of the response itself
+
+
+def test_as_many_harmonics_as_an_accuracy_takes(fcm):
+    done = fcm("respond", "two-contacts", "--mode", 1, "--level", "1e-5:1e-3", "--accuracy", 1e-3, "--json")
+    curve = json.loads(done.out)["curves"][0]
+    assert done.code == 0 and len(curve["harmonics"]) > 1 and curve["truncation_error"] <= 1e-3
+
+
+def test_the_picture(fcm, result, tmp_path):
+    done = fcm("plot", "mode", result)
+    assert (done.code, done.err) == (0, f"wrote {tmp_path / 'mode-mode.png'}\n")
+    assert (tmp_path / "mode-mode.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["--mode", 1], "--mode needs --level FROM:TO"),
+        (["--mode", 1, "--level", "0:1"], "from more than 0"),
+        (["--mode", 1, "--level", "1:2", "--at", 1.2], "--at is of no use with --mode"),
+        (["--mode", 1, "--level", "1:2", "--method", "exact"], "--method is of no use with --mode"),
+        (["--mode", 9, "--level", "1:2"], "there is no mode 9; the structure has the modes 1 to 2"),
+        (["--mode", 1, "--level", "1e-9:1e9"], "by at most a factor of 1e+15"),
+        (["--mode", 0, "--level", "1:2"], "0 is not in the range x>=1"),
+    ],
+)
+def test_what_is_wrong_is_said(fcm, args, said, tmp_path):
+    done = fcm("respond", "yang1998-n5", *args, "-o", "a.nc")
+    assert done.code == 2 and said in done.err and not (tmp_path / "a.nc").exists()
+
+
+def test_another_file_is_no_mode(fcm, tmp_path):
+    netCDF4.Dataset(tmp_path / "a.nc", "w").close()
+    done = fcm("plot", "mode", "a.nc")
+    assert done.code == 2 and "no variable frequency, modal_amplitude" in done.err
