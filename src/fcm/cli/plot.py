@@ -16,6 +16,7 @@ PICTURES = {
     "mode": ("fcm.cli.nonlinear_mode:mode", "Frequency and damping of a nonlinear mode against amplitude."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
+    "sensitivity": ("fcm.cli.of_peaks:sensitivity", "What each number of the scene does to a peak."),
     "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "surface": ("fcm.cli.coefficients:surface", "Friction coefficients over preload and load variation."),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import balance, exact, nonlinear_mode, schedule
+from fcm.cli import balance, exact, nonlinear_mode, of_peaks, schedule
 from fcm.cli import cluster as cluster_option
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
@@ -92,6 +92,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 @click.option(
     "--peaks-only", is_flag=True, help="Write peaks, folds and errors of each curve, not its points."
 )
+@click.option(
+    "--sensitivity", is_flag=True,
+    help="Derivatives of every peak, its height and its frequency, by the numbers of the scene.",
+)  # fmt: skip
 @click.option("--keep-all", is_flag=True, help="Leave nothing out.")
 @largest_file_option
 @about_scenes
@@ -121,6 +125,7 @@ def respond(
     resume: bool,
     tolerance: float,
     peaks_only: bool,
+    sensitivity: bool,
     keep_all: bool,
     largest_file: int,
     compare: bool,
@@ -147,6 +152,7 @@ def respond(
     balance.check_options(harmonics, accuracy, method, table)
     if table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
+    of_peaks.check_options(sensitivity, method, level, mode)
     if resume and output is None and csv is None and history_csv is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     from fcm.response.visible import visible
@@ -171,6 +177,8 @@ def respond(
             response = _traced(messages, loaded, method, table, {**options, **balanced})
         else:
             response = _without_curves(loaded)
+        if sensitivity:
+            of_peaks.added(messages, response, loaded)
         if loaded.schedule and level is None:
             response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)

@@ -114,6 +114,8 @@ def fields_of(response: Response) -> dict[str, Field]:
     if response.curves or response.histories is None:
         out |= _gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= _curve_fields(response)
+        if any(c.sensitivity is not None for c in response.curves):
+            out |= sensitivity_fields(response)
     if response.histories is not None:
         from fcm.motion import output
 
@@ -154,7 +156,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
             lambda c: np.empty((0, 2)) if c.mode is None else in_unit(c.mode.flanks, unit),
             ("flank",),
             long_name=beside,
-            units=cf_unit,
+            units=CF_UNIT[unit],
         )
     points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
@@ -282,6 +284,38 @@ def _curve_fields(response: Response) -> dict[str, Field]:
             ("curve",),
             complete,
             {"long_name": "1 where the curve reached the end of its range", "units": "1"},
+        ),
+    }
+
+
+def sensitivity_fields(response: Response) -> dict[str, Field]:
+    """Derivatives of the peaks by the numbers of the scene; NaN where a curve has none."""
+    curves, dofs = response.curves, len(response.dofs)
+    numbers = next(c.sensitivity.numbers for c in curves if c.sensitivity is not None)
+    height, frequency = (np.full((len(curves), dofs, len(numbers)), np.nan) for _ in range(2))
+    values, kind = (
+        np.full((len(curves), len(numbers)), np.nan),
+        np.full((len(curves), dofs), "", dtype="<U16"),
+    )
+    for i, curve in enumerate(curves):
+        if curve.sensitivity is not None:
+            height[i], values[i] = curve.sensitivity.height, curve.sensitivity.values
+            frequency[i] = in_unit(curve.sensitivity.frequency, response.frequency_unit)
+            kind[i] = [one.value for one in curve.sensitivity.kind]
+    by = ("curve", "dof", "number")
+    return {
+        "number": Field(
+            ("number",), np.array(numbers), {"long_name": "number of the scene, by its key path"}
+        ),
+        "number_value": Field(("curve", "number"), values, {"long_name": "value of the number"}),
+        "sensitivity": Field(by, height, {"long_name": "derivative of the greatest amplitude by the number"}),
+        "frequency_sensitivity": Field(
+            by, frequency, {"long_name": "derivative of its frequency by the number"}
+        ),
+        "peak_kind": Field(
+            ("curve", "dof"),
+            kind,
+            {"long_name": "what the greatest amplitude is: smooth, corner, end of range, or unknown"},
         ),
     }
 

@@ -65,7 +65,8 @@ def attributes(response: Response) -> dict[str, str]:
 def _summary(response: Response) -> dict[str, Any]:
     """What the file says of itself; of curves without points it has all that in its variables."""
     if not response.peaks_only:
-        return summary(response)
+        curves = [replace(curve, sensitivity=None) for curve in response.curves]
+        return summary(replace(response, curves=curves))
     return {key: value for key, value in summary(replace(response, curves=[])).items() if key != "curves"}
 
 

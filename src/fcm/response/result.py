@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.harmonic.sensitivity import Sensitivities
 from fcm.response.gist import Gist, gist_of, worst
 from fcm.response.jumps import Jump, jumps
 from fcm.scene.model import Scene
@@ -126,6 +127,7 @@ class Curve:
     orbits: Orbits | None = None  # of the exact motion
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
     mode: NonlinearMode | None = None
+    sensitivity: Sensitivities | None = None  # of the peaks
 
     @property
     def points(self) -> int:
@@ -175,6 +177,7 @@ class Curve:
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
             "peak": {d: self._peak(peak, gist, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
+            **({} if self.sensitivity is None else {"sensitivity": self._of_numbers(self.sensitivity, unit)}),
             **({} if self.level is None else {"level_folds": self.level_folds}),
             "jumps": [self._jump(jump, unit) for jump in gist.jumps],
             "stable": gist.stable,
@@ -184,6 +187,26 @@ class Curve:
             **({} if self.mode is None else {"mode": self.mode.summary(self.frequency, unit, self.peaks)}),
             "seconds": self.seconds,
         }
+
+    def _of_numbers(self, found: Sensitivities, unit: str) -> dict[str, Any]:
+        """Derivatives of each peak in the summary; relative: share of the peak by share of the number."""
+        out: dict[str, Any] = {}
+        for dof, kind, height, frequency in zip(
+            self.peaks, found.kind, found.height, in_unit(found.frequency, unit), strict=True
+        ):
+            top = self.peaks[dof].amplitude
+            out[dof] = {"peak": kind.value, "numbers": {}}
+            for key, value, by, by_frequency in zip(
+                found.numbers, found.values, height, frequency, strict=True
+            ):
+                relative = float(by * value / top) if top > 0.0 else np.nan
+                out[dof]["numbers"][key] = {
+                    "value": float(value),
+                    "amplitude": float(by),
+                    "frequency": float(by_frequency),
+                    "relative": relative,
+                }
+        return out
 
     def _of_orbits(self, orbits: Orbits) -> dict[str, Any]:
         """What only exact motions have, in the summary."""

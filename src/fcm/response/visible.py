@@ -45,9 +45,12 @@ def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
         orbits = replace(orbits, jumps=[_at(jump, ("before", "after"), shown) for jump in orbits.jumps])
     found: Curve = _at(curve, POINTS, shown)
     harmonic = None if curve.harmonic is None else curve.harmonic[..., shown]
+    if (by := curve.sensitivity) is not None:
+        kinds = tuple(kind for kind, one in zip(by.kind, shown, strict=True) if one)
+        by = replace(by, height=by.height[shown], frequency=by.frequency[shown], kind=kinds)
     peaks = {name: curve.peaks[name] for name in dofs}
     gist = None if curve.gist is None else curve.gist.at(shown)
-    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic, gist=gist)
+    return replace(found, peaks=peaks, orbits=orbits, harmonic=harmonic, gist=gist, sensitivity=by)
 
 
 def _record(record: Any, shown: Any) -> Any:

@@ -49,11 +49,15 @@ class Draft:
 
     def values(self, scene: Scene, addresses: tuple[Address, ...]) -> list[Any]:
         """What stands at addresses in a curve of the scene."""
-        draft: Any = self.parts
+        return [_at(self.fixed(scene).parts, address) for address in addresses]
+
+    def fixed(self, scene: Scene) -> Draft:
+        """What a curve of the scene was made of, its swept values in their places."""
+        parts: Any = self.parts
         for one in self.swept:
             for address in one.addresses:
-                draft = replaced(draft, address, scene.parameters[one.key])
-        return [_at(draft, address) for address in addresses]
+                parts = replaced(parts, address, scene.parameters[one.key])
+        return Draft(parts, ())
 
     def at(self, used: npt.NDArray[np.bool_]) -> Draft:
         """The same at some of the degrees of freedom."""

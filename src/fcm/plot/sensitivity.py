@@ -1,0 +1,111 @@
+"""What each number of a scene does to a peak: relative derivatives as bars, the greatest first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.plot.errors import PlotError
+from fcm.plot.read import FloatArray, floats, opened, swept_values
+from fcm.plot.style import WIDTH, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_NEEDED = (
+    "sensitivity", "frequency_sensitivity", "number", "number_value", "peak_amplitude", "peak_frequency",
+    "peak_kind", "dof",
+)  # fmt: skip
+_MOST = 20  # bars
+_NOTHING = 1e-3  # of the greatest: numbers that do less are not drawn
+_RISE, _FALL = "#2b6a99", "#c03020"
+_REMARKS = {"corner": "peak at a corner", "end of range": "peak at an end of the range"}
+
+
+@dataclass(frozen=True)
+class DrawnSensitivity:
+    """Relative derivatives; NaN where they are not known."""
+
+    dofs: tuple[str, ...]
+    numbers: tuple[str, ...]
+    parameters: tuple[dict[str, float], ...]  # of each curve
+    height: FloatArray  # (curve, dof, number) share of the peak by share of the number
+    frequency: FloatArray  # (curve, dof, number) the same of the peak's frequency
+    kind: tuple[tuple[str, ...], ...]  # of each curve and dof
+
+
+def read_sensitivity(path: Path) -> DrawnSensitivity:
+    """Read what ``fcm respond --sensitivity -o`` has written; PlotError if the file is something else."""
+    with opened(path, "a file with sensitivities (fcm respond --sensitivity)", _NEEDED) as data:
+        variables = data.variables
+        height, frequency, value, peak, at = (
+            floats(variables[name])
+            for name in (
+                "sensitivity", "frequency_sensitivity", "number_value", "peak_amplitude", "peak_frequency"
+            )
+        )  # fmt: skip
+        swept = swept_values(variables)
+        kind = np.atleast_2d(variables["peak_kind"][:])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            relative = value[:, None, :] / peak[:, :, None], value[:, None, :] / at[:, :, None]
+        return DrawnSensitivity(
+            tuple(map(str, np.atleast_1d(variables["dof"][:]))),
+            tuple(map(str, np.atleast_1d(variables["number"][:]))),
+            tuple({key: float(x[i]) for key, x in swept.items()} for i in range(len(height))),
+            height * relative[0],
+            frequency * relative[1],
+            tuple(tuple(map(str, row)) for row in kind),
+        )
+
+
+def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int = 0) -> Figure:
+    """The figure of one peak: bars of its height, and of its frequency."""
+    if dof is not None and dof not in drawn.dofs:
+        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(drawn.dofs)}")
+    if curve >= len(drawn.parameters):
+        raise PlotError(f"no curve {curve}; the file has the curves 0 to {len(drawn.parameters) - 1}")
+    column = 0 if dof is None else drawn.dofs.index(dof)
+    height, frequency = drawn.height[curve, column], drawn.frequency[curve, column]
+    shown = _greatest(height, frequency)
+    if shown.size == 0:
+        raise PlotError(f"the sensitivities of {drawn.dofs[column]} on curve {curve} are not known")
+    names = [drawn.numbers[i] for i in shown]
+    with house_style():
+        figure = new_figure(WIDTH, 0.9 + 0.24 * len(names))
+        left, right = figure.subplots(1, 2, sharey=True)
+        _bars(left, height[shown], names, "of the peak")
+        _bars(right, frequency[shown], names, "of its frequency")
+        figure.suptitle(_title(drawn, curve, column), fontsize=9, parse_math=False)
+        figure.supxlabel("Change [%] for 1 % of the number", fontsize=9)
+    return figure
+
+
+def _greatest(height: FloatArray, frequency: FloatArray) -> np.ndarray:
+    """The numbers that do most, the greatest first."""
+    size = np.nan_to_num(np.maximum(np.abs(height), np.abs(frequency)))
+    order = np.argsort(-np.nan_to_num(np.abs(height)), kind="stable")
+    return np.array([i for i in order if size[i] > _NOTHING * size.max(initial=0.0)][:_MOST], dtype=int)
+
+
+def _bars(axes: Axes, values: FloatArray, names: list[str], title: str) -> None:
+    place = np.arange(len(names))
+    axes.barh(place, values, height=0.62, color=np.where(values >= 0.0, _RISE, _FALL).tolist())
+    axes.set_yticks(place, names, parse_math=False)
+    axes.axvline(0.0, color="black", linewidth=0.6)
+    axes.set_title(title, fontsize=9)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    axes.tick_params(axis="y", which="both", length=0)
+    axes.minorticks_off()
+    axes.margins(x=0.08)
+
+
+def _title(drawn: DrawnSensitivity, curve: int, column: int) -> str:
+    parts = [drawn.dofs[column]]
+    if drawn.parameters[curve]:
+        parts.append(", ".join(f"{key} = {value:.4g}" for key, value in drawn.parameters[curve].items()))
+    parts.append(_REMARKS.get(drawn.kind[curve][column], ""))
+    return "; ".join(filter(None, parts))

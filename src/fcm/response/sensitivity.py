@@ -1,0 +1,63 @@
+"""Derivatives of the peaks of a response's curves by the numbers of the scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.sensitivity import Kind, Sensitivities, sensitivities
+from fcm.response.put_back import unknowns
+from fcm.response.result import Curve, Response
+from fcm.run import Progress
+from fcm.scene.model import FloatArray, Scene
+
+REMARKS = {
+    Kind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
+    Kind.EDGE: "at an end of the range: the derivative of the amplitude there",
+    Kind.UNKNOWN: "cannot be told",
+}
+
+
+def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
+    """Give every curve that has peaks their sensitivities; the scene is that of the response."""
+    scenes = scene.each_curve()
+    for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
+        if progress is not None:
+            progress(i / len(scenes), "sensitivities")
+        if curve.points and curve.harmonics and one.contacts:
+            curve.sensitivity = _of_curve(curve, one)
+
+
+def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:
+    reported = [d for d, dof in enumerate(curve.peaks) if not scene.reported or dof in scene.reported]
+    peaks = [_peak(curve, scene, d) for d in reported if curve.amplitude[:, d].any()]
+    return sensitivities(scene, curve.harmonics, [one for one in peaks if one is not None], len(curve.peaks))
+
+
+def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] | None:
+    """The point of a peak, and whether it is where the range ends."""
+    amplitude: npt.NDArray[np.float64] = curve.amplitude[:, dof]
+    if not np.isfinite(amplitude).any():
+        return None
+    i = int(np.nanargmax(amplitude))
+    known = curve.frequency[np.isfinite(curve.frequency)]
+    edge = bool(curve.frequency[i] in (known.min(), known.max()))
+    return dof, unknowns(curve, scene, np.array([i]), curve.harmonics)[0], edge
+
+
+def remarks(response: Response) -> list[str]:
+    """What to know of peaks whose derivatives are not those of a smooth curve."""
+    found = []
+    for kind, what in REMARKS.items():
+        of = [
+            (number, dof)
+            for number, curve in enumerate(response.curves)
+            if curve.sensitivity is not None
+            for dof, own in zip(curve.peaks, curve.sensitivity.kind, strict=True)
+            if own is kind and np.isfinite(curve.peaks[dof].amplitude)
+        ]
+        if of:
+            number, dof = of[0]
+            which = f"curve {number}, {dof}" + (f", and {len(of) - 1} more" if len(of) > 1 else "")
+            found.append(f"sensitivities of peaks ({which}) {what}")
+    return found

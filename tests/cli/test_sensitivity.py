@@ -1,0 +1,66 @@
+"""``fcm respond --sensitivity`` and ``fcm plot sensitivity``."""
+
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def result(fcm, scene, tmp_path):
+    path = tmp_path / "result.nc"
+    assert fcm("respond", scene, "--sensitivity", "--harmonics", 1, "-o", path).code == 0
+    return path
+
+
+def test_the_file_and_json_hold_the_derivative_of_each_peak_by_each_number(fcm, scene, result):
+    done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, "--json")
+    of_u = json.loads(done.out)["curves"][0]["sensitivity"]["u"]
+    with netCDF4.Dataset(result) as data:
+        names = data["number"][:].tolist()
+        assert data["sensitivity"].dimensions == ("curve", "dof", "number")
+        assert [of_u["numbers"][name]["amplitude"] for name in names] == data["sensitivity"][0, 0].tolist()
+        assert data["peak_kind"][0].tolist() == ["smooth", "smooth"]
+    assert {"contact.shroud.mu", "contact.shroud.n_0", "force.u.amplitude", "modal.damping.1"} <= set(names)
+    # all forces and preloads together: the response is in proportion to them
+    parts = [of_u["numbers"][name] for name in ("contact.shroud.n_0", "force.u.amplitude")]
+    assert sum(part["relative"] for part in parts) == pytest.approx(1.0, rel=1e-9)
+    assert sum(part["value"] * part["frequency"] for part in parts) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_the_picture(fcm, result, tmp_path):
+    done = fcm("plot", "sensitivity", result, "--dof", "v")
+    assert (done.code, done.err) == (0, f"wrote {tmp_path / 'result-sensitivity.png'}\n")
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [(["--dof", "x"], "no degree of freedom 'x'"), (["--curve", 3], "the file has the curves 0 to 0")],
+)
+def test_what_is_not_there_to_draw_is_said(fcm, result, args, said):
+    done = fcm("plot", "sensitivity", result, *args)
+    assert done.code == 2 and said in done.err
+
+
+def test_a_file_without_them(fcm, scene):
+    assert fcm("respond", scene, "--harmonics", 1, "-o", "plain.nc").code == 0
+    done = fcm("plot", "sensitivity", "plain.nc")
+    assert done.code == 2 and "fcm respond --sensitivity" in done.err
+
+
+@pytest.mark.parametrize(
+    "args", [["--method", "exact"], ["--level", "0:1", "--at", 1.0], ["--mode", 1, "--level", "1:2"]]
+)
+def test_only_of_peaks_of_a_balance(fcm, scene, args):
+    done = fcm("respond", scene, "--sensitivity", *args)
+    assert done.code == 2 and "--sensitivity is of no use with" in done.err
+
+
+def test_a_hidden_degree_of_freedom_has_none(fcm, scene):
+    scene.write_text(scene.read_text() + "output = []\n")
+    scene.write_text(scene.read_text().replace('normal     = "v"', "normal     = { u = 0.5, v = 1.0 }"))
+    done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, "--json")
+    curve = json.loads(done.out)["curves"][0]
+    assert done.code == 0 and list(curve["sensitivity"]) == list(curve["peak"])
+    assert np.isfinite([n["amplitude"] for n in curve["sensitivity"]["u"]["numbers"].values()]).all()

@@ -1,0 +1,118 @@
+"""Derivatives of peaks by the numbers of a scene against differences of peaks of ordinary runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.sensitivity import Kind
+from fcm.response.sensitivity import add_sensitivities
+from fcm.response.sweep import trace
+from fcm.scene import load_scene, scene_from_dict
+
+STEP = 1e-3  # of a number
+
+
+def oscillator(numbers=(), **response):
+    """The paper's, with numbers at key paths."""
+    values = {
+        "contact.c.mu": 0.4, "contact.c.k_u": 1.0, "contact.c.k_v": 1.0, "contact.c.n_0": 5.0,
+        "force.u.amplitude": 1.0, "modal.frequency.0": 1.0, "modal.damping.0": 0.01,
+        "modal.frequency.1": 10.0,
+        "modal.damping.1": 0.01, "force.v.amplitude": 1.0,
+    } | dict(numbers)  # fmt: skip
+
+    def of(prefix):
+        return [values[key] for key in values if key.startswith(prefix)]
+
+    contact = {key.rpartition(".")[2]: value for key, value in values.items() if key.startswith("contact")}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v"], "frequency": of("modal.frequency"),
+                "damping": of("modal.damping"), "shapes": [[0.707, 0.707], [1.0, -0.5]],
+            },
+            "contact": [{"name": "c", "tangential": "u", "normal": "v", **contact}],
+            "force": [
+                {"dof": "u", "amplitude": values["force.u.amplitude"]},
+                {"dof": "v", "amplitude": values["force.v.amplitude"], "phase": 0.3},
+            ],
+            "response": {"frequency": [0.7, 1.7]} | response,
+        }
+    ), values  # fmt: skip
+
+
+def run(scene, harmonics):
+    return trace(scene, "closed-form", harmonics=harmonics)
+
+
+def check(numbers, harmonics, kind, keys=None, **response):
+    """Every derivative of both peaks against differences of the fourth order."""
+    scene, values = oscillator(numbers, **response)
+    found = run(scene, harmonics)
+    add_sensitivities(found, scene)
+    own = found.curves[0].sensitivity
+    assert own.kind == (kind if isinstance(kind, tuple) else (kind, kind))
+    for key in keys or values:
+        step = STEP * abs(values[key])
+        peaks = []
+        for k in (2, 1, -1, -2):
+            moved, _ = oscillator({**numbers, key: values[key] + k * step}, **response)
+            peaks.append([one[:2] for one in run(moved, harmonics).curves[0].peaks.values()])
+        p = np.array(peaks)
+        by = (8.0 * (p[1] - p[2]) - (p[0] - p[3])) / (12.0 * step)
+        n = own.numbers.index(key)
+        size = np.array([one[:2] for one in found.curves[0].peaks.values()]) / abs(values[key])
+        assert own.height[:, n] == pytest.approx(by[:, 0], rel=1e-6, abs=1e-8 * size[:, 0].max()), key
+        assert own.frequency[:, n] == pytest.approx(by[:, 1], rel=1e-6, abs=1e-8 * size[:, 1].max()), key
+
+
+FEW = ("contact.c.mu", "contact.c.n_0", "modal.damping.0")
+
+
+@pytest.mark.parametrize(
+    ("n_0", "harmonics", "keys"),
+    [(10.0, 1, None), (-5.0, 1, FEW), (10.0, 3, ("contact.c.n_0", "modal.frequency.0"))],
+)
+def test_smooth_peaks(n_0, harmonics, keys):
+    check({"contact.c.n_0": n_0}, harmonics, Kind.SMOOTH, keys)
+
+
+def test_peaks_where_the_range_ends_are_of_the_amplitude_there():
+    check({"contact.c.n_0": 10.0}, 1, Kind.EDGE, FEW, frequency=[0.7, 1.2])
+
+
+def test_a_peak_at_a_corner_of_the_curve():
+    numbers = {
+        "modal.frequency.1": 1.59, "modal.damping.0": 0.065, "modal.damping.1": 0.065, "contact.c.mu": 0.348,
+        "contact.c.k_u": 2.47, "contact.c.k_v": 1.9, "contact.c.n_0": 4.45, "force.v.amplitude": 0.0,
+    }  # fmt: skip
+    keys = ("contact.c.n_0", "contact.c.k_v", "modal.frequency.0")
+    check(numbers, 1, (Kind.SMOOTH, Kind.CORNER), keys, frequency=[0.5, 3.0])
+
+
+def test_values_of_a_sweep_are_those_of_the_curve():
+    swept = load_scene("yang1998")
+    swept = replace(swept, curves=swept.curves[3:4])
+    found = run(swept, 1)
+    add_sensitivities(found, swept)
+    own = found.curves[0].sensitivity
+    assert own.values[own.numbers.index("contact.shroud.n_0")] == 10.0
+    # with n_0 and the forces in proportion, so is the response
+    n_0, u, v = (
+        own.numbers.index(k) for k in ("contact.shroud.n_0", "force.u.amplitude", "force.v.amplitude")
+    )
+    scaled = 10.0 * own.height[:, n_0] + own.height[:, u] + own.height[:, v]
+    peaks = [peak.amplitude for peak in found.curves[0].peaks.values()]
+    assert scaled == pytest.approx(peaks, rel=1e-9)
+    still = 10.0 * own.frequency[:, n_0] + own.frequency[:, u] + own.frequency[:, v]
+    assert still == pytest.approx(0.0, abs=1e-8)
+
+
+def test_a_group_of_contacts_is_one_number():
+    scene = load_scene("two-contacts").in_use()
+    found = run(scene, 1)
+    add_sensitivities(found, scene)
+    numbers = found.curves[0].sensitivity.numbers
+    assert "contact.platform.gap" in numbers and "contact.platform.n_0" not in numbers
+    assert len(set(numbers)) == len(numbers)
