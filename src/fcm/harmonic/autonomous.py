@@ -26,6 +26,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Problem
+from fcm.harmonic.law import kind_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -219,8 +220,9 @@ class Autonomous(Problem):
         x, at = self.modal_amplitude(z) * z[: self.contact_unknowns], 0
         for c, law in enumerate(self.laws):
             law.bound(x, c * self.width)
-            for value in law.margin:
-                self.margin[at] = value
+            for i in range(law.margins):
+                self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
+                self.kind[at] = kind_of(law, i, c)
                 at += 1
         return 0
 

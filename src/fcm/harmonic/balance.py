@@ -266,17 +266,20 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
         by = np.asarray(self.jacobian)[:, 0]
+        assert self.condensed is not None
         self.condensed.matrix(np.asarray(row), by, np.asarray(matrix))
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        assert self.condensed is not None
         self.condensed.shorten(np.asarray(right), np.asarray(out))
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
+        assert self.condensed is not None
         self.condensed.lengthen(np.asarray(reduced), np.asarray(out))
         return 0

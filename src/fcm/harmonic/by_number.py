@@ -30,7 +30,7 @@ ComplexArray = npt.NDArray[np.complex128]
 STEP = 3e-3  # of a difference, relative to the number
 STENCIL = ((1, 0.75), (2, -0.15), (3, 1.0 / 60.0))  # of the first derivative, of the sixth order
 LEAST_MU = 1e-9  # in the place of no friction at all, to see what the first of it does
-ARRAYS = ("natural", "damping", "ports", "dofs", "force", "flexibility", "counted")
+ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "flexibility", "counted")
 
 
 def residual_rate(system: System, z: FloatArray, address: str) -> FloatArray:
@@ -89,14 +89,15 @@ class Rates:
             force = d_force = np.zeros((0, 1 + len(self.system.harmonics)), dtype=np.complex128)
         structure, rate, seen = self.system.linear, self.linear, balance.seen
         rows, shown = np.empty_like(force), np.empty((force.shape[1] - 1, structure.dofs.shape[1]), complex)
-        q = -structure.ports @ force[:, 0]
-        dq = -(rate.ports @ force[:, 0] + structure.ports @ d_force[:, 0])
+        q = structure.load - structure.ports @ force[:, 0]
+        dq = rate.load - (rate.ports @ force[:, 0] + structure.ports @ d_force[:, 0])
         da = rate.flexibility @ q + structure.flexibility @ dq
         rows[:, 0] = -(rate.ports.T @ (structure.flexibility @ q) + structure.ports.T @ da)
         for j, h in enumerate(self.system.harmonics):
             driven = float(j == seen.driven) * balance.load
-            q = driven * structure.force - structure.ports @ force[:, 1 + j]
-            dq = driven * rate.force - rate.ports @ force[:, 1 + j] - structure.ports @ d_force[:, 1 + j]
+            grown, d_grown = (one.force + z[-1] ** 2 * one.square for one in (structure, rate))
+            q = driven * grown - structure.ports @ force[:, 1 + j]
+            dq = driven * d_grown - rate.ports @ force[:, 1 + j] - structure.ports @ d_force[:, 1 + j]
             c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
             a, da = c * q, self._compliance(c, h * z[-1]) * q + c * dq
             rows[:, 1 + j] = -(rate.ports.T @ a + structure.ports.T @ da)

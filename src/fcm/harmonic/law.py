@@ -14,6 +14,11 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+if cython.compiled:
+    from cython.cimports.fcm.continuation.problem import NONE
+else:
+    from fcm.continuation.problem import NONE
+
 KINDS = cython.declare(cython.int, 8)  # of margins, at most
 
 
@@ -54,3 +59,8 @@ class Law:
     def refine(self, exact: cython.bint) -> cython.int:
         """Evaluate the law itself from now on, or an approximation of it if it has one."""
         return 0
+
+
+def kind_of(law: Law, i: int, contact: int) -> int:
+    """Of the margin i of a contact, which it is among those of all contacts; for problems in Python."""
+    return NONE if law.kind[i] == NONE else int(law.kind[i] + contact * KINDS)

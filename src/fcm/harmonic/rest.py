@@ -72,15 +72,15 @@ class Share(Problem):
     def condense(self, row: FloatArray, matrix: FloatArray) -> int:
         """The condensed system."""
         self.balance.jacobian[:, :] = self.jacobian
-        return self.balance.condense(row, matrix)
+        return int(self.balance.condense(row, matrix))
 
     def shorten(self, right: FloatArray, out: FloatArray) -> int:
         """A right-hand side of it."""
-        return self.balance.shorten(right, out)
+        return int(self.balance.shorten(right, out))
 
     def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
         """Unknowns from its solution."""
-        return self.balance.lengthen(reduced, out)
+        return int(self.balance.lengthen(reduced, out))
 
     def _placed(self, z: FloatArray) -> FloatArray:
         self.at_omega[:-1] = np.asarray(z)[:-1]

@@ -81,7 +81,7 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
     stuck, one = system.springs(stuck=True), np.eye(X.size)
     at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
     for share in (at_rest, 1.0, 0.0):
-        ports = np.linalg.solve(one + G * (stuck * share), level * X)
+        ports = np.linalg.solve(one + G * (stuck * share), level * X).astype(np.complex128)
         yield _unknowns(system.rest, ports, len(system.harmonics), system.harmonics.index(1))
 
 
@@ -133,14 +133,14 @@ def least(system: System, omega: float) -> float:
     for variation, slip, contact in _motions(system, next(linear_responses(system, omega, 1.0))):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
-        levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] * (contact.n_0 == 0.0)
+        levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []
     return min(levels)
 
 
 def _motions(system: System, x: FloatArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
     """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
     first = 2 + 4 * system.harmonics.index(1)
-    for contact, block in zip(system.scene.contacts, x.reshape(len(system.scene.contacts), -1), strict=True):
+    for contact, block in zip(system.scene.contacts, x.reshape(-1, 2 + 4 * len(system.harmonics)), strict=True):
         U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
         over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
         yield contact.k_v * abs(V), (over, under), contact

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -53,7 +53,7 @@ def without_points(curve: Curve, most: int = 0) -> Curve:
     if at.size:
         at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
-    kept = {name: value[at] for name, value in values.items() if isinstance(value, np.ndarray)}
+    kept: dict[str, Any] = {name: value[at] for name, value in values.items() if isinstance(value, np.ndarray)}
     return replace(curve, **kept, gist=gist_of(curve))
 
 

@@ -77,7 +77,9 @@ def _client(address: str) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of versions that differ: what matters is that it answers
-            return distributed.Client(address, timeout=ANSWER, set_as_default=False)
+            return distributed.Client(  # type: ignore[no-untyped-call]
+                address, timeout=ANSWER, set_as_default=False
+            )
     except Exception as error:  # of many kinds: no such host, no answer, an answer of something else
         raise ClusterError(
             f"no dask scheduler answers at {address!r} ({_first_line(error)}); "
