@@ -95,10 +95,10 @@ def test_where_only_peaks_have_no_meaning(fcm, scene, options, why):
 
 
 def test_some_curves_at_a_time_make_the_same_file(fcm, scene, monkeypatch):
-    scene.write_text(scene.read_text() + SWEEP + '"contact.shroud.mu" = [0.2, 0.4]\n')
-    assert fcm("respond", scene, "-o", "whole.nc", "--harmonics", 3).code == 0
+    scene.write_text(scene.read_text() + SWEEP)
+    assert fcm("respond", scene, "-o", "whole.nc", "--harmonics", 2).code == 0
     monkeypatch.setattr(padded, "CHUNK", 100)
-    assert fcm("respond", scene, "-o", "parts.nc", "--harmonics", 3).code == 0
+    assert fcm("respond", scene, "-o", "parts.nc", "--harmonics", 2).code == 0
     with netCDF4.Dataset("whole.nc") as whole, netCDF4.Dataset("parts.nc") as parts:
         assert parts["amplitude"].chunking()[0] == 1 < whole["amplitude"].chunking()[0]
         for name, variable in whole.variables.items():

@@ -53,7 +53,7 @@ def without_points(curve: Curve, most: int = 0) -> Curve:
     if at.size:
         at = np.unique(at[curve.amplitude[at].argmax(axis=0)])[:most]
     values = {field.name: getattr(curve, field.name) for field in fields(curve)}
-    kept: dict[str, Any] = {name: value[at] for name, value in values.items() if isinstance(value, np.ndarray)}
+    kept: dict[str, Any] = {name: x[at] for name, x in values.items() if isinstance(x, np.ndarray)}
     return replace(curve, **kept, gist=gist_of(curve))
 
 

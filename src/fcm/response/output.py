@@ -13,7 +13,7 @@ import numpy as np
 import fcm
 from fcm.files import replacing
 from fcm.response.fields import ORBIT_KINDS, Field, fields_of
-from fcm.response.padded import Padded
+from fcm.response.padded import CHUNK, Padded
 from fcm.response.result import Orbits, Response
 from fcm.units import in_unit
 
@@ -124,7 +124,8 @@ def _written(file: Any, name: str, field: Field) -> Any:
         return variable
     step, (count, *rest) = field.values.step, field.values.shape
     chunks = (max(min(step, count), 1), *(max(size, 1) for size in rest))
-    variable = _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks)
+    # each chunk is written once, so that nothing is gained by keeping many of every variable
+    variable = _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=2 * CHUNK)
     for begin in range(0, count, step):
         variable[begin : begin + step] = _storable(field.values.part(begin, begin + step))
     return variable

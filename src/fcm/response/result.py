@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -129,6 +130,10 @@ class Curve:
     mode: NonlinearMode | None = None
     sensitivity: Sensitivities | None = None  # of the peaks
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """From another process or a file: what is the same in all curves is there once."""
+        vars(self).update({name: _shared(value) for name, value in state.items()})
+
     @property
     def points(self) -> int:
         """Number of points."""
@@ -223,6 +228,17 @@ class Curve:
             "not_unique": int(known.sum()),
             **({"peak_range": families} if families else {}),
         }
+
+
+_EMPTY: dict[tuple[Any, ...], npt.NDArray[Any]] = {}  # by shape and kind
+
+
+def _shared(value: Any) -> Any:
+    if isinstance(value, np.ndarray) and value.size == 0:
+        return _EMPTY.setdefault((value.shape, value.dtype.str), value)
+    if isinstance(value, dict):
+        return {sys.intern(key) if type(key) is str else key: item for key, item in value.items()}
+    return value
 
 
 @dataclass

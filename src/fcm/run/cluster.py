@@ -69,7 +69,7 @@ def _client(address: str) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            import distributed
+            from distributed import Client
     except ImportError:
         raise ClusterError(
             "a cluster needs dask.distributed, which is not installed: pip install 'fcm[cluster]'"
@@ -77,9 +77,8 @@ def _client(address: str) -> Any:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of versions that differ: what matters is that it answers
-            return distributed.Client(  # type: ignore[no-untyped-call]
-                address, timeout=ANSWER, set_as_default=False
-            )
+            client: Any = Client
+            return client(address, timeout=ANSWER, set_as_default=False)
     except Exception as error:  # of many kinds: no such host, no answer, an answer of something else
         raise ClusterError(
             f"no dask scheduler answers at {address!r} ({_first_line(error)}); "
