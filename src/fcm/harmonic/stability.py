@@ -137,10 +137,10 @@ class _Along:
             self._between(middle, b)
 
     def _crossings(self, at: IntArray) -> Iterator[Crossing]:
-        """Where the growth changes sign between neighbours."""
+        """Where the growth changes sign between neighbours of which both are told."""
         for a, b in itertools.pairwise(at.tolist()):
             one, other = self.verdicts[a], self.verdicts[b]
-            known = not np.isnan(one.growth + other.growth) and not np.isnan([one.stable, other.stable]).all()
+            known = not np.isnan([one.growth, other.growth, one.stable, other.stable]).any()
             if b == a + 1 and known and (one.growth > 0.0) != (other.growth > 0.0):
                 found = self._crossing(a)
                 if found is not None:
