@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation.follow import Progress
-from fcm.harmonic.error import Errors, Reported, errors_along, reported
+from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
@@ -74,12 +74,26 @@ def estimated(system: System, accuracy: float, progress: Progress | None = None)
         none = np.full(len(system.scene.modal.dofs), np.nan)
         return Accurate(system, response, shown, errors, none, np.nan, False)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
-    which = heights.argmax(axis=0)
-    peak = np.array([errors[k].peak[d] for d, k in enumerate(which)])
-    height = heights.max(axis=0)
+    height, peak = heights.max(axis=0), _peaks(heights, errors)
     matter = peak[height > NOTHING * height.max()]
     worst = float(np.concatenate((matter, *(one.fold for one in errors))).max(initial=0.0))
     return Accurate(system, response, shown, errors, peak, worst, worst <= accuracy)
+
+
+def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
+    """Relative error of the greatest of heights (path, dof) of each degree of freedom.
+
+    Another path may be the highest of the corrected ones; unknown where that of one nearly as high is.
+    """
+    which, d = heights.argmax(axis=0), np.arange(heights.shape[1])
+    now = heights[which, d]
+    peak = np.array([one.peak for one in errors])[which, d]
+    corrected = np.array([one.height for one in errors])
+    greatest = np.where(np.isnan(corrected), 0.0, corrected).max(axis=0)
+    other = greatest > corrected[which, d]
+    peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
+    unknown = (np.isnan(corrected) & (heights > RIVAL * now)).any(axis=0)
+    return np.where(unknown, np.nan, peak)
 
 
 def enlarged(found: Accurate, accuracy: float) -> tuple[int, ...]:

@@ -24,7 +24,7 @@ from fcm.scene.model import FloatArray
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
 
-RIVAL = 0.8  # of the greatest amplitude: points this high may become the greatest
+RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
 
@@ -43,6 +43,7 @@ class Errors:
     amplitude (point, dof): by how much the corrected curve differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
     peak (dof,): of the height of the greatest amplitude.
+    height (dof,): the greatest amplitude of the corrected curve, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
     share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
     folds, of the greatest amplitude of the degree of freedom to which it matters most.
@@ -51,6 +52,7 @@ class Errors:
     amplitude: FloatArray
     truncation: FloatArray
     peak: FloatArray
+    height: FloatArray
     fold: FloatArray
     share: FloatArray
 
@@ -77,25 +79,31 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     corrected = Corrected(system, path, shown.amplitude)
     if corrected.linear.all():
         none = np.zeros_like(shown.amplitude)
-        return Errors(none, none[:, 0], none[0], np.zeros(len(folds)), np.zeros(HIGHEST))
+        height = shown.amplitude.max(axis=0)
+        return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
     change = corrected.everywhere(turns)
-    error = _at_frequency(path, shown, change[:, 0], change[:, 1:])
+    shift = _at_frequency(path, shown, change[:, 0], change[:, 1:])
+    error = np.abs(shift)
     typical = np.median(error, axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
     inside = (tops > 0) & (tops < len(path.z) - 1)
-    error[tops[inside], d[inside]] = _heights(corrected, change[:, 1:], tops)[inside]
+    now = shown.amplitude[tops, d]
+    height = np.where(inside, _heights(corrected, change[:, 1:], tops), now * (1.0 + shift[tops, d]))
+    relative = np.abs(height - now) / np.where(now > 0.0, now, 1.0)
+    error[tops[inside], d[inside]] = relative[inside]
     size = shown.amplitude.max(axis=1)
     return Errors(
         amplitude=error,
         truncation=(error * shown.amplitude).max(axis=1) / np.where(size > 0.0, size, 1.0),
         peak=error[tops, d],
+        height=height,
         fold=np.abs(change[folds, 0]),
         share=corrected.shares(turns, shown.amplitude.max(axis=0)),
     )
 
 
 def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude: FloatArray) -> FloatArray:
-    """Relative difference of the amplitudes to those of the corrected curve at the same frequencies."""
+    """Relative difference from the amplitudes to those of the corrected curve at the same frequencies."""
     rate = path.direction[:, -1]
     place = _places(path)
     moved = path.parameter * (1.0 + frequency)
@@ -111,8 +119,8 @@ def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude:
         out,
     )
     scale = np.where(shown.amplitude > 0.0, shown.amplitude, 1.0)
-    error: FloatArray = np.abs(out - shown.amplitude) / scale
-    return error
+    shift: FloatArray = (out - shown.amplitude) / scale
+    return shift
 
 
 def _places(path: Path) -> FloatArray:
@@ -133,7 +141,7 @@ def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatArray:
-    """Relative change of the greatest amplitudes (dof,).
+    """Greatest amplitudes of the corrected curve (dof,).
 
     Unknown where the corrected curve is not known at the highest point, or along a stretch that is nearly as
     high and may become the highest.
@@ -152,8 +160,8 @@ def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatAr
                 unknown |= rivals
             else:
                 greatest = np.maximum(greatest, found)
-    relative: FloatArray = np.abs(greatest - now) / np.where(now > 0.0, now, 1.0)
-    return np.where(unknown, np.nan, relative)
+    known: FloatArray = np.where(unknown, np.nan, greatest)
+    return known
 
 
 def _stretches(lost: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
