@@ -7,6 +7,7 @@ cdef class Monodromy:
     cdef readonly int modes, contacts, size, memories
     cdef double[:, ::1] port, X, term, work, A, E, F
     cdef int[::1] state
+    cdef readonly object propagator
     cpdef int follow(self, double omega) except -1
     cdef int begin(self) except -1
     cdef int happen(self, int e) except -1

@@ -21,6 +21,8 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import ceil
 
+from fcm.harmonic.propagator import Propagator
+
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import STICK, TWO_PI
     from cython.cimports.fcm.harmonic.sequence import Sequence
@@ -47,7 +49,9 @@ class Monodromy:
     Velocities are by the angle. Followed is what the sequence has looked at last.
     """
 
-    def __init__(self, stiffness: Stiffness, sequence: Sequence) -> None:
+    def __init__(
+        self, stiffness: Stiffness, sequence: Sequence, propagator: Propagator | None = None
+    ) -> None:
         modes, contacts = stiffness.modes, stiffness.contacts
         self.modes, self.contacts, self.stiffness, self.sequence = modes, contacts, stiffness, sequence
         self.size = 2 * modes + contacts
@@ -56,7 +60,7 @@ class Monodromy:
         self.X, self.term = np.zeros((self.size, self.size)), np.zeros((2 * modes, self.size))
         self.work = np.zeros((modes, self.size))
         self.A, self.E, self.F = np.zeros((3, 2 * modes, self.size))
-        self.memories = 0
+        self.memories, self.propagator = 0, propagator or Propagator()
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -140,9 +144,16 @@ class Monodromy:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def propagate(self, length: cython.double) -> cython.int:
-        """X by the exponential, or by its series in steps in which the terms do not grow large."""
+        """X by the exponential, by the state's eigenvalues, or by a series in steps in which its terms do not
+        grow large."""
         if self.size <= FEW:
             return self.jump(length)
+        s: Stiffness = self.stiffness
+        system = np.asarray(s.K), np.asarray(s.damping), np.asarray(s.image)
+        columns: cython.Py_ssize_t = 2 * self.modes + self.memories
+        X = np.asarray(self.X)[:, :columns]
+        if self.propagator.through(np.asarray(self.state), length, s.omega, system, X):
+            return 0
         steps: cython.int = cython.cast(cython.int, ceil(self.stiffness.rate * length / REACH))
         i: cython.int
         steps = max(steps, 1)

@@ -47,7 +47,7 @@ class Multipliers:
         self.adrift = int(np.count_nonzero(linear.adrift))
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
         self.fine = Monodromy(stiffness, Sequence(contact, finer))
-        self.plain = Monodromy(stiffness, Sequence(contact, harmonics))
+        self.plain = Monodromy(stiffness, Sequence(contact, harmonics), self.fine.propagator)
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
