@@ -33,9 +33,9 @@ def random_scene(modes: int, contacts: int, seed: int = 0) -> Scene:
             "tangential": dofs[2 * i],
             "normal": dofs[2 * i + 1],
             "mu": 0.4,
-            "k_u": 0.05,
-            "k_v": 0.05,
-            "n_0": float(rng.uniform(-0.5, 2.0)),
+            "k_u": 0.3,
+            "k_v": 0.3,
+            "n_0": float(rng.uniform(-0.2, 0.5)),
         }
         for i in range(contacts)
     ]
@@ -48,7 +48,7 @@ def random_scene(modes: int, contacts: int, seed: int = 0) -> Scene:
                 "shapes": shapes.tolist(),
             },
             "contact": contact,
-            "force": [{"dof": dofs[-1], "amplitude": 1.0}],
+            "force": [{"dof": dofs[-1], "amplitude": 3.0}],
             "response": {"frequency": [0.9, 1.2], "harmonics": 1},
         }
     )

@@ -10,6 +10,8 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 FURTHER = 8  # harmonics beyond those of the balance: those that would do most
+FEWEST = 3  # where there are so many contacts that those would be more than
+UNKNOWNS = 240  # unknowns
 LEAST = 0.01  # of what the first of them would do; what does less is not taken
 COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
 LARGE = 0.05  # a change of an amplitude beyond which the corrected point is corrected once more
@@ -74,14 +76,16 @@ class Corrector:
         A set that is there already is taken where it covers nearly as much.
         """
         square = share * share
-        most = -np.sort(-square, axis=1)[:, :FURTHER]
+        contacts = max(len(self.system.scene.contacts), 1)
+        count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))
+        most = -np.sort(-square, axis=1)[:, :count]
         enough = COVERED**2 * np.where(most > LEAST**2 * most[:, :1], most, 0.0).sum(axis=1)
         chosen: list[tuple[int, ...] | None] = [None] * len(share)
         for more in self.known:
             self._fill(chosen, more, square, enough)
         for i in range(len(share)):
             if chosen[i] is None:
-                order = np.argsort(-share[i])[:FURTHER]
+                order = np.argsort(-share[i])[:count]
                 order = order[share[i, order] > LEAST * share[i, order[0]]]
                 more = tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
                 chosen[i] = more

@@ -35,7 +35,7 @@ class Propagator:
         system: tuple[FloatArray, FloatArray, FloatArray],
         X: FloatArray,
     ) -> bool:
-        """Carry the rows (q, dq / dangle) of X, above those of w, through an angle; false if it is not known how.
+        """Carry the rows (q, dq / dangle) of X, above those of w, through an angle; false if it cannot yet.
 
         system: K, D (mode,) and B of derivatives by the angle.
         """
@@ -75,7 +75,7 @@ def _decomposed(A: FloatArray, B: FloatArray) -> tuple[ComplexArray, ...] | None
     """None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
-        unit = np.abs(vectors).max(axis=1, keepdims=True)  # places and velocities have different units
+        unit = np.repeat([1.0, np.abs(values).max()], len(A) // 2)[:, None]  # of places and velocities
         if not np.linalg.cond(vectors / unit) < WORST:
             return None
         inverse = np.linalg.inv(vectors / unit) / unit.T
