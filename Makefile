@@ -118,6 +118,7 @@ study: $(VENV)/installed  ## two hundred random scenes, each with three step lim
 
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
+	$(BIN)/python tests/benchmarks/large.py
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
 	$(BIN)/python tests/benchmarks/motion.py

@@ -20,6 +20,8 @@ import fcm
 from fcm.contact.cycle import __file__ as kernel
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.response import trace
+from fcm.scene.model import Scene
+from fcm.table import Table
 from fcm.table.locate import locate
 
 REPEATS = 7
@@ -126,6 +128,18 @@ def curves() -> None:
         ("a loop over single curves", lambda: [trace(single, table=table) for single in singles], points),
     ]
     block("the ten curves of yang1998, everything included, a point", rows)
+    one = fcm.load_scene("yang1998-n5")
+    block(
+        "one curve of yang1998-n5, everything included, a point",
+        [harmonics_row(one, table, highest) for highest in (1, 3, 9)],
+    )
+
+
+def harmonics_row(scene: Scene, table: Table, highest: int) -> Row:
+    """A curve of all harmonics up to one."""
+    call = partial(trace, scene, table=table, harmonics=highest)
+    name = f"{highest} harmonic{'s' if highest > 1 else ''}"
+    return name, call, sum(curve.points for curve in call().curves)
 
 
 def many_curves(count: int = 1000) -> None:

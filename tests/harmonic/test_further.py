@@ -36,9 +36,9 @@ def test_a_share_is_what_a_harmonic_then_has(response):
     top = response.shown[0].amplitude[:, 1].argmax()
     further = Further(response.system)
     amplitude = response.shown[0].amplitude[top : top + 1]
-    force, linear = further.forces(path.z[top : top + 1])
-    share = further.shares(path.z[top : top + 1], force, amplitude)[0]
-    assert not linear[0]
+    z = path.z[top : top + 1]
+    share = further.shares(z, further.forces(z), amplitude)[0]
+    assert not further.linear(z)[0]
     assert (share[:3] == 0.0).all()
     others = share[3:].copy()
     assert others.argmax() + 4 == 9
@@ -55,6 +55,6 @@ def test_a_share_is_what_a_harmonic_then_has(response):
 def test_a_contact_that_never_slips_or_opens_is_linear():
     found = estimated(System(scene("yang1998", 100)), 0.0)
     (path,) = found.traced.branches.paths
-    force, linear = Further(found.system).forces(path.z)
-    assert linear.all()
-    assert np.abs(force[:, 1:]).max() == 0.0
+    further = Further(found.system)
+    assert further.linear(path.z).all()
+    assert np.abs(further.forces(path.z)[:, 1:]).max() == 0.0

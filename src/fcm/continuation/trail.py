@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import cython
 import numpy as np
 
@@ -93,7 +95,7 @@ class Trail:
         )
 
 
-def _twice(kept: object) -> FloatArray:
+def _twice(kept: object) -> Any:
     """With as much room again."""
     array = np.asarray(kept)
     return np.concatenate((array, np.empty_like(array)))

@@ -29,7 +29,7 @@ class Corrected:
         self.path, self.amplitude = path, amplitude
         self.further, self.corrector = Further(system), Corrector(system)
         count, dofs = amplitude.shape
-        self.force, self.linear = self.further.forces(path.z)
+        self.linear = self.further.linear(path.z)
         self.change = np.zeros((count, 1 + dofs))
         self.known = self.linear.copy()
 
@@ -62,13 +62,14 @@ class Corrected:
 
     def shares(self, places: Indices, size: FloatArray) -> FloatArray:
         """Greatest share (harmonic,), at some points, of sizes (dof,)."""
-        sizes = np.tile(size, (len(places), 1))
-        most: FloatArray = self.further.shares(self.path.z[places], self.force[places], sizes).max(axis=0)
+        z, sizes = self.path.z[places], np.tile(size, (len(places), 1))
+        most: FloatArray = self.further.shares(z, self.further.forces(z), sizes).max(axis=0)
         return most
 
     def sets(self, places: Indices) -> tuple[int, ...]:
         """The harmonics of a corrected curve beside all of some places."""
-        share = self.further.shares(self.path.z[places], self.force[places], self.amplitude[places])
+        z = self.path.z[places]
+        share = self.further.shares(z, self.further.forces(z), self.amplitude[places])
         return self.corrector.sets(share.max(axis=0)[None])[0]
 
     def bridge(self, place: int) -> None:
@@ -103,7 +104,7 @@ class Corrected:
         if not places.size:
             return
         z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
-        share = self.further.shares(z[places], self.force[places], now[:, 1:])
+        share = self.further.shares(z[places], self.further.forces(z[places]), now[:, 1:])
         sets = self.corrector.sets(share)
         for i, before, more in zip(places.tolist(), now, sets, strict=True):
             found = self.corrector.displaced(z[i], self.path.direction[i], more, before[1:])

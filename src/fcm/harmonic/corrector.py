@@ -15,7 +15,7 @@ UNKNOWNS = 240  # unknowns
 LEAST = 0.01  # of what the first of them would do; what does less is not taken
 COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
 LARGE = 0.05  # a change of an amplitude beyond which the corrected point is corrected once more
-ENOUGH = 0.02  # of a displacement, to which it is found
+ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 
 
 class Corrector:
@@ -65,8 +65,7 @@ class Corrector:
             system = self.system.with_harmonics(more)
             self.second[more] = Further(system), Corrector(system, again=False)
         further, corrector = self.second[more]
-        force, _ = further.forces(z[None])
-        share = further.shares(z[None], force, found[None, 1:])
+        share = further.shares(z[None], further.forces(z[None]), found[None, 1:])
         again = corrector.displaced(z, direction, corrector.sets(share)[0], found[1:])
         return found if again is None else again
 

@@ -10,7 +10,7 @@ so that it is the structure as much as the contact that decides which harmonics 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -32,22 +32,29 @@ class Further:
         self.system = system
         self.kernel = PeriodicContact(list(system.harmonics), list(range(1, HIGHEST + 1)))
 
-    def forces(self, z: FloatArray) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.bool_]]:
-        """Of motions (point, unknown + 1): (point, harmonic, port); and where they are linear.
-
-        Linear (point,) is a motion in which no contact slips or separates: its forces have no further
-        harmonic.
-        """
-        contacts = self.system.scene.contacts
-        width = 2 + 4 * len(self.system.harmonics)
-        made, linear = np.empty((len(z), self.kernel.equations)), np.ones(len(z))
-        out = np.zeros((len(z), HIGHEST, 2 * len(contacts)), dtype=np.complex128)
-        z = np.ascontiguousarray(z)
-        for j, c in enumerate(contacts):
-            forces_of(self.kernel, z, j * width, np.array([c.mu, c.k_u, c.k_v, c.n_0]), made, linear)
+    def forces(self, z: FloatArray) -> npt.NDArray[np.complex128]:
+        """Of motions (point, unknown + 1): (point, harmonic, port)."""
+        out = np.zeros((len(z), HIGHEST, 2 * len(self.system.scene.contacts)), dtype=np.complex128)
+        for j, (made, _) in enumerate(self._each(self.kernel, z)):
             pairs = made[:, 2:].reshape(len(z), HIGHEST, 2, 2)
             out[:, :, 2 * j : 2 * j + 2] = pairs[..., 0] + 1j * pairs[..., 1]
-        return out, linear > 0.0
+        return out
+
+    def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
+        kernel = PeriodicContact(list(self.system.harmonics), [1])
+        linear = np.ones(len(z), dtype=np.bool_)
+        for _, one in self._each(kernel, z):
+            linear &= one > 0.0
+        return linear
+
+    def _each(self, kernel: PeriodicContact, z: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Forces (point, equation) of each contact, and 1 where they are linear, else 0."""
+        z, width = np.ascontiguousarray(z), 2 + 4 * len(self.system.harmonics)
+        for j, c in enumerate(self.system.scene.contacts):
+            made, linear = np.empty((len(z), kernel.equations)), np.ones(len(z))
+            forces_of(kernel, z, j * width, np.array([c.mu, c.k_u, c.k_v, c.n_0]), made, linear)
+            yield made, linear
 
     def shares(self, z: FloatArray, force: npt.NDArray[np.complex128], amplitude: FloatArray) -> FloatArray:
         """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
