@@ -8,7 +8,7 @@ from fcm.harmonic.system import System
 from fcm.scene import scene_from_dict
 
 
-def many_contacts(contacts=12, modes=4):
+def many_contacts(contacts=36, modes=4):
     rng = np.random.default_rng(5)
     dofs = [f"x{i}" for i in range(2 * contacts)]
     return scene_from_dict(

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from fcm.scene.model import FloatArray
 from fcm.structure.receptance import Receptance
 
-FEWEST = 60  # unknowns from which on this is faster
+FEWEST = 200  # unknowns from which on this is faster
 SHARE = 0.7  # and of the number of ports, how many modes at most
 
 
