@@ -41,12 +41,10 @@ class Found:
 def solutions(system: System, omega: float) -> Found:
     """All solutions at omega that hang together with rest."""
     most = highest(system, omega)
-    linear = min(BEFORE * least(system, omega), 0.5 * most)
+    linear = min(BEFORE * least(system, omega), 1.0)
     path = level_curve(system, omega, (0.0, most), linear=linear)
     at = np.flatnonzero(path.parameter == 1.0)
     found = [np.append(path.z[i, :-1], omega) for i in at]
-    if path.z.shape[0] and linear > 1.0:
-        found.insert(0, np.append(next(linear_responses(system, omega, 1.0)), omega))
     if not found:
         found = list(_from_linear(system, omega))
     return Found(omega, tuple(found), path.status is Status.COMPLETE)
