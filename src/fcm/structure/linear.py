@@ -15,7 +15,6 @@ from fcm.structure.rigid import settled
 
 ROUNDING = 1e-12  # relative: shapes this near are the same
 MOST = 10.0  # times a shape, of those that it is combined from
-LEAST_DAMPING = 1e-9  # as in `receptance`
 
 
 @dataclass(frozen=True)
@@ -68,11 +67,14 @@ class Linear:
 
     def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
         """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
-        stiffness = (self.natural - omega) * (self.natural + omega)
-        dynamic = stiffness + 2j * self.damping * self.natural * omega
-        safe = np.where(dynamic == 0.0, 1j * LEAST_DAMPING * omega * omega, dynamic)
-        weighted = (self.ports.T / safe).astype(np.complex128)
-        return weighted @ self.ports, weighted @ (self.force + omega * omega * self.square)
+        seen = self._fundamental
+        seen.at(omega)
+        G = np.asarray(seen.G_re)[0] + 1j * np.asarray(seen.G_im)[0]
+        return G, np.asarray(seen.X_re) + 1j * np.asarray(seen.X_im)
+
+    @cached_property
+    def _fundamental(self) -> Receptance:
+        return self.receptance(np.ones(1))
 
 
 def linear_of(scene: Scene) -> Linear:
