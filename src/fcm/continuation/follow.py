@@ -114,7 +114,6 @@ class _Follower:
     first: cython.double[::1]  # point,
     head: cython.double[::1]  # and its tangent
     interior: cython.bint
-    repeated: cython.int  # corners at one point
     progress: Progress | None
 
     def __init__(
@@ -133,7 +132,6 @@ class _Follower:
         self.trail = Trail(problem.unknowns + 1)
         self.greatest = np.zeros(problem.outputs)
         self.most = self.greatest
-        self.repeated = 0
 
     def run(self, start: FloatArray, forward: bool) -> Path:
         here: Place = self.front.here
@@ -209,7 +207,6 @@ class _Follower:
         growth = min(growth, sqrt(MISS / max(front.missed, 1e-9)), UNEVEN / max(front.unforeseen(), 1e-9))
         self.step = min(front.step * min(max(0.9 * growth, 0.4), 2.5), self.max_step)
         front.accept(front.there, front.step)
-        self.repeated = 0
         self.rise()
         return Status.UNBOUNDED if front.extent() > BOUNDLESS * self.size else None
 
@@ -217,17 +214,15 @@ class _Follower:
     def corner(self) -> object:
         """Go on from the first corner of the step, in the direction that the curve has beyond.
 
-        STALLED where the curve is not found up to there.
+        STALLED where the curve is not found up to there, or not where it was predicted.
         """
         front: Front = self.front
-        led: cython.double = front.step
         at, which = events.first_margin(front)
-        if not front.shorten((1.0 - BEFORE) * at):
+        if not front.shorten((1.0 - BEFORE) * at) or not self.good():
             return Status.STALLED
         if self.keep(front.step):
             return self.end()
         place: Place = front.between if front.put(at, True, True) else front.there
-        self.repeated = self.repeated + 1 if at < SHARP * led else 0
         point = events.found(front, at, Mark.CORNER, place)
         same = front.partner(which, place.kind, place.angle)
         if same >= 0:
@@ -245,8 +240,6 @@ class _Follower:
         rise: cython.double = front.here.tangent[self.n]
         growth = np.array(front.here.growth)
         front.cross(which, BEYOND)
-        if which >= 0 and self.repeated > self.problem.margins:  # the curve only touches the margin
-            front.here.margin[which] = 0.0
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
         if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
             mark |= Mark.PEAK

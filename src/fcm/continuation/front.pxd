@@ -41,6 +41,8 @@ cdef class Front:
     cpdef double unforeseen(self) except -1
     cdef bint crossed(self, double step) except -1
     cdef double value(self, Py_ssize_t k) noexcept
+    cdef double beyond(self, Py_ssize_t which, double past) except -1e300
+    cdef int adopt(self, Py_ssize_t which, double before) except -1
     cdef bint sought(self, double step) except -1
     cdef int record(self, Place place, bint margins, bint outputs) except -1
     cdef void predict(self, double step) noexcept

@@ -275,26 +275,56 @@ class Front:
     def cross(self, which: cython.Py_ssize_t, past: cython.double) -> cython.bint:
         """Turn, at a corner that is here, into the direction that the curve has a length past it.
 
-        The orientation of a piecewise smooth curve is the same on both sides, and says which way it goes on.
+        It goes on to where the margin has the other sign; where that does not tell, as the orientation says,
+        which is the same on both sides of a piecewise smooth curve. The margins are then those beyond.
         """
         i: cython.Py_ssize_t
         sign: cython.double
         size: cython.Py_ssize_t = self.here.z.shape[0]
+        before: cython.double = self.here.margin[which] if which >= 0 else 0.0
+        after: cython.double
         self.newton.row[:] = self.here.tangent
         for i in range(size):
             self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
-        if which >= 0:
-            self.here.margin[which] = -self.here.margin[which]
         if not self.newton.look():
             return False
         sign = 1.0 if self.newton.orientation == self.here.orientation else -1.0
+        after = self.beyond(which, sign * past)
+        if before * after > 0.0 and before * self.beyond(which, -sign * past) < 0.0:
+            sign = -sign
+        elif before * after > 0.0:
+            self.beyond(which, sign * past)
+        self.here.orientation = sign * self.newton.orientation
         for i in range(size):
             self.here.tangent[i] = sign * self.newton.tangent[i]
             self.guess[i] = self.newton.scale[i] * self.here.tangent[i]
         if self.problem.outputs:
             self.problem.report(self.here.z, self.guess)
             self.here.growth[:] = self.problem.growth
+        self.adopt(which, before)
         return True
+
+    @cython.cfunc
+    @cython.exceptval(-1e300, check=False)
+    def beyond(self, which: cython.Py_ssize_t, past: cython.double) -> cython.double:
+        """A margin of here at a length along the corrector's tangent; 0 if it is not there."""
+        i: cython.Py_ssize_t
+        for i in range(self.guess.shape[0]):
+            self.guess[i] = self.here.z[i] + past * self.newton.scale[i] * self.newton.tangent[i]
+        self.problem.bound(self.guess)
+        return self.value(which) if which >= 0 else 0.0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def adopt(self, which: cython.Py_ssize_t, before: cython.double) -> cython.int:
+        """Take the margins last asked for as those here; one that has not changed its sign is only touched."""
+        i: cython.Py_ssize_t = self.partner(which, self.problem.kind, self.problem.angle) if which >= 0 else -1
+        self.here.margin[:] = self.problem.margin
+        self.here.kind[:] = self.problem.kind
+        self.here.angle[:] = self.problem.angle
+        if i >= 0 and self.here.margin[i] * before > 0.0:
+            self.here.margin[i] = 0.0
+        return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

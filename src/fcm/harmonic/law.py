@@ -19,7 +19,7 @@ if cython.compiled:
 else:
     from fcm.continuation.problem import NONE
 
-KINDS = cython.declare(cython.int, 8)  # of margins, at most
+KINDS = cython.declare(cython.int, 9)  # of margins, at most
 
 
 @cython.cclass

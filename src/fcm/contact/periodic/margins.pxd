@@ -9,7 +9,6 @@ cdef class Margins:
     cdef readonly int most, count
     cdef readonly double[::1] value, angle
     cdef readonly int[::1] kind
-    cdef double low, high
     cdef void find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void note(self, int kind, double angle, double value) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil

@@ -3,7 +3,7 @@
 A regime of a contact is the sequence of its events. The derivatives of its forces jump, or begin like a
 square root, where
 
-- the greatest or the least load passes zero: the contact begins to close at all, or to open;
+- an extreme of the load passes zero: the contact closes once more, or opens once more;
 - the greatest lower limit of the slider passes the least upper one: it begins to slip, equation (25);
 - one of these passes the place where the slider of a contact that never slips began;
 - an extreme of a limit passes the slider that rests there: another slip begins, and the slider is left
@@ -43,6 +43,8 @@ MOST = cython.declare(cython.int, 3)
 LEAST = cython.declare(cython.int, 4)
 UPWARDS = cython.declare(cython.int, 5)
 DOWNWARDS = cython.declare(cython.int, 6)
+MINIMUM = cython.declare(cython.int, 7)
+MAXIMUM = cython.declare(cython.int, 8)
 FIXED = cython.declare(cython.int, 5)  # kinds of which there is one each
 PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
 
@@ -57,10 +59,9 @@ class Margins:
     def __init__(self, cycle: Cycle) -> None:
         self.cycle, self.motion = cycle, cycle.motion
         self.crossings = Crossings(cycle.motion)
-        self.most, self.count = FIXED + self.crossings.capacity, 0
+        self.most, self.count = FIXED + self.crossings.capacity + 2 * cycle.motion.highest + 2, 0
         self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
         self.kind = np.zeros(self.most, dtype=np.intc)
-        self.low = self.high = 0.0
 
     def find(
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
@@ -74,8 +75,6 @@ class Margins:
         start = -k_u * x[first] / self.motion.scale
         kind: cython.int = self.cycle.solve(behaviour, start)
         self.loads(behaviour)
-        self.note(CLOSES, 0.0, self.high)
-        self.note(OPENS, 0.0, self.low)
         if mu * k_u > 0.0 and kind != OPEN:
             self.slips(kind, behaviour, start)
 
@@ -85,18 +84,20 @@ class Margins:
         self.count += 1
 
     def loads(self, behaviour: cython.int) -> None:
-        """`low` and `high`: extremes of the load; where they cannot matter, numbers of their sign."""
+        """Extremes of the load; where they cannot matter, numbers of their sign."""
         i: cython.int
         value: float
-        self.low = self.high = PAST if behaviour == CLOSED else -PAST
+        self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
+        self.note(OPENS, 0.0, self.value[0])
         if behaviour != MIXED:
             return
+        self.value[0] = self.value[1] = self.motion.at[LOAD, 0]
         self.crossings.begin()
-        self.crossings.search(LOAD_RATE, 0, 0)
-        self.low = self.high = self.motion.at[LOAD, 0]
+        self.crossings.search(LOAD_RATE, MINIMUM, MAXIMUM)
         for i in range(self.crossings.count):
             value, _ = self.motion.evaluate(LOAD, self.crossings.angle[i])
-            self.low, self.high = min(self.low, value), max(self.high, value)
+            self.note(self.crossings.kind[i], self.crossings.angle[i], value)
+            self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
 
     def slips(self, kind: cython.int, behaviour: cython.int, start: float) -> None:
         """Of a contact with friction that closes."""
