@@ -160,13 +160,14 @@ class _Follower:
         front: Front = self.front
         step: cython.double = self.step
         reach: cython.double
+        dip: cython.double
         while step > SHORTEST:
             reach = front.ahead(step)
             if reach < min(step, TOUCHED):
                 return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
             # curves bend more and more towards a corner, and may hide a pair of folds there
             near: cython.bint = NEAR < reach < step and front.go(NEARER * reach)
-            if near and not front.crosses() and self.good():
+            if near and self.good() and not front.crosses() and front.dip() == 0.0:
                 return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if front.crosses():
@@ -174,7 +175,11 @@ class _Follower:
                     if status is not Status.STALLED:
                         return status
                 elif reach >= step and self.good():
-                    return self.smooth()
+                    dip = front.dip()
+                    if dip == 0.0:
+                        return self.smooth()
+                    step = dip
+                    continue
             # the curve may turn back in a corner, so that nothing is to be found beyond
             if reach < step and front.go(reach * (1.0 - PAST)) and not front.crosses() and self.good():
                 return self.smooth()

@@ -7,6 +7,7 @@ cdef class Place:
     cdef public double[::1] margin
     cdef public int[::1] kind
     cdef public double[::1] angle
+    cdef public double[::1] slope
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
@@ -32,6 +33,8 @@ cdef class Front:
     cpdef double ahead(self, double step) except -1
     cpdef bint cross(self, Py_ssize_t which, double past) except -1
     cpdef bint crosses(self) except -1
+    cpdef double dip(self) except -1
+    cdef int incline(self, Place place) except -1
     cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
     cpdef double margin(self, Py_ssize_t k, Place place) except -1e300
     cpdef bint sharpen(self, bint margins, bint outputs) except -1
@@ -50,3 +53,5 @@ cdef class Front:
 
 cdef double greater(double a, double b) noexcept nogil
 cdef Py_ssize_t nearest(int wanted, double at, int[::1] kind, double[::1] angle) noexcept
+cdef Py_ssize_t partner(Place place, Py_ssize_t k, int[::1] kind, double[::1] angle) noexcept
+cdef double lowest(double before, double begin, double after, double end) noexcept nogil

@@ -20,6 +20,7 @@ else:
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 LOOKS = cython.declare(cython.int, 50)  # bisections of the predicted step to where a margin changes sign
+AHEAD = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
 PI = cython.declare(cython.double, 3.141592653589793)
 APART = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
 KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which it is found
@@ -34,6 +35,7 @@ class Place:
         self.z, self.tangent = np.zeros(problem.unknowns + 1), np.zeros(problem.unknowns + 1)
         self.margin, self.angle = np.zeros(problem.margins), np.zeros(problem.margins)
         self.kind = np.zeros(problem.margins, dtype=np.intc)
+        self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
         self.orientation, self.shift = 0.0, 0.0
 
@@ -124,17 +126,8 @@ class Front:
     def partner(
         self, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
     ) -> cython.Py_ssize_t:
-        """Which of other margins is the one with number k here; -1 if none is.
-
-        It is that of its kind nearest to it, if it is also nearest to that.
-        """
-        i: cython.Py_ssize_t
-        if self.here.kind[k] == NONE:
-            return -1
-        if kind[k] == self.here.kind[k] and angle[k] == self.here.angle[k]:
-            return k
-        i = nearest(self.here.kind[k], self.here.angle[k], kind, angle)
-        return i if i >= 0 and nearest(kind[i], angle[i], self.here.kind, self.here.angle) == k else -1
+        """Which of other margins is the one with number k here; -1 if none is."""
+        return partner(self.here, k, kind, angle)
 
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
@@ -160,6 +153,7 @@ class Front:
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
         self.step, self.missed = step, sqrt(missed) / step
         self.record(self.there, True, True)
+        self.incline(self.there)
         return True
 
     @cython.cfunc
@@ -238,6 +232,8 @@ class Front:
         self.here.margin[:] = place.margin
         self.here.kind[:] = place.kind
         self.here.angle[:] = place.angle
+        for i in range(place.slope.shape[0]):
+            self.here.slope[i] = place.slope[i] / total
         self.here.output[:] = place.output
         self.here.orientation = place.orientation
         for i in range(place.growth.shape[0]):
@@ -324,7 +320,50 @@ class Front:
         self.here.angle[:] = self.problem.angle
         if i >= 0 and self.here.margin[i] * before > 0.0:
             self.here.margin[i] = 0.0
+        self.incline(self.here)
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def incline(self, place: Place) -> cython.int:
+        """The slopes of a place's margins along its tangent, from differences."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        if self.problem.margins == 0:
+            return 0
+        for i in range(self.guess.shape[0]):
+            self.guess[i] = place.z[i] + AHEAD * self.newton.scale[i] * place.tangent[i]
+        self.problem.bound(self.guess)
+        for k in range(self.problem.margins):
+            place.slope[k] = 0.0
+            i = partner(place, k, self.problem.kind, self.problem.angle)
+            if i >= 0:
+                place.slope[k] = (self.problem.margin[i] - place.margin[k]) / AHEAD
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def dip(self) -> cython.double:
+        """Length at which a margin of one sign here and there has the other between them; 0 if none has.
+
+        As far as the cubic through both ends, with their slopes, tells.
+        """
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        at: cython.double
+        first: cython.double = self.step
+        for k in range(self.problem.margins):
+            i = self.partner(k, self.there.kind, self.there.angle)
+            if i >= 0 and self.here.margin[k] * self.there.margin[i] > 0.0:
+                at = lowest(
+                    self.here.margin[k],
+                    self.here.slope[k] * self.step,
+                    self.there.margin[i],
+                    self.there.slope[i] * self.step / greater(self.turn, 0.1),
+                )
+                if 0.0 < at * self.step < first:
+                    first = at * self.step
+        return first if first < self.step else 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -429,6 +468,24 @@ def greater(a: cython.double, b: cython.double) -> cython.double:
 
 @cython.cfunc
 @cython.exceptval(check=False)
+def partner(
+    place: Place, k: cython.Py_ssize_t, kind: cython.int[::1], angle: cython.double[::1]
+) -> cython.Py_ssize_t:
+    """Which of other margins is the one with number k of a place; -1 if none is.
+
+    It is that of its kind nearest to it, if it is also nearest to that.
+    """
+    i: cython.Py_ssize_t
+    if place.kind[k] == NONE:
+        return -1
+    if kind[k] == place.kind[k] and angle[k] == place.angle[k]:
+        return k
+    i = nearest(place.kind[k], place.angle[k], kind, angle)
+    return i if i >= 0 and nearest(kind[i], angle[i], place.kind, place.angle) == k else -1
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
 def nearest(
     wanted: cython.int, at: cython.double, kind: cython.int[::1], angle: cython.double[::1]
 ) -> cython.Py_ssize_t:
@@ -443,3 +500,22 @@ def nearest(
             if off < least:
                 least, best = off, i
     return best
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def lowest(
+    before: cython.double, begin: cython.double, after: cython.double, end: cython.double
+) -> cython.double:
+    """Where in (0, 1) the cubic with values of one sign and slopes at 0 and 1 is furthest beyond 0; 0 if it
+    is not."""
+    sign: cython.double = 1.0 if before > 0.0 else -1.0
+    a: cython.double = sign * begin
+    b: cython.double = sign * (3.0 * (after - before) - 2.0 * begin - end)
+    c: cython.double = sign * (begin + end - 2.0 * (after - before))
+    root: cython.double = b * b - 3.0 * a * c
+    if not (a < 0.0 and sign * end > 0.0 and root > 0.0):
+        return 0.0
+    x: cython.double = -a / (b + sqrt(root)) if b > 0.0 else (sqrt(root) - b) / (3.0 * c)
+    return x if 0.0 < x < 1.0 and sign * before + x * (a + x * (b + x * c)) < 0.0 else 0.0
