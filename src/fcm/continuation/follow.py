@@ -53,9 +53,6 @@ AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
 LONGEST = 20_000  # steps
 END = cython.declare(cython.long, int(Mark.END))
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
-BOUNDLESS = cython.declare(
-    cython.double, 1e9
-)  # size, in units of that at the start, that only an undamped resonance reaches
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
 
@@ -213,7 +210,7 @@ class _Follower:
         self.step = min(front.step * min(max(0.9 * growth, 0.4), 2.5), self.max_step)
         front.accept(front.there, front.step)
         self.rise()
-        return Status.UNBOUNDED if front.extent() > BOUNDLESS * self.size else None
+        return Status.UNBOUNDED if front.extent() > self.problem.boundless * self.size else None
 
     @cython.cfunc
     def corner(self) -> object:

@@ -20,6 +20,8 @@ else:
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 LOOKS = cython.declare(cython.int, 50)  # bisections of the predicted step to where a margin changes sign
+NEARER = cython.declare(cython.int, 3)  # lengths past a corner that are tried
+CLOSER = cython.declare(cython.double, 0.01)  # each of them this share of the last
 AHEAD = cython.declare(cython.double, 1e-6)  # length over which margins have their slopes
 PI = cython.declare(cython.double, 3.141592653589793)
 APART = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
@@ -275,21 +277,24 @@ class Front:
         which is the same on both sides of a piecewise smooth curve. The margins are then those beyond.
         """
         i: cython.Py_ssize_t
-        sign: cython.double
+        count: cython.int
+        sign: cython.double = 1.0
         size: cython.Py_ssize_t = self.here.z.shape[0]
         before: cython.double = self.here.margin[which] if which >= 0 else 0.0
-        after: cython.double
         self.newton.row[:] = self.here.tangent
-        for i in range(size):
-            self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
-        if not self.newton.look():
-            return False
-        sign = 1.0 if self.newton.orientation == self.here.orientation else -1.0
-        after = self.beyond(which, sign * past)
-        if before * after > 0.0 and before * self.beyond(which, -sign * past) < 0.0:
-            sign = -sign
-        elif before * after > 0.0:
-            self.beyond(which, sign * past)
+        for count in range(NEARER):  # noqa: B007
+            for i in range(size):
+                self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
+            if not self.newton.look():
+                return False
+            sign = 1.0 if self.newton.orientation == self.here.orientation else -1.0
+            if not before * self.beyond(which, sign * past) > 0.0:
+                break
+            if not before * self.beyond(which, -sign * past) < 0.0:
+                self.beyond(which, sign * past)
+                break
+            # the two disagree: the curve may bend by much within that length
+            sign, past = -sign, CLOSER * past
         self.here.orientation = sign * self.newton.orientation
         for i in range(size):
             self.here.tangent[i] = sign * self.newton.tangent[i]

@@ -10,6 +10,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+BOUNDLESS = cython.declare(cython.double, 1e9)
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
 
@@ -22,6 +23,7 @@ class Problem:
     `report`.
     rank: 0; or the size of a smaller system to which that of Newton's method is condensed. Then jacobian is
     (n, 1), the derivative by the parameter alone; see `condense`.
+    boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
     """
 
@@ -29,7 +31,7 @@ class Problem:
         self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
-        self.coarse = False
+        self.coarse, self.boundless = False, BOUNDLESS
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

@@ -31,7 +31,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class Found:
-    """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end."""
+    """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end,
+    or back to its beginning."""
 
     omega: float
     solutions: tuple[FloatArray, ...]
@@ -47,7 +48,7 @@ def solutions(system: System, omega: float) -> Found:
     found = [np.append(path.z[i, :-1], omega) for i in at]
     if not found:
         found = list(_from_linear(system, omega))
-    return Found(omega, tuple(found), path.status is Status.COMPLETE)
+    return Found(omega, tuple(found), path.status in (Status.COMPLETE, Status.RETURNED))
 
 
 def level_curve(
