@@ -22,6 +22,7 @@ cdef class Front:
     cdef public double step
     cdef public double missed
     cdef public double turn
+    cdef double past
     cdef public int which
     cdef double[::1] bend
     cdef double[::1] guess

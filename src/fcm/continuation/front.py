@@ -52,6 +52,7 @@ class Front:
         self.here, self.there, self.between = Place(problem), Place(problem), Place(problem)
         self.bend, self.guess = np.zeros(size), np.zeros(size)
         self.step, self.missed, self.turn, self.which = 0.0, 0.0, 1.0, -1
+        self.past = 0.0  # up to here the margins beyond a corner are taken as known
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -79,11 +80,11 @@ class Front:
         at: cython.double
         before: cython.double
         after: cython.double
-        low: cython.double = 0.0
+        low: cython.double = self.past
         high: cython.double = step
         width: cython.double = 2.0 * step
         aside: cython.double = KNOWN / 3.0  # of the root, to come to either side of it
-        if self.problem.margins == 0 or not self.crossed(step):
+        if self.problem.margins == 0 or step <= low or not self.crossed(step):
             return step
         before, after = self.here.margin[self.which], self.value(self.which)
         for count in range(LOOKS):
@@ -228,6 +229,7 @@ class Front:
             along += place.tangent[i] * self.bend[i]
         for i in range(size):
             self.bend[i] = (self.bend[i] - along * place.tangent[i]) / total
+        self.past = 0.0
         self.newton.scale[:] = self.problem.scale
         self.here.z[:] = place.z
         self.here.tangent[:] = place.tangent
@@ -303,6 +305,7 @@ class Front:
             self.problem.report(self.here.z, self.guess)
             self.here.growth[:] = self.problem.growth
         self.adopt(which, before)
+        self.past = past
         return True
 
     @cython.cfunc
