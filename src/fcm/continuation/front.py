@@ -321,8 +321,10 @@ class Front:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def adopt(self, which: cython.Py_ssize_t, before: cython.double) -> cython.int:
-        """Take the margins last asked for as those here; one that has not changed its sign is only touched."""
-        i: cython.Py_ssize_t = self.partner(which, self.problem.kind, self.problem.angle) if which >= 0 else -1
+        """Take the margins last asked for; one that has not changed its sign is only touched."""
+        i: cython.Py_ssize_t = -1
+        if which >= 0:
+            i = self.partner(which, self.problem.kind, self.problem.angle)
         self.here.margin[:] = self.problem.margin
         self.here.kind[:] = self.problem.kind
         self.here.angle[:] = self.problem.angle
