@@ -19,7 +19,7 @@ cdef class Balance(Problem):
     cdef public double[:, :, ::1] tangent
     cdef public double[::1] largest
     cdef double[::1] size
-    cdef double[::1] evaluated
+    cdef public double[::1] evaluated
     cdef double[::1] now
     cdef double[::1] rate
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1

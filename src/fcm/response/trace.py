@@ -16,6 +16,7 @@ from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.stability import stability, with_points
+from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.result import Curve, Peak
 from fcm.scene.model import FloatArray, Scene
@@ -101,7 +102,7 @@ def _curve(found: Accurate) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them."""
     found, parts = _with_stability(found)
     system, paths = found.system, found.traced.branches.paths
-    points = recorded(system, paths)
+    points, rounding = with_digits(system, recorded(system, paths))
     scene, first = system.scene, system.harmonics.index(1)
     rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
@@ -109,7 +110,7 @@ def _curve(found: Accurate) -> Curve:
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncation = np.concatenate([one.truncation for one in found.errors])
     stable[(truncation > BEYOND) & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
-    error = np.concatenate([one.amplitude for one in found.errors])
+    error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
         parameters=dict(scene.parameters),
         frequency=pick(points.z[:, -1], rows),
@@ -126,7 +127,7 @@ def _curve(found: Accurate) -> Curve:
         truncation_error=pick(truncation, rows),
         complete=not reason,
         reason=reason,
-        peaks=_peaks(scene.modal.dofs, points, found.peak),
+        peaks=_peaks(scene.modal.dofs, points, found.peak, rounding),
         folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),
@@ -160,11 +161,11 @@ def _between(values: FloatArray, after: Rows) -> FloatArray:
     return np.insert(values, after + 1, means, axis=0)
 
 
-def _peaks(dofs: tuple[str, ...], points: Record, error: FloatArray) -> dict[str, Peak]:
+def _peaks(dofs: tuple[str, ...], points: Record, error: FloatArray, rounding: FloatArray) -> dict[str, Peak]:
     """Where each degree of freedom is greatest: at a point, for every peak is one."""
     highest = points.amplitude.argmax(axis=0)
     return {
-        dof: Peak(float(points.amplitude[i, d]), float(points.z[i, -1]), float(error[d]))
+        dof: Peak(float(points.amplitude[i, d]), float(points.z[i, -1]), float(max(error[d], rounding[i, d])))
         for d, (dof, i) in enumerate(zip(dofs, highest, strict=True))
     }
 

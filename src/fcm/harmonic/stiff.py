@@ -1,0 +1,194 @@
+r"""Digits of displacements where contacts are much stiffer than the structure.
+
+The balance x = X - G F of displacements subtracts nearly equal numbers where a contact hardly moves: as many
+digits are lost as k |G| has before its point, in a displacement that is small beside others even all of them.
+Where every contact only sticks or is open, the same motion is
+
+    (H + k) x = f,    H = G^-1,    f = H X,
+
+the sum of stiffnesses and of forces on the contacts. Nothing cancels in it, provided that f is known as it is
+given: what acts along a contact's own direction is. Elsewhere it is told what digits are lost: the balance's
+own rounding, through the inverse of its Jacobian.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.record import Record
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray, Force
+from fcm.structure.linear import linear_of
+
+STIFF = 1e4  # k |G| of a contact from which digits are counted
+EPS = 2.2e-16
+ROUNDINGS = 4.0  # that come together in a sum
+DEPENDENT = 1e10  # condition number of G from which its inverse is no good
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Digits(NamedTuple):
+    """The fundamental where contacts are stiff: z (unknown + 1,) with it; X (dof,) of the degrees of freedom,
+    of use for those that are no combination of contacts' displacements, None where they are as the balance
+    has them; and how far the displacements (port,) and (dof,) are off by rounding."""
+
+    z: FloatArray
+    X: ComplexArray | None
+    ports: FloatArray
+    dofs: FloatArray
+
+
+def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
+    """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
+
+    Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
+    """
+    rounding = np.zeros_like(points.amplitude)
+    balance, springs = system.balance(), system.springs(stuck=True)
+    stiff = np.flatnonzero(_stiffness(balance, points.z[:, -1], springs) > STIFF)
+    if not stiff.size:
+        return points, rounding
+    made = replace(
+        points, X=points.X.copy(), mean=points.mean.copy(), force=points.force.copy(), z=points.z.copy(),
+        amplitude=points.amplitude.copy(),
+    )  # fmt: skip
+    shown, forces = balance.shown, _Forces(system)
+    apart = np.asarray(shown.apart) != 0
+    for i in stiff:
+        found = _point(balance, made.z[i].copy(), springs, forces)
+        made.z[i] = found.z
+        balance.evaluate(found.z)
+        balance.report(found.z, np.zeros(found.z.size))
+        made.X[i].real, made.X[i].imag, made.mean[i] = shown.re, shown.im, shown.mean
+        made.amplitude[i], made.force[i] = shown.amplitude, balance.force
+        if found.X is not None:
+            made.X[i, balance.seen.driven, apart] = found.X[apart]
+            made.amplitude[i, apart] = np.abs(found.X[apart])
+        size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
+        rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(shown.attached)) / size
+    return made, rounding
+
+
+def _stiffness(balance: Balance, omega: FloatArray, springs: FloatArray) -> FloatArray:
+    """The greatest k |G| of the contacts at frequencies."""
+    if not springs.size:
+        return np.zeros(omega.size)
+    found = np.empty(omega.size)
+    for i, w in enumerate(omega):
+        balance.seen.at(w)
+        found[i] = (np.abs(_receptance(balance).diagonal()) * springs).max()
+    return found
+
+
+def _receptance(balance: Balance) -> ComplexArray:
+    j = balance.seen.driven
+    G: ComplexArray = np.asarray(balance.seen.G_re)[j] + 1j * np.asarray(balance.seen.G_im)[j]
+    return G
+
+
+class _Forces:
+    """The forces of a scene: those along contacts' directions, by port, and the others on the modes."""
+
+    def __init__(self, system: System) -> None:
+        scene = system.scene
+        ports = [direction for c in scene.contacts for direction in (c.tangential, c.normal)]
+        self.along: list[tuple[int, float, Force]] = []
+        others: list[Force] = []
+        for force in scene.forces:
+            shares = ((p, _share(force.direction, port)) for p, port in enumerate(ports))
+            first = next(((p, share, force) for p, share in shares if share), None)
+            if first is None:
+                others.append(force)
+            else:
+                self.along.append(first)
+        self.linear = system.linear
+        self.others = linear_of(replace(scene, forces=tuple(others))) if others else None
+
+    def on_ports(self, omega: float) -> ComplexArray:
+        """Those along ports (port,)."""
+        f = np.zeros(self.linear.ports.shape[1], dtype=np.complex128)
+        for port, share, force in self.along:
+            f[port] += -1j * share * force.amplitude * omega**force.power * np.exp(1j * force.phase)
+        return f
+
+    def on_modes(self, omega: float) -> ComplexArray:
+        """The others (mode,)."""
+        if self.others is None:
+            return np.zeros(self.linear.natural.size, dtype=np.complex128)
+        force: ComplexArray = self.others.force + omega**2 * self.others.square
+        return force
+
+
+def _share(direction: FloatArray, port: FloatArray) -> float:
+    """How much of a port's direction a direction is; 0 if it is another."""
+    most = int(np.abs(port).argmax())
+    same = port[most] != 0.0 and np.array_equal(direction * port[most], port * direction[most])
+    return float(direction[most] / port[most]) if same else 0.0
+
+
+def _point(balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces) -> Digits:
+    """A point with the digits that can be kept."""
+    balance.evaluate(z)
+    G, held = _receptance(balance), _held(balance, springs)
+    if held is None or not np.linalg.cond(G) < DEPENDENT:
+        return _as_balanced(balance, z, G, springs)
+    seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
+    compliance = np.asarray(seen.c_re)[seen.driven] + 1j * np.asarray(seen.c_im)[seen.driven]
+    H, others = np.linalg.inv(G), forces.on_modes(omega)
+    computed = H @ (linear.ports.T @ (compliance * others))
+    x = np.linalg.solve(H + np.diag(held), forces.on_ports(omega) + computed)
+    z[at], z[at + 1] = x.real, x.imag
+    # the contacts take f - H x: what is left on the modes is P H x, and the others' forces without their f
+    left = linear.ports @ (H @ x - computed) + others
+    size = np.abs(H) @ np.abs(x) + np.abs(computed).max(initial=0.0)
+    wrong = EPS * np.linalg.cond(G) * size
+    ports = np.abs(np.linalg.inv(H + np.diag(held))) @ wrong + ROUNDINGS * EPS * np.abs(x)
+    on_modes = np.abs(linear.ports) @ wrong + EPS * np.abs(others)
+    return Digits(
+        z, (compliance * left) @ linear.dofs, ports, (np.abs(compliance) * on_modes) @ np.abs(linear.dofs)
+    )
+
+
+def _as_balanced(balance: Balance, z: FloatArray, G: ComplexArray, springs: FloatArray) -> Digits:
+    """A point as it is; its rounding from what its equations are summed of."""
+    seen, n, at = balance.seen, balance.unknowns, _places(balance)
+    force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
+    size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
+    terms = np.zeros(n)
+    terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re, seen.X_im) + size
+    terms[at + 1] = terms[at]
+    off = np.abs(np.linalg.inv(np.asarray(balance.jacobian)[:, :n])) @ (ROUNDINGS * EPS * terms)
+    ports = np.hypot(off[at], off[at + 1])
+    compliance = np.hypot(np.asarray(seen.c_re)[seen.driven], np.asarray(seen.c_im)[seen.driven])
+    shapes, external = np.abs(seen.shapes), np.hypot(seen.force_re, seen.force_im)
+    on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
+    return Digits(z, None, ports, (compliance * on_modes) @ np.abs(balance.shown.shapes))
+
+
+def _places(balance: Balance) -> npt.NDArray[np.intp]:
+    """Of the real part of each port's fundamental among the unknowns."""
+    p = np.arange(2 * balance.contacts, dtype=np.intp)
+    places: npt.NDArray[np.intp] = (p // 2) * balance.width + 2 + 4 * balance.seen.driven + 2 * (p % 2)
+    return places
+
+
+def _held(balance: Balance, springs: FloatArray) -> FloatArray | None:
+    """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
+    j = 2 + 4 * balance.seen.driven
+    held = np.empty(springs.size)
+    for c, tangent in enumerate(np.asarray(balance.tangent)):
+        own = tangent[j : j + 4, 2:].copy()
+        pairs = own.diagonal(j - 2)
+        held[2 * c : 2 * c + 2] = pairs[::2]
+        whole = (pairs[::2] == springs[2 * c : 2 * c + 2]) | (pairs[::2] == 0.0)
+        equal = np.array_equal(pairs[::2], pairs[1::2])
+        own[np.arange(4), j - 2 + np.arange(4)] = 0.0
+        if own.any() or not whole.all() or not equal:
+            return None
+    return held
