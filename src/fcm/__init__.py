@@ -5,8 +5,6 @@ The names below are imported when first used, so that a command pays only for wh
 
 from __future__ import annotations
 
-from importlib import import_module
-
 TYPE_CHECKING = False  # typing alone would take as long as all the rest
 if TYPE_CHECKING:
     from typing import Any
@@ -58,6 +56,8 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name in _HOME:
+        from importlib import import_module
+
         return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'fcm' has no attribute {name!r}")
 

@@ -259,6 +259,25 @@ def test_ctrl_c_while_it_begins_is_one_line(program, after):
         assert program.files == ["one.toml", "sweep.toml"]
 
 
+def test_ctrl_c_before_there_is_anyone_to_say_so_ends_in_silence():
+    """While the very module is loaded that takes signals: it is the first that the script loads."""
+    early = """
+import os, signal, sys
+class Finder:
+    def find_spec(self, name, *_):
+        if name == "fcm.signals":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Finder())
+from fcm.cli.__main__ import run
+assert "fcm.signals" not in sys.modules
+run()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", early], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == -signal.SIGINT and done.stderr == ""
+
+
 def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
     """Once Python itself has begun, which is not this program's to mend."""
     rng = random.Random(1)

@@ -5,8 +5,6 @@ Not even click is imported before it is needed: an interruption in the first mom
 
 from __future__ import annotations
 
-from importlib import import_module
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -18,5 +16,7 @@ __all__ = ["COMMANDS", "main"]
 
 def __getattr__(name: str) -> Any:
     if name in __all__:
+        from importlib import import_module
+
         return getattr(import_module("fcm.cli.commands"), name)
     raise AttributeError(f"module 'fcm.cli' has no attribute {name!r}")
