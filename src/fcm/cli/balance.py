@@ -11,14 +11,14 @@ def harmonics(_ctx: click.Context, _param: click.Parameter, text: str | None) ->
     """The harmonics named by an option; None without it."""
     if text is None:
         return None
-    from fcm.scene.rules import harmonics_fault
+    from fcm.scene.rules import harmonics_fault, harmonics_up_to
 
     try:
         numbers = tuple(int(word) for word in text.split(","))
     except ValueError:
         raise click.BadParameter(f"{text!r} {WRONG}.") from None
-    chosen = tuple(range(1, numbers[0] + 1)) if len(numbers) == 1 else numbers
-    if fault := harmonics_fault(chosen[:51]):
+    chosen = harmonics_up_to(numbers[0]) if len(numbers) == 1 else numbers
+    if fault := harmonics_fault(chosen):
         raise click.BadParameter(f"{text!r} {WRONG}: {fault}.")
     return chosen
 
@@ -38,8 +38,10 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
         low, high = (float(part) for part in text.split(":"))
     except ValueError:
         raise click.BadParameter(f"{text!r}: give a span of levels FROM:TO, as in 0:2.") from None
-    if not 0.0 <= low < high < float("inf"):
-        raise click.BadParameter(f"{text!r}: the levels must rise, from 0 or more.")
+    from fcm.response.level import level_fault
+
+    if fault := level_fault(low, high):
+        raise click.BadParameter(f"{text!r}: {fault}.")
     return low, high
 
 

@@ -98,7 +98,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         peak=error[tops, d],
         height=height,
         fold=np.abs(change[folds, 0]),
-        share=corrected.shares(turns, shown.amplitude.max(axis=0)),
+        share=corrected.shares(turns, shown.amplitude.max(axis=0))[:HIGHEST],
     )
 
 

@@ -20,7 +20,8 @@ from fcm.harmonic.points import forces_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
-HIGHEST = 50  # harmonic that is looked at
+HIGHEST = 50  # harmonic that is looked at, and that a balance may have
+AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
 LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
@@ -30,13 +31,14 @@ class Further:
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.kernel = PeriodicContact(list(system.harmonics), list(range(1, HIGHEST + 1)))
+        self.highest = max(HIGHEST, int(AHEAD * max(system.harmonics)))
+        self.kernel = PeriodicContact(list(system.harmonics), list(range(1, self.highest + 1)))
 
     def forces(self, z: FloatArray) -> npt.NDArray[np.complex128]:
         """Of motions (point, unknown + 1): (point, harmonic, port)."""
-        out = np.zeros((len(z), HIGHEST, 2 * len(self.system.scene.contacts)), dtype=np.complex128)
+        out = np.zeros((len(z), self.highest, 2 * len(self.system.scene.contacts)), dtype=np.complex128)
         for j, (made, _) in enumerate(self._each(self.kernel, z)):
-            pairs = made[:, 2:].reshape(len(z), HIGHEST, 2, 2)
+            pairs = made[:, 2:].reshape(len(z), self.highest, 2, 2)
             out[:, :, 2 * j : 2 * j + 2] = pairs[..., 0] + 1j * pairs[..., 1]
         return out
 
@@ -62,7 +64,7 @@ class Further:
         The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
         """
         linear = self.system.linear
-        others = np.ones(HIGHEST, dtype=np.bool_)
+        others = np.ones(self.highest, dtype=np.bool_)
         others[np.array(self.system.harmonics) - 1] = False
         h = 1.0 + np.flatnonzero(others)
         w = (z[:, -1:] * h)[..., None]
@@ -70,7 +72,7 @@ class Further:
         modal = force[:, others] @ linear.ports.T / np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
         size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
         answer = np.abs(modal @ linear.dofs)
-        share = np.zeros((len(z), HIGHEST))
+        share = np.zeros((len(z), self.highest))
         share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
         return share
 

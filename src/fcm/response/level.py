@@ -24,6 +24,7 @@ from fcm.units import UNIT, in_unit
 
 AT = "excitation.frequency"  # under which each curve says its own
 FAR = 1e6  # a level beyond this is a mistake of units
+NOTHING = 1e-3  # a level below which there is but rest
 
 
 def trace_levels(
@@ -44,8 +45,8 @@ def trace_levels(
         If the span or a frequency is out of range.
     """
     low, high = span
-    if not 0.0 <= low < high <= FAR:
-        raise ResponseError(f"level is from {low:g} to {high:g}, but must rise, from 0 or more")
+    if fault := level_fault(low, high):
+        raise ResponseError(f"level is from {low:g} to {high:g}: {fault}")
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
@@ -64,6 +65,15 @@ def trace_levels(
     )
     response.seconds = time.perf_counter() - begin
     return response
+
+
+def level_fault(low: float, high: float) -> str:
+    """What is wrong with a span of levels; empty if nothing is."""
+    if not 0.0 <= low < high:
+        return "the levels must rise, from 0 or more"
+    if high > FAR:
+        return f"a level beyond {FAR:g} is a mistake of units"
+    return "" if high > NOTHING else f"up to a level of {NOTHING:g} there is but rest"
 
 
 def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[float, float]) -> Curve:

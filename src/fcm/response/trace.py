@@ -20,7 +20,7 @@ from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.result import Curve, Peak
 from fcm.scene.model import FloatArray, Scene
-from fcm.scene.rules import harmonics_fault
+from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table
 from fcm.units import in_unit
 
@@ -66,7 +66,7 @@ def wanted_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: flo
         if not 0.0 < accuracy < 1.0:
             raise ResponseError(f"accuracy is {accuracy:g}, but it is a relative error between 0 and 1")
         return Wanted(None, accuracy)
-    chosen = tuple(range(1, harmonics + 1)) if isinstance(harmonics, int) else tuple(harmonics)
+    chosen = harmonics_up_to(harmonics) if isinstance(harmonics, int) else tuple(harmonics)
     if fault := harmonics_fault(chosen):
         raise ResponseError(f"harmonics: {fault}")
     return Wanted(chosen)

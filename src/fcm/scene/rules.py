@@ -87,6 +87,15 @@ def harmonics_fault(harmonics: Sequence[int]) -> str:
     return f"whole numbers from 1 to {MOST_HARMONICS}, rising, the first of them 1"
 
 
+def harmonics_up_to(count: int) -> tuple[int, ...]:
+    """Harmonics up to a number; of one that is too great as many as show that it is.
+
+    >>> harmonics_up_to(3), len(harmonics_up_to(10**30))
+    ((1, 2, 3), 51)
+    """
+    return tuple(range(1, min(count, MOST_HARMONICS + 1) + 1))
+
+
 def least_points(scene: Scene) -> int:
     """Points that the curves of a scene have at the least, for the longest step that is allowed."""
     return sum(ceil(1.0 / curve.max_step) for curve in scene.each_curve())

@@ -1,0 +1,48 @@
+"""Options of `fcm respond` that make no sense, and accuracies that cannot be had."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import fcm
+from fcm.cli import main
+from fcm.response import ResponseError, trace
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        (["--harmonics", "9" * 30], "is not a number of harmonics from 1 to 50"),
+        (["--harmonics", "1000000000"], "is not a number of harmonics from 1 to 50"),
+        (["--harmonics", f"1,{'9' * 30}"], "is not a number of harmonics from 1 to 50"),
+        (["--at", "1.2", "--level", "0:1e7"], "a level beyond 1e+06 is a mistake of units"),
+        (["--at", "1.2", "--level", "0:inf"], "a level beyond 1e+06 is a mistake of units"),
+        (["--at", "1.2", "--level", "0:1e-5"], "up to a level of 0.001 there is but rest"),
+        (["--at", "1.2", "--level", "0:nan"], "the levels must rise"),
+    ],
+)
+def test_options_that_are_nonsense_are_refused(options, words, tmp_path):
+    result = CliRunner().invoke(main, ["respond", "yang1998-n5", "-o", str(tmp_path / "a.nc"), *options])
+    assert result.exit_code == 2 and words in " ".join(result.output.split())
+    assert not list(tmp_path.iterdir())
+
+
+def test_so_many_harmonics_are_refused_in_python_too():
+    with pytest.raises(ResponseError, match="whole numbers from 1 to 50"):
+        fcm.respond(fcm.load_scene("yang1998-n5"), harmonics=10**30)
+
+
+def test_an_accuracy_that_fifty_harmonics_do_not_reach_is_not_said_to_be():
+    """Their error is what the harmonics beyond them do."""
+    scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.1, 1.25))
+    (curve,) = trace(scene, accuracy=1e-9).curves
+    exact = float(fcm.respond(scene, "exact").amplitude.sel(dof="u").max())
+    peak = curve.peaks["u"]
+    off = abs(peak.amplitude / exact - 1.0)
+    assert curve.harmonics[-1] == 50 and off > 1e-9
+    assert "with 50 harmonics an estimated error of" in curve.short_of
+    assert 1.0 / 3.0 < peak.error / off < 3.0 and np.isfinite(peak.error)
