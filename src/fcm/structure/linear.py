@@ -15,6 +15,7 @@ from fcm.structure.rigid import settled
 
 ROUNDING = 1e-12  # relative: shapes this near are the same
 MOST = 10.0  # times a shape, of those that it is combined from
+TURN = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
 
 @dataclass(frozen=True)
@@ -92,8 +93,8 @@ def linear_of(scene: Scene) -> Linear:
         damping=modal.damping,
         ports=np.ascontiguousarray(ports),
         dofs=np.ascontiguousarray(modal.shapes * unit),
-        force=-1j * (modal.shapes @ loads.constant) * unit[:, 0],
-        square=-1j * (modal.shapes @ loads.square) * unit[:, 0],
+        force=TURN * (modal.shapes @ loads.constant) * unit[:, 0],
+        square=TURN * (modal.shapes @ loads.square) * unit[:, 0],
         load=(modal.shapes @ loads.static) * unit[:, 0],
         flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
         counted=k_v,
