@@ -151,8 +151,8 @@ amplitude = 1.0
 frequency = [0.7, 1.7]
 max_step = 0.2
 [sweep]
-"contact.shroud.mu" = { normal = [0.4, 0.05], count = 30, seed = 1 }
-"contact.shroud.n_0" = { normal = [10, 3], count = 30, seed = 1 }
+"contact.shroud.mu" = { normal = [0.4, 0.05], count = 90, seed = 1 }
+"contact.shroud.n_0" = { normal = [10, 3], count = 90, seed = 1 }
 """
 PROGRAM = """
 import sys
@@ -180,7 +180,7 @@ def test_ctrl_c_and_resume_give_the_same_file(tmp_path):
     assert run.returncode == 3 and "Traceback" not in said
     assert "a.nc.unfinished: continue with --resume" in said and "curves not complete" in said
     with netCDF4.Dataset(tmp_path / "a.nc") as part:
-        assert 0 < part["complete"][:].sum() < 30
+        assert 0 < part["complete"][:].sum() < part.dimensions["curve"].size
     subprocess.run([*command, "-o", "a.nc", "--resume"], cwd=tmp_path, check=True, capture_output=True)
     assert not kept.exists()
     with netCDF4.Dataset(tmp_path / "a.nc") as one, netCDF4.Dataset(tmp_path / "whole.nc") as two:
