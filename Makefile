@@ -113,8 +113,9 @@ tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
 	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
 
-study: $(VENV)/installed  ## two hundred random scenes, each with three step limits: do the answers agree?
+study: $(VENV)/installed  ## two hundred random scenes, do three step limits agree, are the errors true?
 	$(BIN)/python tests/response/random_scenes.py
+	$(BIN)/python tests/response/random_peaks.py
 
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
