@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from fcm.cli.drawing import draws_file, picture_of, save_picture
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
@@ -42,6 +46,11 @@ def plot() -> None:
     "--points", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="FILE",
     help="Exact motions to mark over the curves, the file of `fcm respond --method exact -o FILE`.",
 )  # fmt: skip
+@click.option(
+    "--band", type=click.FloatRange(0.0, 100.0), nargs=2, metavar="LOW HIGH",
+    help="Instead of curves of random draws, these percentiles of the greatest stable amplitude at each "
+    "frequency, and the median.",
+)  # fmt: skip
 @pass_messages
 def response(
     messages: Messages,
@@ -51,6 +60,7 @@ def response(
     log: bool | None,
     errors: bool,
     points: Path | None,
+    band: tuple[float, float] | None,
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
@@ -59,7 +69,25 @@ def response(
     from fcm.plot import draw_response, read_points, read_response
 
     output = picture_of(file, output, ".png")
+    if band is not None:
+        save_picture(_bands(file, dof, log, points, band), output)
+        messages.info(f"wrote {output}")
+        return
     marked = None if points is None else read_points(points)
     figure = draw_response(read_response(file), dof=dof, log=log, errors=errors, points=marked)
     save_picture(figure, output)
     messages.info(f"wrote {output}")
+
+
+def _bands(
+    file: Path, dof: str | None, log: bool | None, points: Path | None, band: tuple[float, float]
+) -> Figure:
+    """The figure of --band."""
+    from fcm.plot import read_response
+    from fcm.plot.band import draw_bands
+
+    if not band[0] < band[1]:
+        raise click.UsageError(f"--band {band[0]:g} {band[1]:g}: the percentages must rise, as in 5 95.")
+    if points is not None:
+        raise click.UsageError("--points are marked over curves; --band draws none.")
+    return draw_bands(read_response(file), dof, band, log)

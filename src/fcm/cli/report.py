@@ -30,7 +30,27 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
     parts = [_curves(curves, names, dofs, unit, length)]
     if any(curve.get("jumps") for curve in curves):
         parts.append(_jumps(curves, names, dofs, unit))
+    parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
+
+
+def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
+    """Percentiles over the curves of random draws, a line for each quantity."""
+    jumps = {f"jump {sweep} at {unit}": one for sweep, one in found["jumps"].items() if one["share"]}
+    rows = []
+    for dof in dofs if found["peak"] else ():
+        for name, kind in ((f"peak {dof}", "amplitude"), (f"at {unit}", "frequency")):
+            rows.append([name, *map(number, found["peak"][dof][kind].values()), ""])
+    rows += [
+        [name, *map(number, one["frequency"].values()), f"of {one['share']:.0%} of the curves"]
+        for name, one in jumps.items()
+    ]
+    given = ", ".join(f"{key} = {value:.6g}" for key, value in found["parameters"].items())
+    head = f"percentiles of {found['curves']} curves{f' with {given}' if given else ''}"
+    if not rows:
+        return head
+    percents = next(iter(found["jumps"].values()))["frequency"]
+    return f"{head}\n" + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
 
 
 def _greatest(curves: Sequence[Curve]) -> list[str]:

@@ -183,6 +183,7 @@ def respond(
             response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)
         response.notes, response.units = list(loaded.notes), loaded.units
+        response.drawn = loaded.drawn
         result = outputs.write(response, to_json)
     _close(messages, result, response.defects)
 

@@ -45,6 +45,7 @@ class DrawnResponse:
     frequency_unit: str
     curves: tuple[DrawnCurve, ...]
     length: str = ""  # unit of displacements, if the file says it
+    drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
 
 
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
@@ -126,7 +127,8 @@ def _response(dataset: Any) -> DrawnResponse:
     )
     length = str(getattr(variables["amplitude"], "units", ""))
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
-    return DrawnResponse(dofs, unit, curves, length)
+    drawn = tuple(name for name in swept if getattr(variables[name], "drawn", "") == "true")
+    return DrawnResponse(dofs, unit, curves, length, drawn)
 
 
 def _curve(

@@ -86,7 +86,7 @@ def respond(
         scene = replace(scene, max_step=max_step, curves=curves)
     place = None if executor is None else place_of(executor)
     response = _curves(scene, method, at, harmonics, accuracy, place)
-    response.notes, response.units = list(scene.notes), scene.units
+    response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
     if scene.schedule:
         from fcm.motion import histories
 

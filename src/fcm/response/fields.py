@@ -13,6 +13,7 @@ from fcm.contact.limits import FloatArray
 from fcm.response.gist import gist_of
 from fcm.response.padded import Padded, by_fold, by_point
 from fcm.response.result import Curve, Response
+from fcm.response.scatter import PERCENTS, SWEEPS, Scatter, scatter
 from fcm.units import in_unit
 
 ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
@@ -87,7 +88,7 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path",
+    "harmonic_amplitude", "slip_path", "peak_percentile",
 )  # fmt: skip
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
 FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
@@ -110,12 +111,15 @@ def fields_of(response: Response) -> dict[str, Field]:
     }
     for key in swept[0] if swept else ():
         values = np.array([parameters[key] for parameters in swept])
-        out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"})
+        drawn = {"drawn": "true"} if key in response.drawn else {}
+        out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"} | drawn)
     if response.curves or response.histories is None:
         out |= _gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= _curve_fields(response)
         if any(c.sensitivity is not None for c in response.curves):
-            out |= sensitivity_fields(response)
+            out |= _sensitivity_fields(response)
+        if found := scatter(response):
+            out |= _scatter_fields(found, response.frequency_unit)
     if response.histories is not None:
         from fcm.motion import output
 
@@ -288,7 +292,32 @@ def _curve_fields(response: Response) -> dict[str, Field]:
     }
 
 
-def sensitivity_fields(response: Response) -> dict[str, Field]:
+def _scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
+    """Percentiles over the curves that differ in drawn numbers alone."""
+    of_dof, of_sweep = ("scatter", "percent", "dof"), ("scatter", "percent", "sweep_direction")
+    peak, frequency, jump = (
+        np.stack([getattr(one, x) for one in found]) for x in ("peak", "frequency", "jump")
+    )
+    at = {"units": CF_UNIT[unit]}
+    return {
+        "percent": Field(("percent",), np.array(PERCENTS), {"long_name": "percentage of curves below"}),
+        "sweep_direction": Field(("sweep_direction",), np.array(SWEEPS), {"long_name": "of a slow sweep"}),
+        "peak_percentile": Field(of_dof, peak, {"long_name": "percentile of the greatest amplitude"}),
+        "peak_frequency_percentile": Field(
+            of_dof, in_unit(frequency, unit), {"long_name": "percentile of its frequency"} | at
+        ),
+        "jump_percentile": Field(
+            of_sweep, in_unit(jump, unit), {"long_name": "percentile of the first jump's frequency"} | at
+        ),
+        "jump_share": Field(
+            ("scatter", "sweep_direction"),
+            np.stack([one.jumping for one in found]),
+            {"long_name": "share of curves that jump", "units": "1"},
+        ),
+    }
+
+
+def _sensitivity_fields(response: Response) -> dict[str, Field]:
     """Derivatives of the peaks by the numbers of the scene; NaN where a curve has none."""
     curves, dofs = response.curves, len(response.dofs)
     numbers = next(c.sensitivity.numbers for c in curves if c.sensitivity is not None)

@@ -15,6 +15,7 @@ from fcm.files import replacing
 from fcm.response.fields import ORBIT_KINDS, Field, fields_of
 from fcm.response.padded import CHUNK, Padded
 from fcm.response.result import Orbits, Response
+from fcm.response.scatter import scatter, summary_of
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ def summary(response: Response) -> dict[str, Any]:
         "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
     }
+    if response.curves and (found := scatter(response)):
+        unit = response.frequency_unit
+        data["scatter"] = [summary_of(one, response.dofs, unit) for one in found]
     if response.histories is not None:
         from fcm.motion import output
 

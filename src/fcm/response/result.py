@@ -254,6 +254,7 @@ class Response:
     seconds: float = 0.0
     left_out: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)  # of the scene: what was taken for what
+    drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them

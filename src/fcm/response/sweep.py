@@ -141,7 +141,7 @@ class _Sweep:
 
     def run(self, lighter: Lighter, progress: Progress | None) -> Response:
         """Trace all groups that are not finished already."""
-        batches = in_batches(lighter.curves)
+        batches = in_batches(tuple(replace(scene, draft=None) for scene in lighter.curves))
         samples = EACH_CHECKED if lighter.above is not None else 0
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
         scene, contacts = self.scene, tuple(c.name for c in batches[0][0].contacts)

@@ -127,8 +127,13 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "sweep": {
         "paired": Key("keys that go in step, with as many values each", "[[sweep.paired]]", "none"),
+        "correlation": Key("of keys that are drawn", "[sweep.correlation]", "none: they are independent"),
         '"contact.NAME.n_0"': Key("a number of the scene by its path, in quotes",
                                   "list, range or draws", "none"),
+    },
+    "sweep.correlation": {
+        "keys": Key("drawn keys, equally often", "list of key paths"),
+        "matrix": Key("of their normal scores (a Gaussian copula)", "list of rows"),
     },
 }  # fmt: skip
 

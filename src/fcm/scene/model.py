@@ -110,6 +110,11 @@ class Scene:
         """Whether there is a range of frequencies to trace."""
         return not np.isnan(self.frequency_range[0])
 
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """The swept keys whose values are random draws."""
+        return () if self.draft is None else tuple(one.key for one in self.draft.swept if one.drawn)
+
     def in_use(self) -> Scene:
         """The scene at those degrees of freedom only that are reported, or that something is attached to."""
         used = np.isin(self.modal.dofs, self.reported)

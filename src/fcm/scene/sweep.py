@@ -3,12 +3,13 @@
 A key is the path of a number in the scene: "contact.shroud.n_0" (or "contact.0.n_0"), "force.u.amplitude"
 (or "force.0.amplitude"), "modal.damping" (every mode) or "modal.damping.0", "modal.shapes.0.u", and the
 weights of combinations, "contact.shroud.normal.v". Its values are a list; a range { from, to, count },
-evenly spaced or with log = true; or draws { normal = [mean, deviation], count, seed } or { uniform = [low,
-high], count, seed }.
+evenly spaced or with log = true; or draws { normal = [mean, deviation], count, seed }, { uniform = [low,
+high], count, seed } or { distribution = "lognorm", s = 0.2, scale = 0.4, count, seed }, any of scipy.stats
+with its parameters.
 
 Curves are the product of the keys, the last one fastest, except that keys drawn with the same count are
-drawn together: 1000 draws of two keys are 1000 curves. Draws depend on the seed (0 when not given) and on
-the key, so two keys with one seed are independent, and adding a key changes no other key's draws.
+drawn together: 1000 draws of two keys are 1000 curves, independent of one another (see `draws`) unless
+[sweep.correlation] gives their correlation.
 
 A name with a * stands for all that it matches: "contact.*.n_0" sets the preload of every contact. The keys of
 one [[sweep.paired]] table go in step, and must have as many values each.
@@ -21,11 +22,12 @@ from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
 from typing import Any
-from zlib import crc32
 
 import numpy as np
 
 from fcm.scene.address import Address, Addresses, overlap
+from fcm.scene.draws import FORMS as DRAWN
+from fcm.scene.draws import Correlation, Draws, read_correlation, read_draws
 from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.rules import ANY, RULES, Rule
 from fcm.scene.section import Section
@@ -34,7 +36,8 @@ MOST_CURVES = 1_000_000
 
 FORMS = (
     "a list of numbers, { from = , to = , count = }, "
-    "{ normal = [mean, deviation], count = } or { uniform = [low, high], count = }"
+    "{ normal = [mean, deviation], count = }, { uniform = [low, high], count = } "
+    "or { distribution = , count = }"
 )
 
 
@@ -46,6 +49,12 @@ class Swept:
     addresses: tuple[Address, ...]
     values: tuple[float, ...]
     group: object
+    draws: Draws | None = None
+
+    @property
+    def drawn(self) -> bool:
+        """Whether its values are random, and each as likely as the others."""
+        return self.draws is not None
 
 
 def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
@@ -55,12 +64,16 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
         return []
     addresses = Addresses(parts)
     found: list[Swept | None] = []
+    correlation = read_correlation(section) if "correlation" in section.data else None
+    correlated = () if correlation is None else correlation.keys
     for key in section.data:
         if key == "paired":
             found += _paired(section, addresses)
-        else:
-            found.append(_swept(section, key, addresses))
+        elif key != "correlation":
+            found.append(_swept(section, key, addresses, checked=key not in correlated))
     swept = [one for one in found if one is not None]
+    if correlation is not None:
+        swept = _correlated(section, swept, correlation)
     _note_overlaps(section, swept)
     count = prod(len(group[0].values) for group in _groups(swept))
     if count > MOST_CURVES:
@@ -100,7 +113,35 @@ def _paired(section: Section, addresses: Addresses) -> list[Swept | None]:
     return found
 
 
-def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
+def _correlated(section: Section, swept: list[Swept], correlation: Correlation) -> list[Swept]:
+    """The swept keys, the draws of those that are correlated in their places."""
+    table = Section({}, section.at("correlation"), section.mistakes)
+    draws = {one.key: one.draws for one in swept if one.draws is not None}
+    before = section.mistakes.count
+    for key in correlation.keys:
+        if key not in section.data:
+            table.wrong(
+                "keys", f"{quoted(key)} is not swept", key, [k for k in section.data if "." in str(k)]
+            )
+        elif key not in draws and any(one.key == key for one in swept):
+            table.wrong("keys", f"{quoted(key)} is not drawn: its values are given")
+    counts = {draws[key].count for key in correlation.keys if key in draws}
+    if len(counts) > 1:
+        table.wrong(
+            "keys", f"must be drawn equally often, but have {' and '.join(map(str, sorted(counts)))} draws"
+        )
+    if section.mistakes.count > before or any(key not in draws for key in correlation.keys):
+        return swept
+    values = correlation.values(draws)
+    for key, own in values.items():
+        found = next(one for one in swept if one.key == key)
+        _check(section, section.at(quoted(key)), own, RULES[field_of(found.addresses[0])], listed=False)
+    return [
+        replace(one, values=tuple(values[one.key].tolist())) if one.key in values else one for one in swept
+    ]
+
+
+def _swept(section: Section, key: str, addresses: Addresses, checked: bool = True) -> Swept | None:
     path = section.at(quoted(key))
     value = section.data[key]
     if isinstance(value, Mapping) and "." not in str(key) and not _FORM_KEYS & set(value):
@@ -114,9 +155,12 @@ def _swept(section: Section, key: str, addresses: Addresses) -> Swept | None:
         return None
     if not found:
         return None
-    _check(section, path, values, RULES[field_of(found[0])], listed=not isinstance(value, Mapping))
-    drawn = isinstance(value, Mapping) and "from" not in value
-    return Swept(str(key), found, tuple(values.tolist()), ("drawn", len(values)) if drawn else str(key))
+    draws = values if isinstance(values, Draws) else None
+    values = values.values() if isinstance(values, Draws) else values
+    if checked:
+        _check(section, path, values, RULES[field_of(found[0])], listed=not isinstance(value, Mapping))
+    group = str(key) if draws is None else ("drawn", len(values))
+    return Swept(str(key), found, tuple(values.tolist()), group, draws)
 
 
 def field_of(address: Address) -> str:
@@ -141,7 +185,7 @@ def _note_overlaps(section: Section, swept: list[Swept]) -> None:
 
 
 def _values(section: Section, path: str, key: str, value: object) -> Any:
-    """The values of one key as an array; None after a mistake."""
+    """The values of one key as an array, or how they are drawn; None after a mistake."""
     if isinstance(value, Mapping):
         return _from_table(Section(value, path, section.mistakes), key)
     if not isinstance(value, list | tuple | np.ndarray):
@@ -154,17 +198,17 @@ def _values(section: Section, path: str, key: str, value: object) -> Any:
     return section.numbers(value, path, ANY)
 
 
-_FORM_KEYS = {"from", "to", "count", "log", "normal", "uniform", "seed"}
+_FORM_KEYS = {"from", "to", "count", "log", "seed", *DRAWN}
 
 
 def _from_table(table: Section, key: str) -> Any:
-    form = [word for word in ("from", "normal", "uniform") if word in table.data]
+    form = [word for word in ("from", *DRAWN) if word in table.data]
     if len(form) != 1:
         free = next((str(word) for word in table.data if word not in _FORM_KEYS), "")
         table.wrong("", f"must be {FORMS}", free, sorted(_FORM_KEYS))
         return None
     before = table.mistakes.count
-    values = _range(table) if form == ["from"] else _draws(table, form[0], key)
+    values = _range(table) if form == ["from"] else read_draws(table, form[0], key, _integer)
     return values if table.mistakes.count == before else None
 
 
@@ -181,25 +225,6 @@ def _range(table: Section) -> Any:
         return None
     values = np.geomspace(low, high, count) if log else np.linspace(low, high, count)
     return np.array([float(f"{value:.15g}") for value in values.tolist()])  # 0.3, not 0.30000000000000004
-
-
-def _draws(table: Section, form: str, key: str) -> Any:
-    table.only(form, "count", "seed")
-    pair = table.vector(form, ANY)
-    count = _integer(table, "count", 1)
-    seed = _integer(table, "seed", 0, default=0)
-    words = "[mean, deviation]" if form == "normal" else "[low, high]"
-    if pair is not None and len(pair) != 2:
-        table.wrong(form, f"must be two numbers, {words}, is a list of {len(pair)}")
-    elif pair is not None and form == "normal" and pair[1] < 0:
-        table.wrong(form, f"the deviation must be at least 0, is {pair[1]:g}")
-    elif pair is not None and form == "uniform" and pair[1] < pair[0]:
-        table.wrong(form, f"goes down: [{pair[0]:g}, {pair[1]:g}]; give the lower one first")
-    elif pair is not None and count and seed is not None:
-        generator = np.random.default_rng([seed, crc32(key.encode("utf-8", "replace"))])
-        draw = generator.normal if form == "normal" else generator.uniform
-        return draw(float(pair[0]), float(pair[1]), count)
-    return None
 
 
 def _integer(table: Section, key: str, least: int, default: int | None = None) -> int | None:

@@ -1,0 +1,229 @@
+"""Random values of a swept number: normal, uniform, or by any distribution of scipy.stats; correlated or not.
+
+Draws depend on the seed (0 when not given) and on the key, so two keys with one seed are independent, and
+adding a key changes no other key's draws. Keys with a correlation have it through a Gaussian copula: normal
+scores, of which each value is the quantile of its own distribution.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+
+from fcm.scene.errors import kind, quoted
+from fcm.scene.keys import names
+from fcm.scene.model import FloatArray
+from fcm.scene.rules import ANY, POSITIVE
+from fcm.scene.section import Section
+
+FORMS = ("normal", "uniform", "distribution")
+ROUNDING = 1e-12  # of a correlation matrix: an eigenvalue that is less below zero is one of zero
+
+Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
+
+
+@dataclass(frozen=True)
+class Draws:
+    """How a key is drawn."""
+
+    key: str
+    form: str  # one of FORMS
+    pair: tuple[float, float]  # of normal and uniform
+    quantile: Quantile | None  # of a distribution
+    count: int
+    seed: int
+
+    def _generator(self) -> np.random.Generator:
+        return np.random.default_rng([self.seed, crc32(self.key.encode("utf-8", "replace"))])
+
+    def values(self) -> FloatArray:
+        """The draws, (count,), independent of others."""
+        generator, (low, high) = self._generator(), self.pair
+        if self.form == "normal":
+            return generator.normal(low, high, self.count)
+        if self.form == "uniform":
+            return generator.uniform(low, high, self.count)
+        return self._quantiles(generator.random(self.count))
+
+    def scores(self) -> FloatArray:
+        """Standard normal draws, (count,)."""
+        return self._generator().standard_normal(self.count)
+
+    def at(self, scores: FloatArray) -> FloatArray:
+        """The draws that have normal scores."""
+        from scipy.special import ndtr
+
+        low, high = self.pair
+        if self.form == "normal":
+            return low + high * scores
+        if self.form == "uniform":
+            return low + (high - low) * ndtr(scores)
+        return self._quantiles(ndtr(scores))
+
+    def _quantiles(self, probability: FloatArray) -> FloatArray:
+        assert self.quantile is not None
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")  # what is not finite is said of the number itself
+            return np.asarray(self.quantile(probability), dtype=np.float64)
+
+
+def read_draws(table: Section, form: str, key: str, integer: Callable[..., int | None]) -> Draws | None:
+    """{ normal = [..], count, seed }, or uniform, or distribution = "name"; None after a mistake."""
+    before = table.mistakes.count
+    pair, quantile = (0.0, 1.0), None
+    if form == "distribution":
+        quantile = _distribution(table)
+    else:
+        table.only(form, "count", "seed")
+        pair = _pair(table, form)
+    count, seed = integer(table, "count", 1), integer(table, "seed", 0, default=0)
+    if table.mistakes.count > before or count is None or seed is None:
+        return None
+    return Draws(key, form, pair, quantile, count, seed)
+
+
+def _pair(table: Section, form: str) -> tuple[float, float]:
+    pair = table.vector(form, ANY)
+    words = "[mean, deviation]" if form == "normal" else "[low, high]"
+    if pair is None:
+        return 0.0, 1.0
+    if len(pair) != 2:
+        table.wrong(form, f"must be two numbers, {words}, is a list of {len(pair)}")
+        return 0.0, 1.0
+    if form == "normal" and pair[1] < 0:
+        table.wrong(form, f"the deviation must be at least 0, is {pair[1]:g}")
+    elif form == "uniform" and pair[1] < pair[0]:
+        table.wrong(form, f"goes down: [{pair[0]:g}, {pair[1]:g}]; give the lower one first")
+    return float(pair[0]), float(pair[1])
+
+
+def _distribution(table: Section) -> Quantile | None:
+    """The quantiles of a distribution of scipy.stats, whose parameters stand beside its name."""
+    from scipy import stats
+
+    name = table.text("distribution")
+    if not name:
+        return None
+    kinds = (stats.rv_continuous, stats.rv_discrete)
+    found = getattr(stats, name, None) if name.isidentifier() else None
+    if not isinstance(found, kinds):
+        known = [word for word in dir(stats) if isinstance(getattr(stats, word), kinds)]
+        table.wrong("distribution", f"there is no distribution {quoted(name)} in scipy.stats", name, known)
+        return None
+    shapes = [word.strip() for word in (found.shapes or "").split(",") if word.strip()]
+    continuous = isinstance(found, stats.rv_continuous)
+    table.only("distribution", *shapes, "loc", *(["scale"] if continuous else []), "count", "seed")
+    before = table.mistakes.count
+    values = {word: table.number(word, ANY) for word in shapes}
+    values["loc"] = table.number("loc", ANY, default=0.0)
+    if continuous:
+        values["scale"] = table.number("scale", POSITIVE, default=1.0)
+    if table.mistakes.count > before:
+        return None
+    frozen = found(**values)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        allowed = np.isfinite(frozen.ppf(0.5))
+    if not allowed:
+        given = ", ".join(f"{word} = {value:g}" for word, value in values.items())
+        table.wrong("", f"{name} has no values with {given}")
+        return None
+    quantile: Quantile = frozen.ppf
+    return quantile
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Which keys are correlated, and the factor L of their matrix, L L^T."""
+
+    keys: tuple[str, ...]
+    factor: FloatArray
+
+    def values(self, draws: Mapping[str, Draws]) -> dict[str, FloatArray]:
+        """The draws of the keys."""
+        scores = self.factor @ np.array([draws[key].scores() for key in self.keys])
+        return {key: draws[key].at(own) for key, own in zip(self.keys, scores, strict=True)}
+
+
+def read_correlation(section: Section) -> Correlation | None:
+    """[sweep.correlation]: keys, and the matrix of their normal scores."""
+    table = section.table("correlation", "")
+    if table is None:
+        return None
+    table.only(*names("sweep.correlation"))
+    keys, matrix = _keys(table), _matrix(table)
+    if keys is None or matrix is None:
+        return None
+    if len(keys) != len(matrix):
+        table.wrong("matrix", f"has {len(matrix)} rows, but there are {len(keys)} keys")
+        return None
+    return Correlation(keys, _factor(matrix))
+
+
+def _keys(table: Section) -> tuple[str, ...] | None:
+    if table.missing("keys", 'a list of drawn keys, as in ["contact.shroud.mu", "contact.shroud.n_0"]'):
+        return None
+    value = table.data["keys"]
+    if not isinstance(value, list | tuple) or not all(isinstance(key, str) for key in value):
+        table.wrong("keys", f"must be a list of strings, is {kind(value)}")
+        return None
+    if len(value) < 2 or len(set(value)) < len(value):
+        table.wrong("keys", "must be two keys or more, each once")
+        return None
+    return tuple(value)
+
+
+def _matrix(table: Section) -> FloatArray | None:
+    """A correlation matrix; None after a mistake."""
+    if table.missing("matrix", "a list of rows, as in [[1, 0.5], [0.5, 1]]"):
+        return None
+    value = table.data["matrix"]
+    if not isinstance(value, list | tuple | np.ndarray):
+        table.wrong("matrix", f"must be a list of rows, is {kind(value)}")
+        return None
+    rows = [table.numbers(row, table.at(f"matrix[{i}]"), ANY) for i, row in enumerate(value)]
+    good = [row for row in rows if row is not None]
+    if len(good) < len(rows):
+        return None
+    if any(len(row) != len(rows) for row in good):
+        table.wrong("matrix", f"must be square, is {_shape(good)}")
+        return None
+    matrix = np.array(good)
+    if fault := _fault(matrix):
+        table.wrong("matrix", fault)
+        return None
+    return matrix
+
+
+def _shape(rows: Sequence[Any]) -> str:
+    return f"{len(rows)} rows of {' and '.join(map(str, sorted({len(row) for row in rows})))}"
+
+
+def _fault(matrix: FloatArray) -> str:
+    """What is wrong with a square matrix of correlations; empty if nothing is."""
+    if (matrix.diagonal() != 1.0).any():
+        return "must have 1 everywhere on its diagonal"
+    if (matrix != matrix.T).any():
+        i, j = np.argwhere(matrix != matrix.T)[0]
+        return f"must be symmetric, but [{i}][{j}] is {matrix[i, j]:g} and [{j}][{i}] is {matrix[j, i]:g}"
+    if (np.abs(matrix) > 1.0).any():
+        return "must have numbers from -1 to 1"
+    least = np.linalg.eigvalsh(matrix)[0]
+    if least < -ROUNDING * len(matrix):
+        return f"is that of no draws at all: it has the negative eigenvalue {least:.3g}"
+    return ""
+
+
+def _factor(matrix: FloatArray) -> FloatArray:
+    """Lower triangular where the matrix is regular: the first key's draws are then as without it."""
+    try:
+        return np.linalg.cholesky(matrix)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(matrix)
+        found: FloatArray = vectors * np.sqrt(np.maximum(values, 0.0))
+        return found

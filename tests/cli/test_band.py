@@ -1,0 +1,37 @@
+"""``fcm plot response --band``, and what a run says of random draws."""
+
+import pytest
+
+DRAWS = '[sweep]\n"contact.shroud.n_0" = { distribution = "norm", loc = 5, scale = 0.2, count = 4 }\n'
+
+
+@pytest.fixture
+def result(fcm, scene, tmp_path):
+    scene.write_text(scene.read_text() + "harmonics = 1\n" + DRAWS)
+    done = fcm("respond", scene, "-o", tmp_path / "draws.nc")
+    assert done.code == 0 and "percentiles of 4 curves" in done.out and "50 %" in done.out
+    return tmp_path / "draws.nc"
+
+
+def test_bands_are_drawn(fcm, result, tmp_path):
+    done = fcm("plot", "response", "--band", 5, 95, result, "--dof", "v", "--log")
+    assert (done.code, done.err) == (0, f"wrote {tmp_path / 'draws.png'}\n")
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        ((95, 5), "the percentages must rise"),
+        ((-5, 5), "is not in the range 0.0<=x<=100.0"),
+        ((5, 95, "--dof", "x"), "no degree of freedom 'x'"),
+    ],
+)
+def test_what_is_wrong_is_said(fcm, result, args, said):
+    done = fcm("plot", "response", result, "--band", *args)
+    assert done.code == 2 and said in done.err
+
+
+def test_without_draws_there_is_no_band(fcm, scene):
+    assert fcm("respond", scene, "--harmonics", 1, "-o", "plain.nc").code == 0
+    done = fcm("plot", "response", "plain.nc", "--band", 5, 95)
+    assert done.code == 2 and "nothing was drawn at random" in done.err

@@ -1,0 +1,108 @@
+"""Percentiles over random draws: of peaks, of their frequencies, and of jumps; bands of the response."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.plot.band import bands_of, greatest_at
+from fcm.plot.read import DrawnCurve, read_response
+from fcm.response.output import summary, write_netcdf
+from fcm.response.sweep import trace
+from fcm.scene import scene_from_dict
+
+COUNT = 12
+N_0 = {"normal": [5.0, 0.4], "count": COUNT, "seed": 2}
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v"], "frequency": [1.0, 10.0], "damping": 0.01,
+                "shapes": [[0.707, 0.707], [1.0, -0.5]],
+            },
+            "contact": [
+                {"name": "c", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+            ],
+            "force": [{"dof": "u", "amplitude": 1.0}, {"dof": "v", "amplitude": 1.0}],
+            "response": {"frequency": [0.9, 1.6], "harmonics": 1},
+            "sweep": {
+                "contact.c.mu": [0.4, 0.3],
+                "contact.c.n_0": N_0,
+                "contact.c.k_u": {"distribution": "lognorm", "s": 0.05, "count": COUNT},
+            },
+        }
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def response(scene):
+    found = trace(scene, "closed-form")
+    found.drawn = scene.drawn
+    return found
+
+
+@pytest.fixture(scope="module")
+def path(response, tmp_path_factory):
+    path = tmp_path_factory.mktemp("scatter") / "a.nc"
+    write_netcdf(response, path)
+    return path
+
+
+def test_percentiles_are_over_the_draws_of_each_given_value(scene, response):
+    assert scene.drawn == ("contact.c.n_0", "contact.c.k_u")
+    found = summary(response)["scatter"]
+    assert [one["parameters"] for one in found] == [{"contact.c.mu": 0.4}, {"contact.c.mu": 0.3}]
+    for one in found:
+        curves = [
+            c for c in response.curves if c.parameters["contact.c.mu"] == one["parameters"]["contact.c.mu"]
+        ]
+        peaks = [c.peaks["u"][:2] for c in curves]
+        median = np.median(peaks, axis=0)
+        assert one["curves"] == COUNT
+        assert one["peak"]["u"]["amplitude"]["50"] == pytest.approx(median[0])
+        assert one["peak"]["u"]["frequency"]["50"] == pytest.approx(median[1])
+        up = [
+            c.folds[0] for c in curves if c.folds
+        ]  # of these curves the first fold is that of an upward sweep
+        assert one["jumps"]["up"]["share"] == len(up) / COUNT
+        assert one["jumps"]["up"]["frequency"]["95"] == pytest.approx(np.percentile(up, 95.0))
+
+
+def test_the_dataset_holds_them(response):
+    from fcm.response.output import to_dataset
+
+    data = to_dataset(response)
+    assert data.peak_percentile.dims == ("scatter", "percent", "dof")
+    one = summary(response)["scatter"][1]
+    assert data.peak_percentile.sel(percent=5.0, dof="u").values[1] == one["peak"]["u"]["amplitude"]["5"]
+    assert data.jump_percentile.values[1, 0, 0] == one["jumps"]["up"]["frequency"]["5"]
+
+
+def test_nothing_is_said_where_nothing_is_drawn():
+    scene = fcm.load_scene("yang1998-n5")
+    assert scene.drawn == () and "peak_percentile" not in fcm.respond(scene, harmonics=1)
+
+
+def test_a_band_holds_its_share_of_the_curves(path, response):
+    drawn = read_response(path)
+    bands = bands_of(drawn, 0, (10.0, 90.0))
+    assert [band.parameters for band in bands] == [{"contact.c.mu": 0.4}, {"contact.c.mu": 0.3}]
+    band = bands[0]
+    assert (band.low <= band.median).all() and (band.median <= band.high).all()
+    values = np.array([greatest_at(c, 0, band.frequency) for c in drawn.curves[:COUNT]])
+    inside = ((values >= band.low) & (values <= band.high)).mean(axis=0)
+    least = COUNT - 2 * np.ceil(0.1 * (COUNT - 1))  # percentiles lie between draws
+    assert inside.min() * COUNT == pytest.approx(least) and np.isfinite(values).all()
+
+
+def test_the_greatest_stable_amplitude_of_a_curve_that_folds():
+    x = np.array([1.0, 2.0, 3.0, 2.5, 2.0, 3.0, 4.0])
+    y = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0])
+    stable = np.array([1, 1, 1, 0, 1, 1, 1], bool)
+    places = np.array([1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5])
+    found = greatest_at(DrawnCurve({}, x, y[:, None], stable), 0, places)
+    assert found == pytest.approx([1.0, 1.5, 5.0, 5.5, 6.0, 6.5, 7.0, np.nan], nan_ok=True)
