@@ -30,6 +30,7 @@ def respond(
     accuracy: float | None = None,
     max_step: float | None = None,
     executor: Executor | None = None,
+    sensitivity: bool = False,
 ) -> xarray.Dataset:
     """Response curves of a scene, and the motion of its schedule, as the dataset of ``fcm respond``.
 
@@ -51,6 +52,8 @@ def respond(
         Longest step along a curve, relative to its extent; the scene's by default.
     executor : concurrent.futures.Executor, optional
         Where the curves of a sweep are computed, in batches; its owner ends it. In this process by default.
+    sensitivity : bool
+        Whether to add the derivatives of each peak, its height and frequency, by the numbers of the scene.
 
     Returns
     -------
@@ -84,8 +87,14 @@ def respond(
             raise ResponseError(f"max_step {fault}")
         curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
         scene = replace(scene, max_step=max_step, curves=curves)
+    if sensitivity and method == "exact":
+        raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
     place = None if executor is None else place_of(executor)
     response = _curves(scene, method, at, harmonics, accuracy, place)
+    if sensitivity:
+        from fcm.response.sensitivity import add_sensitivities
+
+        add_sensitivities(response, scene)
     response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
     if scene.schedule:
         from fcm.motion import histories

@@ -17,6 +17,7 @@ from fcm.response.result import Curve, NonlinearMode, Resonance, Response
 from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
 from fcm.scene.model import Scene
 from fcm.scene.rules import MOST_HARMONICS
+from fcm.units import in_unit
 
 WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
 WORK = 1e8  # evaluations times unknowns squared beyond which no more harmonics are tried
@@ -119,7 +120,7 @@ def _recorded(mode: Mode, number: int, error: np.typing.NDArray[np.float64]) -> 
         error=np.full(amplitude.shape, np.nan),
         truncation_error=error,
         complete=whole,
-        reason="" if whole else f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}",
+        reason="" if whole else _reason(mode),
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
@@ -133,6 +134,21 @@ def _recorded(mode: Mode, number: int, error: np.typing.NDArray[np.float64]) -> 
             folds=mode.amplitude[(path.mark & Mark.FOLD) > 0].tolist(),
             resonances=_resonances(mode),
         ),
+    )
+
+
+def _reason(mode: Mode) -> str:
+    """Why a mode does not reach the greatest amplitude."""
+    path = mode.path
+    if path.status is not Status.RETURNED:
+        return f"stopped at modal amplitude {mode.amplitude[-1]:.6g}: {path.status.value}"
+    top, size = int(mode.amplitude.argmax()), np.linalg.norm(mode.Q[-1], axis=1)
+    frequency = float(in_unit(mode.omega[top], mode.system.scene.frequency_unit))
+    unit, harmonic = mode.system.scene.frequency_unit, mode.system.harmonics[int(size.argmax())]
+    into = f" as a motion in harmonic {harmonic}, an internal resonance" if harmonic > 1 else ""
+    return (
+        f"turns back at modal amplitude {mode.amplitude[top]:.6g}, {frequency:.6g} {unit}, and comes back to "
+        f"the least{into}; fewer harmonics may follow the mode on"
     )
 
 

@@ -20,7 +20,7 @@ REMARKS = {
 
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
     """Give every curve that has peaks their sensitivities; the scene is that of the response."""
-    scenes = scene.each_curve()
+    scenes = scene.each_curve() if response.curves else ()
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
         if progress is not None:
             progress(i / len(scenes), "sensitivities")

@@ -61,15 +61,15 @@ class Draws:
         low, high = self.pair
         if self.form == "normal":
             return low + high * scores
-        if self.form == "uniform":
-            return low + (high - low) * ndtr(scores)
-        return self._quantiles(ndtr(scores))
+        share: FloatArray = ndtr(scores)
+        return low + (high - low) * share if self.form == "uniform" else self._quantiles(share)
 
     def _quantiles(self, probability: FloatArray) -> FloatArray:
         assert self.quantile is not None
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # what is not finite is said of the number itself
-            return np.asarray(self.quantile(probability), dtype=np.float64)
+            found: FloatArray = np.asarray(self.quantile(probability), dtype=np.float64)
+        return found
 
 
 def read_draws(table: Section, form: str, key: str, integer: Callable[..., int | None]) -> Draws | None:
@@ -222,8 +222,8 @@ def _fault(matrix: FloatArray) -> str:
 def _factor(matrix: FloatArray) -> FloatArray:
     """Lower triangular where the matrix is regular: the first key's draws are then as without it."""
     try:
-        return np.linalg.cholesky(matrix)
+        found: FloatArray = np.asarray(np.linalg.cholesky(matrix), dtype=np.float64)
     except np.linalg.LinAlgError:
         values, vectors = np.linalg.eigh(matrix)
-        found: FloatArray = vectors * np.sqrt(np.maximum(values, 0.0))
-        return found
+        found = vectors * np.sqrt(np.maximum(values, 0.0))
+    return found
