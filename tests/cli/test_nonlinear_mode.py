@@ -24,7 +24,7 @@ def test_the_file_holds_frequency_and_damping_against_amplitude(result, tmp_path
         assert w[0] == pytest.approx(np.sqrt(2.0), rel=1e-3) and D.max() > 4.0 * D[0]
         level, force, flank = (data[x][0] for x in ("resonant_level", "modal_force", "flank_frequency"))
         assert level == pytest.approx(2.0 * D * w**2 * np.sqrt(1.0 - D**2) * a / force)
-        assert np.array_equal(np.isfinite(flank[:, 1]), level <= 1.0)
+        assert np.array_equal(np.isfinite(flank[:, 0, 1]), level <= 1.0)
         summary = json.loads(data.summary)["curves"][0]
     assert summary["mode"]["greatest_damping"]["damping"] == D.max()
     rows = (tmp_path / "mode.csv").read_text().splitlines()
@@ -36,6 +36,24 @@ def test_json_says_where_the_forces_of_the_scene_are_in_resonance(fcm):
     (one,) = json.loads(done.out)["curves"][0]["mode"]["resonances"]
     assert done.code == 0 and one["frequency"] == pytest.approx(1.19, abs=0.01)
     assert one["amplitude"]["u"] == pytest.approx(15.831, rel=0.02)  # the peak of the response itself
+
+
+def test_the_response_is_predicted_at_any_level_of_the_forces(fcm):
+    done = fcm(*MODE, "--force-level", 0.5, "--force-level", 2, "--json", "-o", "levels.nc")
+    found = json.loads(done.out)["curves"][0]["mode"]["resonances"]
+    assert [one["level"] for one in found] == [0.5, 2.0]
+    for one in found:
+        lines = []
+        for w in np.linspace(0.98, 1.02, 3) * one["frequency"]:
+            alone = fcm("respond", "yang1998-n5", "--level", "0:3", "--at", w, "--harmonics", 1, "-o", "a.nc")
+            assert alone.code == 0
+            with netCDF4.Dataset("a.nc") as data:
+                at, u = data["level"][0], data["amplitude"][0, :, 0]
+                crossed = np.flatnonzero((at[1:] - one["level"]) * (at[:-1] - one["level"]) <= 0.0)
+                lines.append(max(max(u[i], u[i + 1]) for i in crossed))
+        assert max(lines) == pytest.approx(one["amplitude"]["u"], rel=0.15)
+    with netCDF4.Dataset("levels.nc") as data:
+        assert data["force_level"][:].tolist() == [0.5, 2.0]
 
 
 def test_as_many_harmonics_as_an_accuracy_takes(fcm):
@@ -59,6 +77,7 @@ def test_the_picture(fcm, result, tmp_path):
         (["--mode", 1, "--level", "1:2", "--method", "exact"], "--method is of no use with --mode"),
         (["--mode", 9, "--level", "1:2"], "there is no mode 9; the structure has the modes 1 to 2"),
         (["--mode", 1, "--level", "1e-9:1e9"], "by at most a factor of 1e+15"),
+        (["--force-level", 2], "--force-level needs --mode"),
         (["--mode", 0, "--level", "1:2"], "0 is not in the range x>=1"),
     ],
 )

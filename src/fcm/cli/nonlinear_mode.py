@@ -26,8 +26,15 @@ OF_NO_USE = {  # with --mode, and why
 }
 
 
-def check_options(mode: int | None, level: tuple[float, float] | None, at: tuple[float, ...] | None) -> None:
+def check_options(
+    mode: int | None,
+    level: tuple[float, float] | None,
+    at: tuple[float, ...] | None,
+    force_levels: tuple[float, ...],
+) -> None:
     """A usage error if --mode lacks its span, or is given with what means nothing then."""
+    if mode is None and force_levels:
+        raise click.UsageError("--force-level needs --mode: from a nonlinear mode it predicts the response.")
     if mode is None:
         return
     if level is None:
@@ -45,17 +52,11 @@ def check_options(mode: int | None, level: tuple[float, float] | None, at: tuple
             raise click.UsageError(f"{option} is of no use with --mode: {why}.")
 
 
-def traced(
-    scene: Scene,
-    mode: int,
-    level: tuple[float, float],
-    harmonics: tuple[int, ...] | None,
-    accuracy: float | None,
-) -> Response:
+def traced(scene: Scene, mode: int, level: tuple[float, float], chosen: dict[str, Any]) -> Response:
     """The nonlinear mode of every curve of a scene."""
     from fcm.response.mode import trace_modes
 
-    return trace_modes(scene, mode, level, harmonics=harmonics, accuracy=accuracy)
+    return trace_modes(scene, mode, level, **chosen)
 
 
 def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:

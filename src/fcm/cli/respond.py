@@ -65,6 +65,12 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     "over the span --level.",
 )  # fmt: skip
 @click.option(
+    "--force-level", "force_levels", type=click.FloatRange(min=0.0, min_open=True), multiple=True,
+    metavar="L",
+    help="With --mode: predict the response near the resonance for the scene's forces times this; again for "
+    "more.  [default: 1]",
+)  # fmt: skip
+@click.option(
     "--at", multiple=True, metavar="F", callback=exact.frequencies,
     help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
     "for more. With --method exact.",
@@ -117,6 +123,7 @@ def respond(
     accuracy: float | None,
     level: tuple[float, float] | None,
     mode: int | None,
+    force_levels: tuple[float, ...],
     at: tuple[float, ...] | None,
     table: str | None,
     max_step: float | None,
@@ -145,7 +152,7 @@ def respond(
         write_comparison(messages, compared, table, tolerance, output, to_json)
         return
     cluster_option.check_options(cluster, level)
-    nonlinear_mode.check_options(mode, level, at)
+    nonlinear_mode.check_options(mode, level, at, force_levels)
     exact.check_options(method, at, level)
     balance.check_level(level, at, accuracy, method, mode)
     balance.check_peaks_only(peaks_only, level, csv)
@@ -170,7 +177,8 @@ def respond(
         if method == "exact" and (loaded.has_range or at):
             response = exact.traced(messages, loaded, at, options)
         elif mode is not None and level is not None:
-            response = nonlinear_mode.traced(loaded, mode, level, harmonics, accuracy)
+            chosen = {"harmonics": harmonics, "accuracy": accuracy, "force_levels": force_levels or (1.0,)}
+            response = nonlinear_mode.traced(loaded, mode, level, chosen)
         elif level is not None and at is not None:
             response = _levels(loaded, at, level, harmonics)
         elif loaded.has_range:

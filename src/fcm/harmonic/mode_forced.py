@@ -21,9 +21,13 @@ NEARLY = 1e-9  # of a step along the mode, to which a resonance is found
 
 
 def modal_force(mode: Mode) -> FloatArray:
-    """What the scene's forces do on the mode, p at level 1, (point,)."""
-    first = mode.system.harmonics.index(1)
-    return np.abs(mode.Q[:, first].conj() @ mode.system.linear.force)
+    """What the scene's forces do on the mode, p at level 1, (point,); with the mode's own omega."""
+    first, dofs = mode.system.harmonics.index(1), mode.system.linear.dofs
+    total = np.zeros(mode.omega.size, dtype=np.complex128)
+    for force in mode.system.scene.forces:
+        on_mode = mode.Q[:, first].conj() @ (dofs @ force.direction)
+        total += on_mode * force.amplitude * mode.omega**force.power * np.exp(1j * force.phase)
+    return np.abs(total)
 
 
 def resonant_level(mode: Mode) -> FloatArray:

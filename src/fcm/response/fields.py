@@ -150,6 +150,7 @@ def _point_fields(response: Response) -> dict[str, Field]:
         points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
     if any(c.mode is not None for c in curves):
         out["frequency"].attrs["long_name"] = "frequency of the nonlinear mode"
+        levels = next(c.mode.levels for c in curves if c.mode is not None)
         for name, (picked, tail, about) in MODE.items():
             points(name, picked, tail, **about)
         beside = (
@@ -157,11 +158,13 @@ def _point_fields(response: Response) -> dict[str, Field]:
         )
         points(
             "flank_frequency",
-            lambda c: np.empty((0, 2)) if c.mode is None else in_unit(c.mode.flanks, unit),
-            ("flank",),
+            lambda c: np.empty((0, len(levels), 2)) if c.mode is None else in_unit(c.mode.flanks, unit),
+            ("force_level", "flank"),
             long_name=beside,
             units=CF_UNIT[unit],
         )
+        about_levels = {"long_name": "level of the scene's forces: all amplitudes times this", "units": "1"}
+        out["force_level"] = Field(("force_level",), np.array(levels), about_levels)
     points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
     points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"

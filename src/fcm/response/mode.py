@@ -15,11 +15,12 @@ from fcm.harmonic.record import cycles, loops, states
 from fcm.harmonic.system import System
 from fcm.response.result import Curve, NonlinearMode, Resonance, Response
 from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 from fcm.scene.rules import MOST_HARMONICS
 from fcm.units import in_unit
 
 WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
+FAR = 1e6  # a level of the forces beyond this is a mistake of units
 WORK = 1e8  # evaluations times unknowns squared beyond which no more harmonics are tried
 
 
@@ -30,12 +31,14 @@ def trace_modes(
     *,
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
+    force_levels: Sequence[float] = (1.0,),
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
 
     The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
     mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
-    are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene.
+    are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene. The response
+    near the resonance is predicted at some levels of the scene's forces.
 
     Raises
     ------
@@ -48,10 +51,14 @@ def trace_modes(
             f"level is from {low:g} to {high:g}, but the modal amplitudes must rise, from more than 0, by at "
             f"most a factor of {WIDEST:g}"
         )
+    if not all(0.0 < level <= FAR for level in force_levels):
+        raise ResponseError("a level of the forces must be finite and greater than 0")
+    check_free(scene)
     begin = time.perf_counter()
     wanted = wanted_of(scene, harmonics, accuracy)
+    levels = tuple(float(level) for level in force_levels)
     try:
-        curves = [_curve(one, number, span, wanted) for one in scene.each_curve()]
+        curves = [_curve(one, number, span, wanted, levels) for one in scene.each_curve()]
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     contacts = tuple(contact.name for contact in scene.contacts)
@@ -61,7 +68,17 @@ def trace_modes(
     return response
 
 
-def _curve(scene: Scene, number: int, span: tuple[float, float], wanted: Wanted) -> Curve:
+def check_free(scene: Scene) -> None:
+    """Raise ResponseError for scenes of which no nonlinear mode is computed."""
+    if any(curve.loads for curve in scene.each_curve()):
+        raise ResponseError(f"{scene.name}: load: nonlinear modes under static loads are not computed")
+    if getattr(scene, "ring", None) is not None:
+        raise ResponseError(f"{scene.name}: cyclic: nonlinear modes of a ring of sectors are not computed")
+
+
+def _curve(
+    scene: Scene, number: int, span: tuple[float, float], wanted: Wanted, levels: tuple[float, ...]
+) -> Curve:
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,))
     mode = nonlinear_mode(system, number, span, scene.max_step)
@@ -74,7 +91,7 @@ def _curve(scene: Scene, number: int, span: tuple[float, float], wanted: Wanted)
         if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
             break
         mode, error = more, truncation(more)
-    curve = _recorded(mode, number, error)
+    curve = _recorded(mode, number, error, levels)
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
         count = len(mode.system.harmonics)
         curve.short_of = f"with {count} harmonics an estimated error of {_worst(error):.1e} remains"
@@ -82,18 +99,18 @@ def _curve(scene: Scene, number: int, span: tuple[float, float], wanted: Wanted)
     return curve
 
 
-def _worst(error: np.typing.NDArray[np.float64]) -> float:
+def _worst(error: FloatArray) -> float:
     known = error[np.isfinite(error)]
     return float(known.max()) if known.size else np.inf
 
 
-def _enough(mode: Mode, error: np.typing.NDArray[np.float64], accuracy: float) -> bool:
+def _enough(mode: Mode, error: FloatArray, accuracy: float) -> bool:
     """Whether no more harmonics are needed, or can be afforded."""
     work = mode.path.evaluations * float(mode.problem.unknowns) ** 2
     return _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS or work > WORK
 
 
-def _recorded(mode: Mode, number: int, error: np.typing.NDArray[np.float64]) -> Curve:
+def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, ...]) -> Curve:
     from fcm.response.groups import lost_curve
 
     system, path = mode.system, mode.path
@@ -130,9 +147,10 @@ def _recorded(mode: Mode, number: int, error: np.typing.NDArray[np.float64]) -> 
             damping=mode.damping,
             force=modal_force(mode),
             resonant_level=resonant_level(mode),
-            flanks=flanks(mode),
+            levels=levels,
+            flanks=np.stack([flanks(mode, level) for level in levels], axis=1),
             folds=mode.amplitude[(path.mark & Mark.FOLD) > 0].tolist(),
-            resonances=_resonances(mode),
+            resonances=[one for level in levels for one in _resonances(mode, level)],
         ),
     )
 
@@ -152,15 +170,15 @@ def _reason(mode: Mode) -> str:
     )
 
 
-def _resonances(mode: Mode) -> list[Resonance]:
-    """With the scene's own forces."""
-    found = resonances(mode)
+def _resonances(mode: Mode, level: float) -> list[Resonance]:
+    """With the scene's forces at a level."""
+    found = resonances(mode, level)
     if found is None:
         return []
     amplitude = half_peak_to_peak(found.displacements()[0], found.system.harmonics)
     frequency = found.omega * np.sqrt(1.0 - 2.0 * found.damping**2)
     dofs = found.system.scene.modal.dofs
     return [
-        Resonance(float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)))
+        Resonance(level, float(w), float(a), dict(zip(dofs, x.tolist(), strict=True)))
         for w, a, x in zip(frequency, found.amplitude, amplitude, strict=True)
     ]

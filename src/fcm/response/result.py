@@ -51,6 +51,7 @@ class Orbits:
 class Resonance(NamedTuple):
     """Of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
 
+    level: float  # of the scene's forces
     frequency: float  # [rad/s] of the forces
     modal_amplitude: float
     amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
@@ -65,9 +66,10 @@ class NonlinearMode:
     damping: FloatArray  # (point,) ratio
     force: FloatArray  # (point,) p that the scene's forces do on the mode
     resonant_level: FloatArray  # (point,) of the scene's forces, with which the resonance has the amplitude
-    flanks: FloatArray  # (point, 2) [rad/s] where the scene's forces give the amplitude, below and above it
+    levels: tuple[float, ...]  # of the scene's forces, at which the response is predicted
+    flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
     folds: list[float]  # modal amplitudes at which the curve turns back
-    resonances: list[Resonance]  # with the scene's forces
+    resonances: list[Resonance]  # at these levels
 
     def summary(self, frequency: FloatArray, unit: str, dofs: Iterable[str]) -> dict[str, Any]:
         """As `fcm respond --json` prints it."""
@@ -85,6 +87,7 @@ class NonlinearMode:
             "folds": self.folds,
             "resonances": [
                 {
+                    "level": one.level,
                     "frequency": float(in_unit(one.frequency, unit)),
                     "modal_amplitude": one.modal_amplitude,
                     "amplitude": {dof: one.amplitude[dof] for dof in dofs},
