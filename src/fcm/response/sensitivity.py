@@ -57,7 +57,7 @@ def remarks(response: Response) -> list[str]:
             for number, curve in enumerate(response.curves)
             if curve.sensitivity is not None
             for dof, own in zip(curve.peaks, curve.sensitivity.kind, strict=True)
-            if own is kind and np.isfinite(curve.peaks[dof].amplitude)
+            if own is kind and curve.peaks[dof].amplitude > 0.0
         ]
         if of:
             number, dof = of[0]
