@@ -129,3 +129,20 @@ def test_error_by_harmonics_left_out_is_what_more_of_them_change():
 def test_a_mode_that_is_not_there():
     with pytest.raises(ModeError, match="no mode 2; the structure has the modes 1 to 1"):
         nonlinear_mode(System(jenkins()), 2, (0.1, 1.0), 0.05)
+
+
+def test_two_contacts_that_begin_to_slip_at_once():
+    """Twice one contact of half the stiffness and preload: the mode is that of the one."""
+    data = {
+        "modal": {"dofs": ["u"], "frequency": [1.0], "damping": [0.02], "shapes": [[1.0]]},
+        "force": [{"dof": "u", "amplitude": 0.05}],
+        "response": {"frequency": [0.8, 1.4]},
+    }
+    half = {"tangential": "u", "normal": "u", "mu": 0.5, "k_u": 0.15, "k_v": 0.0}
+    data["contact"] = [half | {"name": "a", "n_0": 0.3}, half | {"name": "b", "n_0": 0.3 * (1.0 + 1e-11)}]
+    both = nonlinear_mode(System(scene_from_dict(data)), 1, (0.1, 20.0), 0.05)
+    one = nonlinear_mode(System(jenkins()), 1, (0.1, 20.0), 0.05)
+    assert both.path.status is Status.COMPLETE
+    slips = both.amplitude > 1.2
+    at = np.log(both.amplitude[slips])
+    assert both.damping[slips] == pytest.approx(np.interp(at, np.log(one.amplitude), one.damping), rel=5e-3)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Path, follow
+from fcm.continuation import Path
 from fcm.continuation.newton import Newton
 from fcm.harmonic.autonomous import Autonomous, ComplexArray, Guess
+from fcm.harmonic.past_corners import follow_past_corners
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
@@ -67,7 +69,9 @@ def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_s
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
         problem = Autonomous(system, guess)
-        path = follow(problem, problem.start(low), (low, high), True, max_step)
+        path = follow_past_corners(
+            partial(Autonomous, system, guess), problem.start(low), (low, high), max_step
+        )
         if path.z.shape[0]:
             break
     return mode_at(system, problem, path)

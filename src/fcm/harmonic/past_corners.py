@@ -1,0 +1,85 @@
+"""A curve followed past places where its steps come to nothing, such as corners of two contacts at once.
+
+There the curve is taken up again a little further on, from the solution nearest to where it stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Path, Problem, Status, follow
+from fcm.continuation.newton import Newton
+from fcm.scene.model import FloatArray
+
+RESTARTS = 12
+ON = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)  # of the parameter's unit, by which the curve is taken up further on
+NEAR = 30.0  # times as far the solution may be: further away it is another
+PATIENCE = 12  # calls of the progress, of 16 steps each, within which the parameter has to move
+MOVED = 1e-9  # of the span
+
+
+class _StuckError(Exception):
+    """Steps that lead nowhere."""
+
+
+def follow_past_corners(
+    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], max_step: float
+) -> Path:
+    """The curve through start, upwards from the lower end of the span, as of `follow`."""
+    whole, low = None, span[0]
+    for _ in range(RESTARTS):
+        path, ended = _part(new_problem, start, (low, span[1]), max_step)
+        if not path.z.shape[0]:
+            return path if whole is None else whole
+        if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
+            path = replace(path, status=Status.STALLED)
+        whole = path if whole is None else whole.then(path)
+        if ended:
+            return whole
+        beyond = _beyond(new_problem(), path.z[-1])
+        if beyond is None or beyond[-1] >= span[1]:
+            return whole
+        start, low = beyond, float(beyond[-1])
+    assert whole is not None
+    return whole
+
+
+def _part(
+    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], max_step: float
+) -> tuple[Path, bool]:
+    """The curve as far as its steps lead, and whether that is its end."""
+    last, same = -1.0, 0
+
+    def watch(share: float) -> None:
+        nonlocal last, same
+        same = same + 1 if abs(share - last) < MOVED else 0
+        last = share
+        if same > PATIENCE:
+            raise _StuckError
+
+    try:
+        path = follow(new_problem(), start, span, True, max_step, (), watch)
+        return path, path.status is not Status.STALLED
+    except _StuckError:
+        reach = span[0] + last * (span[1] - span[0]) * (1.0 - 1e-6)
+        if not reach > span[0]:
+            return follow(new_problem(), start, span, True, max_step), True
+        path = follow(new_problem(), start, (span[0], reach), True, max_step)
+        return replace(path, status=Status.STALLED), path.status is not Status.COMPLETE
+
+
+def _beyond(problem: Problem, z: FloatArray) -> FloatArray | None:
+    """The solution a little further on that is nearest; None if there is none near."""
+    newton = Newton(problem)
+    newton.row[-1] = 1.0
+    problem.measure(np.ascontiguousarray(z))
+    for step in ON:
+        guess = np.array(z)
+        guess[-1] += step * problem.scale[z.size - 1]
+        newton.scale[:], newton.z[:] = problem.scale, guess
+        if newton.correct(step) and newton.moved < NEAR * step:
+            return np.array(newton.z)
+    return None
