@@ -139,7 +139,9 @@ def least(system: System, omega: float) -> float:
 def _motions(system: System, x: FloatArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
     """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
     first = 2 + 4 * system.harmonics.index(1)
-    for contact, block in zip(system.scene.contacts, x.reshape(-1, 2 + 4 * len(system.harmonics)), strict=True):
+    for contact, block in zip(
+        system.scene.contacts, x.reshape(-1, 2 + 4 * len(system.harmonics)), strict=True
+    ):
         U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
         over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
         yield contact.k_v * abs(V), (over, under), contact

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.response.gist import gist_of
 from fcm.response.result import Curve, Response
 from fcm.scene.model import FloatArray
 from fcm.units import in_unit
@@ -60,7 +61,11 @@ def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
 
 def _first(curve: Curve, sweep: str) -> float:
     """The first jump in a direction that lands on another part of the curve; NaN if there is none."""
-    landing = (one for one in curve.jumps() if one.sweep == sweep and np.isfinite(one.after).any())
+    landing = (
+        one
+        for one in (curve.gist or gist_of(curve)).jumps
+        if one.sweep == sweep and np.isfinite(one.after).any()
+    )
     return next((one.frequency for one in landing), np.nan)
 
 
