@@ -15,6 +15,7 @@ KEYS = (
     "contact.shroud.n_0", "contact.*.mu", "contact.0.k_u", "contact.0.k_v", "force.u.amplitude",
     "force.1.phase", "modal.damping", "modal.frequency.1", "modal.mass", "modal.shapes.0.u",
     "contact.0.tangential.u", "contact.0.tangential.v", "contact.0.normal.u",
+    "level",
 )  # fmt: skip
 
 
@@ -36,10 +37,10 @@ def reported(problem, z, direction):
 def by_differences(scene, harmonics, key, z):
     """The derivative of the amplitudes, of fourth order in the step."""
     moved = number_of(scene, key).each(scene)
-    step = 1e-3 * max(abs(value) or 1.0 for _, value in moved)
+    step = 1e-3 * max(abs(value) or 1.0 for _, value, _ in moved)
 
     def at(shift):
-        values = {one.addresses[0]: value + shift for one, value in moved}
+        values = {one.addresses[0]: value + shift * weight for one, value, weight in moved}
         system = System(scene.draft.curve(scene, {}, values), harmonics)
         there, problem = solved(system, z)
         return reported(problem, there, np.zeros(z.size))[0]

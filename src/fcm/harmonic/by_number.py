@@ -190,10 +190,10 @@ def rates_of(system: System, address: str) -> Rates:
     assert number is not None
     contact = np.zeros((len(system.scene.contacts), 4))
     total = {name: np.zeros_like(getattr(system.linear, name)) for name in ARRAYS}
-    for one, value in number.each(system.scene):
-        contact += _numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0))
+    for one, value, weight in number.each(system.scene):
+        contact += weight * (_numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0)))
         for name, rate in _linear(system, one, value):
-            total[name] = total[name] + rate
+            total[name] = total[name] + weight * rate
     return Rates(contact, Linear(**total, adrift=system.linear.adrift), system)
 
 

@@ -16,8 +16,9 @@ from fcm.scene.modal import modal_of
 from fcm.scene.model import Force, Scene
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.rules import RULES, Rule
-from fcm.scene.sweep import Swept, field_of
+from fcm.scene.sweep import Swept, combinations, field_of
 
+LEVEL = "level"  # of the forces: all amplitudes times this
 Parts = dict[str, Any]  # drafts of modal, contact, force, ..., in the words of the file
 
 
@@ -59,6 +60,15 @@ class Draft:
                 parts = replaced(parts, address, scene.parameters[one.key])
         return Draft(parts, ())
 
+    def present(self, number: Number) -> list[tuple[float, float]]:
+        """What stands at each address of a number, before any sweep, with its weight."""
+        weights = number.weights or (1.0,) * len(number.addresses)
+        return [
+            (float(value), weight)
+            for address, weight in zip(number.addresses, weights, strict=True)
+            for value in np.ravel(_at(self.parts, address))
+        ]
+
     def at(self, used: npt.NDArray[np.bool_]) -> Draft:
         """The same at some of the degrees of freedom."""
         modal = self.parts["modal"]
@@ -73,10 +83,14 @@ class Draft:
 
 @dataclass(frozen=True)
 class Number:
-    """A number of a scene under its key path, "contact.shroud.n_0"; with a * in it, or a group, several."""
+    """A number of a scene under its key path, "contact.shroud.n_0"; with a * in it, or a group, several.
+
+    The level of the forces is one, too: what stands at each address is then the level times a weight.
+    """
 
     key: str
     addresses: tuple[Address, ...]
+    weights: tuple[float, ...] = ()  # 1 where there are none
 
     @property
     def rule(self) -> Rule:
@@ -85,28 +99,45 @@ class Number:
 
     def value(self, scene: Scene) -> float:
         """The value that it has in a scene; NaN where it stands for several that differ."""
-        values = {value for _, value in self.each(scene)}
+        values = {value / weight for _, value, weight in self.each(scene)}
         return values.pop() if len(values) == 1 else np.nan
 
-    def each(self, scene: Scene) -> list[tuple[Number, float]]:
-        """Those that it stands for, one by one, with their values."""
+    def each(self, scene: Scene) -> list[tuple[Number, float, float]]:
+        """Those that it stands for, one by one, with their values and weights."""
         found = []
         values = _draft(scene).values(scene, self.addresses)
-        for address, value in zip(self.addresses, values, strict=True):
+        weights = self.weights or (1.0,) * len(self.addresses)
+        for address, value, weight in zip(self.addresses, values, weights, strict=True):
             places = [(*address, i) for i in range(len(value))] if np.ndim(value) else [address]
             found += [
-                (Number(self.key, (place,)), float(one))
+                (Number(self.key, (place,)), float(one), weight)
                 for place, one in zip(places, np.ravel(value), strict=True)
             ]
         return found
 
+    def values(self, value: float) -> dict[Address, float]:
+        """What stands at each address for a value."""
+        weights = self.weights or (1.0,) * len(self.addresses)
+        return {address: value * weight for address, weight in zip(self.addresses, weights, strict=True)}
+
     def put(self, scene: Scene, value: float) -> Scene:
         """The scene with another value of it."""
-        return _draft(scene).curve(scene, scene.parameters, dict.fromkeys(self.addresses, value))
+        return _draft(scene).curve(scene, scene.parameters, self.values(value))
+
+    def freed(self, scene: Scene) -> Scene:
+        """The scene without a sweep of this number, if there is one."""
+        draft = _draft(scene)
+        swept = tuple(one for one in draft.swept if not set(one.addresses) <= set(self.addresses))
+        if len(swept) == len(draft.swept):
+            return scene
+        free = Draft(draft.parts, swept)
+        curves = tuple(free.curve(scene, values) for values in combinations(list(swept)))
+        curves = tuple(replace(curve, draft=free, curves=()) for curve in curves)
+        return replace(scene, draft=free, curves=curves)
 
 
 def number_of(scene: Scene, key: str, mistakes: Mistakes | None = None, path: str = "") -> Number | None:
-    """The number of a scene with a key path, as in [sweep]; None after a mistake.
+    """The number of a scene with a key path, as in [sweep], or "level"; None after a mistake.
 
     Raises
     ------
@@ -122,15 +153,35 @@ def number_of(scene: Scene, key: str, mistakes: Mistakes | None = None, path: st
     (5.0, 7.0)
     """
     found = mistakes or Mistakes(scene.name)
-    draft = _draft(scene)
-    addresses = Addresses(draft.parts).find(key, path or quoted(key), found)
-    for one in draft.swept if addresses else ():
-        if any(overlap(mine, its) for mine in addresses for its in one.addresses):
-            found.add(path or quoted(key), f"sets the same number as {quoted(one.key)} of [sweep]")
-            addresses = ()
+    number = number_in(_draft(scene), key, path or quoted(key), found)
     if mistakes is None:
         found.raise_if_any()
+    return number
+
+
+def number_in(draft: Draft, key: str, path: str, mistakes: Mistakes) -> Number | None:
+    """The number of a draft with a key path; None after a mistake, which is noted."""
+    if key == LEVEL:
+        return _level(draft.parts, path, mistakes)
+    addresses = Addresses(draft.parts).find(key, path, mistakes)
+    for one in draft.swept if addresses else ():
+        shared = any(overlap(mine, its) for mine in addresses for its in one.addresses)
+        if shared and not set(one.addresses) <= set(addresses):
+            mistakes.add(path, f"sets some of the numbers that {quoted(one.key)} of [sweep] sets")
+            addresses = ()
     return Number(key, addresses) if addresses else None
+
+
+def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
+    """All amplitudes of forces, and of the base's motion, in proportion."""
+    keys = (("force", "amplitude"), ("base", "acceleration"))
+    found = [((kind, i, key), draft[key]) for kind, key in keys for i, draft in enumerate(parts[kind])]
+    found = [(address, weight) for address, weight in found if weight]
+    if not found:
+        mistakes.add(path, "no force has an amplitude that a level could multiply")
+        return None
+    addresses, weights = zip(*found, strict=True)
+    return Number(LEVEL, addresses, weights)
 
 
 def forces_of(parts: Parts) -> tuple[Force, ...]:
