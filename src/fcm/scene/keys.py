@@ -48,6 +48,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "units": Key("for labels and files; nothing is converted", "[units]", "none"),
         "response": Key("what is traced", "[response]", "needed without [[schedule]]"),
         "sweep": Key("numbers of the scene that are varied, a curve for each value", "[sweep]", "one curve"),
+        "optimum": Key("numbers that are chosen so that a peak is least", "[optimum]", "nothing is chosen"),
         "schedule": Key("phases of a simulation in time", "[[schedule]]", "none"),
         "start": Key("the state that the schedule starts from", "[start]", "rest"),
     },
@@ -114,6 +115,13 @@ TABLES: dict[str, dict[str, Key]] = {
         "accuracy": Key("relative error of peaks and folds; it chooses the harmonics", FRACTION, "0.01"),
         "output": Key("degrees of freedom in the results besides those of contacts and forces",
                       "list of names, or of patterns such as \"40*\"", "all if they are 50 at most"),
+    },
+    "optimum": {
+        "vary": Key("one to three numbers of the scene by their paths, or \"level\", of all forces",
+                    'list such as ["contact.NAME.n_0"]'),
+        "bounds": Key("of each number", "[[from, to], ...]", "its sweep; or 0 to 10 times what it is"),
+        "minimise": Key("of which the greatest is to be least; greatest.NAME counts the range's ends",
+                        '"peak.NAME", or a list of such'),
     },
     "schedule": {
         "frequency": Key("of the forces in this phase", POSITIVE),

@@ -25,6 +25,7 @@ from fcm.scene.linear import (
 )
 from fcm.scene.modal import UNITS, modal_of
 from fcm.scene.model import FloatArray, Scene
+from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (
     contact_of,
     read_contacts,
@@ -105,8 +106,9 @@ def scene_from_dict(
     schedule, start = read_schedule(top, unit), read_start(top, parts)
     swept = read_sweep(top, parts)
     title, units = top.text("title", ""), read_units(top)
-    mistakes.raise_if_any()
     draft = Draft(parts, tuple(swept))
+    optimum = read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ()))
+    mistakes.raise_if_any()
     scene = Scene(
         title=title,
         modal=modal_of(parts["modal"], unit),
@@ -124,6 +126,7 @@ def scene_from_dict(
         name=name,
         reported=reported,
         notes=tuple(notes),
+        optimum=optimum,
         draft=draft,
     )
     scene = replace(scene, curves=tuple(draft.curve(scene, values) for values in combinations(swept)))

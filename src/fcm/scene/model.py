@@ -82,6 +82,23 @@ class Start:
 
 
 @dataclass(frozen=True)
+class Aim:
+    """What is to be least: the peak of a degree of freedom, or its greatest amplitude at the ends as well."""
+
+    dof: str
+    ends: bool = False
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """Numbers that are to be chosen so that the greatest of the aims is least."""
+
+    vary: tuple[str, ...]
+    bounds: tuple[tuple[float, float], ...]  # of each number
+    minimise: tuple[Aim, ...]
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
 
@@ -103,6 +120,7 @@ class Scene:
     loads: tuple[Load, ...] = ()  # static, beside the forces
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
+    optimum: Optimum | None = None
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 
     @property

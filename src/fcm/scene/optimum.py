@@ -1,0 +1,141 @@
+"""The [optimum] table of a scene: numbers that are to be chosen, their bounds, and what is to be least."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.address import overlap
+from fcm.scene.draft import Draft, Number, number_in
+from fcm.scene.errors import kind, quoted, shown
+from fcm.scene.keys import names
+from fcm.scene.model import Aim, Optimum
+from fcm.scene.rules import as_float
+from fcm.scene.section import Section
+
+MOST = 3  # numbers that are chosen together
+WIDE = 10.0  # times its value in the scene, to which a number may go where no bounds are given
+WHAT = ("peak", "greatest")
+
+
+def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum | None:
+    """What is to be chosen; None without the table, or after a mistake."""
+    section = top.table("optimum", "") if "optimum" in top.data else None
+    if section is None:
+        return None
+    section.only(*names("optimum"))
+    before = section.mistakes.count
+    if "response" not in top.data:
+        section.wrong("", "needs a [response] with a range of frequencies, in which the peak is")
+    numbers = _numbers(section, draft)
+    aims = _aims(section, reported)
+    bounds = _bounds(section, numbers, draft)
+    if section.mistakes.count > before:
+        return None
+    return Optimum(tuple(number.key for number in numbers), tuple(bounds), tuple(aims))
+
+
+def _numbers(section: Section, draft: Draft) -> list[Number]:
+    """The numbers to vary."""
+    keys = _words(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
+    if len(keys) > MOST:
+        section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
+        return []
+    found: list[Number] = []
+    for i, key in enumerate(keys):
+        number = number_in(draft, key, f"{section.at('vary')}[{i}]", section.mistakes)
+        if number is None:
+            continue
+        if any(overlap(a, b) for one in found for a in one.addresses for b in number.addresses):
+            section.mistakes.add(f"{section.at('vary')}[{i}]", "sets the same number as another one")
+        found.append(number)
+    return found
+
+
+def _words(section: Section, key: str, right: str) -> list[str]:
+    """A string, or a list of some."""
+    if section.missing(key, right):
+        return []
+    value = section.data[key]
+    words = [value] if isinstance(value, str) else value
+    if not isinstance(words, list | tuple) or not words or not all(isinstance(one, str) for one in words):
+        what = "an empty list" if isinstance(words, list | tuple) and not words else kind(value)
+        section.wrong(key, f"must be {right}, is {what}")
+        return []
+    return list(words)
+
+
+def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
+    """What is to be least: the greatest of these."""
+    words = _words(section, "minimise", 'what is to be least, as "peak.u", or a list of such')
+    found = []
+    for word in words:
+        what, _, dof = word.partition(".")
+        if what not in WHAT or not dof:
+            section.wrong(
+                "minimise", f"must be peak.NAME or greatest.NAME of a degree of freedom, is {quoted(word)}"
+            )
+        elif reported and dof not in reported:
+            section.wrong(
+                "minimise", f"there is no degree of freedom {quoted(dof)} in the results", dof, reported
+            )
+        else:
+            found.append(Aim(dof, what == "greatest"))
+    return found
+
+
+def _bounds(section: Section, numbers: list[Number], draft: Draft) -> list[tuple[float, float]]:
+    """From and to of each number: a list for each, or one for a single number, or a table by the keys."""
+    value = section.data.get("bounds")
+    if not numbers:
+        return []
+    if value is None:
+        return [_wide(section, number, draft) for number in numbers]
+    pairs: Any = None
+    if isinstance(value, Mapping):
+        for key in set(value) - {number.key for number in numbers}:
+            section.wrong("bounds", f"{quoted(key)} is not among those that vary")
+        pairs = [value.get(number.key) for number in numbers]
+    else:
+        single = isinstance(value, list | tuple) and all(as_float(one) is not None for one in value)
+        pairs = [value] if single else value if isinstance(value, list | tuple) else None
+    if not isinstance(pairs, list | tuple) or len(pairs) != len(numbers):
+        section.wrong(
+            "bounds", f"must be [from, to] for each of the {len(numbers)} that vary, is {_said(value)}"
+        )
+        return []
+    return [_pair(section, number, pair) for number, pair in zip(numbers, pairs, strict=True)]
+
+
+def _said(value: object) -> str:
+    return f"a list of {len(value)}" if isinstance(value, list | tuple) else kind(value)
+
+
+def _pair(section: Section, number: Number, pair: object) -> tuple[float, float]:
+    """Bounds of one number."""
+    path = f"bounds of {number.key}"
+    ends = [as_float(one) for one in pair] if isinstance(pair, list | tuple) else []
+    low, high = ends if len(ends) == 2 else (None, None)
+    if low is None or high is None:
+        section.wrong("bounds", f"{path} must be two numbers, [from, to], are {_said(pair)}")
+        return (np.nan, np.nan)
+    faults = [fault for end in (low, high) if (fault := number.rule.fault(end))]
+    for fault in faults:
+        section.wrong("bounds", f"{path}: {fault}")
+    if not faults and not low < high:
+        section.wrong("bounds", f"{path} must rise, are [{shown(low)}, {shown(high)}]")
+    return (low, high)
+
+
+def _wide(section: Section, number: Number, draft: Draft) -> tuple[float, float]:
+    """Those of the sweep of a number, if there is one; else from 0 to ten times what it is."""
+    for one in draft.swept:
+        if set(one.addresses) <= set(number.addresses) and min(one.values) < max(one.values):
+            return (min(one.values), max(one.values))
+    values = [value / weight for value, weight in draft.present(number)]
+    furthest = max(values, key=abs, default=0.0)
+    if furthest == 0.0:
+        section.wrong("bounds", f"missing; give [from, to] for {number.key}, which is 0 in the scene")
+    return (0.0, WIDE * furthest) if furthest > 0.0 else (WIDE * furthest, 0.0)
