@@ -1,0 +1,184 @@
+r"""The least of the greatest over two or three numbers: downhill along the peaks, with their exact slopes.
+
+With the peaks A_i(q), each followed along straight lines in the numbers q, the problem
+
+    minimise t  subject to  A_i(q) <= t,  bounds on q
+
+is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It
+is solved by sequential quadratic programming. At its end the response is traced anew, and what is higher
+than the peaks that were followed joins them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+from scipy.optimize import minimize
+
+from fcm.harmonic.system import System
+from fcm.scene.draft import Number
+from fcm.scene.model import FloatArray
+from fcm.track.envelope import EQUAL, Height, Least, Target
+from fcm.track.follow import Ending, Spot, Way, follow, land
+from fcm.track.seeds import moved, special_points
+from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import Line
+
+LEVELS = (0.1, 0.5, 0.9)  # of each range, at which the first responses are traced
+STARTS = 2  # of the lowest of them, from which the way leads down
+ROUNDS = 6  # of descending and tracing anew
+COUNTS = 1e-6  # relative: what is higher than this has not been followed
+TOO_HIGH = 10.0  # relative height of a peak that has left the range, so that no step leads there
+BOUND = 1e-6  # of a range: a number nearer to its end is there
+
+Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
+
+
+class LeftRangeError(Exception):
+    """A peak is beyond the end of the range of frequencies."""
+
+
+class Valley:
+    """Peaks at numbers q (number,), scaled to 0 and 1 at their bounds."""
+
+    def __init__(
+        self, system: System, numbers: Sequence[Number], bounds: FloatArray, targets: Sequence[Target]
+    ) -> None:
+        self.system, self.numbers, self.targets = system, tuple(numbers), targets
+        self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+
+    def line(self, q: FloatArray, direction: FloatArray) -> Line:
+        """From q along a direction, both scaled."""
+        return Line(self.numbers, self.low + q * self.width, direction * self.width)
+
+    def way(self, q: FloatArray, direction: FloatArray) -> Way:
+        """The same, to the end of the direction."""
+        return Way(self.system, self.line(q, direction), (0.0, 1.0), (), self.system.scene.max_step)
+
+    def peaks(self, q: FloatArray) -> list[Member]:
+        """All that counts for the targets of the response at q, by tracing it."""
+        ends = [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
+        here = moved(self.system, self.line(q, np.zeros(q.size)).scene(self.system.scene, 0.0))
+        way, found = self.way(q, np.zeros(q.size)), []
+        for target in self.targets:
+            conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
+            for condition, z in special_points(here, conditions)[0]:
+                spot = land(way, condition, np.append(z, 0.0))
+                if spot is not None:
+                    found.append((condition, target.dof, spot))
+        return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
+
+    def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
+        """A member at other numbers; None where it is no more.
+
+        Raises
+        ------
+        LeftRangeError
+            If its frequency leaves the range that is traced.
+        """
+        condition, dof, z = member
+        if np.array_equal(q, to):
+            return member
+        way = self.way(q, to - q)
+        start = land(way, condition, np.append(z, 0.0))
+        if start is None:
+            return None
+        spots, ending = follow(way, condition, start, True)
+        last = spots[-1] if spots else start
+        if ending is Ending.RANGE:
+            raise LeftRangeError
+        whole = ending is Ending.SPAN and abs(last.z[-1] - 1.0) < COUNTS
+        return (condition, dof, last.z[:-1]) if whole else None
+
+    def height(self, member: Member, q: FloatArray) -> tuple[float, FloatArray]:
+        """Of a member, with its slopes by q."""
+        condition, dof, z = member
+        slopes, value = np.empty(q.size), 0.0
+        for k, direction in enumerate(np.eye(q.size)):
+            way = self.way(q, direction)
+            spot = land(way, condition, np.append(z, 0.0)) or Spot(np.append(z, 0.0), np.zeros(z.size + 1))
+            problem = way.tracked(spot.corner or condition)
+            problem.measure(spot.z)
+            problem.evaluate(spot.z)
+            jacobian = np.asarray(problem.jacobian)
+            rate = np.linalg.solve(jacobian[:, :-1], -jacobian[:, -1])
+            value, slopes[k] = problem.amplitude_along(spot.z, np.append(rate, 1.0), dof)
+        return value, slopes
+
+
+def descend(valley: Valley) -> tuple[FloatArray, Least] | None:
+    """The optimum: the numbers, and what is least there; None where nothing has a peak."""
+    count = len(valley.numbers)
+    tried = []
+    for q in map(np.array, product(LEVELS, repeat=count)):
+        members = valley.peaks(q)
+        if members:
+            tried.append((max(valley.height(one, q)[0] for one in members), tuple(q)))
+    found = [_from(valley, np.array(q)) for _, q in sorted(tried)[:STARTS]]
+    if not found:
+        return None
+    q, value, members = min(found, key=lambda one: one[1])
+    active = []
+    for member in members:
+        height, _ = valley.height(member, q)
+        if height >= value * (1.0 - 1e2 * EQUAL):
+            active.append(Height(height, 0.0, np.append(member[2], np.nan), member[1]))
+    edge = bool(((q < BOUND) | (q > 1.0 - BOUND)).any())
+    kind = "kink" if len(active) > 1 else "bound" if edge else "smooth"
+    return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
+
+
+def _from(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
+    """Down from q until a new tracing finds nothing higher."""
+    best: tuple[FloatArray, float, list[Member]] | None = None
+    for _ in range(ROUNDS):
+        members = valley.peaks(q)
+        value = max((valley.height(one, q)[0] for one in members), default=np.inf)
+        if best is not None and value >= best[1] * (1.0 - COUNTS):
+            return best
+        best = (q, value, members)
+        q = _minimax(valley, q, members, value)
+    assert best is not None
+    return best
+
+
+def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) -> FloatArray:
+    """Where the greatest of some members is least."""
+    memory: dict[bytes, tuple[FloatArray, FloatArray]] = {}
+    here: tuple[FloatArray, list[Member | None]] = (q, list(members))
+
+    def heights(to: FloatArray) -> tuple[FloatArray, FloatArray]:
+        nonlocal here
+        to = np.clip(to, 0.0, 1.0)
+        if to.tobytes() not in memory:
+            try:
+                followed = [None if one is None else valley.moved(one, here[0], to) for one in here[1]]
+            except LeftRangeError:
+                memory[to.tobytes()] = np.full(len(members), TOO_HIGH), np.zeros((len(members), q.size))
+                return memory[to.tobytes()]
+            rows = [(0.0, np.zeros(q.size)) if one is None else valley.height(one, to) for one in followed]
+            memory[to.tobytes()] = (
+                np.array([r[0] for r in rows]) / unit,
+                np.array([r[1] for r in rows]) / unit,
+            )
+            if None not in followed:
+                here = (to, followed)
+        return memory[to.tobytes()]
+
+    found = minimize(
+        lambda x: x[-1],
+        np.append(q, 1.0),
+        jac=lambda x: np.eye(x.size)[-1],
+        bounds=[*((0.0, 1.0) for _ in q), (None, None)],
+        constraints={
+            "type": "ineq",
+            "fun": lambda x: x[-1] - heights(x[:-1])[0],
+            "jac": lambda x: np.column_stack((-heights(x[:-1])[1], np.ones(len(members)))),
+        },
+        method="SLSQP",
+        options={"ftol": 1e-10, "maxiter": 60},
+    )
+    chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
+    return chosen

@@ -1,0 +1,111 @@
+r"""Signed functions that tell what a contact does over a cycle, of any number of harmonics.
+
+With the load n = n_0 + k_v v before it is cut at 0 and p = k_u u:
+
+    separation  min n                               negative where the contact opens at some time
+    closing     max n                               negative where it is open throughout
+    slip        min(p + mu n) - max(p - mu n)       negative where a contact that is closed must slip
+
+A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last is about.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.law import Law
+from fcm.scene.model import FloatArray
+
+KINDS = ("separation", "closing", "slip")
+SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
+REFINED = 4  # Newton steps from there
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Onset(NamedTuple):
+    """A function of a contact: its value, and its slopes by its unknowns (width,) and mu, k_u, k_v, n_0."""
+
+    value: float
+    slope: FloatArray
+    by_number: FloatArray
+
+
+def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+    """One of KINDS of a contact at its unknowns."""
+    load = _polynomial(x, 1) * law.k_v
+    load[0] += law.n_0
+    if kind == "slip":
+        push = _polynomial(x, 0) * law.k_u
+        upper = _least(push + law.mu * load, harmonics)
+        lower = _least(law.mu * load - push, harmonics)
+        parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
+    else:
+        sign = 1.0 if kind == "separation" else -1.0
+        parts = [(_least(sign * load, harmonics), 0.0, sign)]
+    value, slope, numbers = 0.0, np.zeros(x.size), np.zeros(4)
+    sign = -1.0 if kind == "closing" else 1.0  # max n = -min(-n)
+    for (least, theta), of_push, of_load in parts:
+        value += sign * least
+        at = _waves(theta, harmonics)  # of a displacement's own numbers, at the extreme
+        slope[_places(x.size, 0)] += sign * of_push * law.k_u * at
+        slope[_places(x.size, 1)] += sign * of_load * law.k_v * at
+        u, v = x[_places(x.size, 0)] @ at, x[_places(x.size, 1)] @ at
+        numbers[1] += sign * of_push * u
+        numbers[2] += sign * of_load * v
+        numbers[3] += sign * of_load
+        if kind == "slip":
+            numbers[0] += law.n_0 + law.k_v * v
+    return Onset(value, slope, numbers)
+
+
+def onsets(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> Iterator[Onset]:
+    """All of all contacts that have them, at all unknowns."""
+    for c, law in enumerate(laws):
+        block = np.ascontiguousarray(x[c * law.width : (c + 1) * law.width])
+        for kind in kinds_of(law):
+            yield onset(law, block, kind, harmonics)
+
+
+def kinds_of(law: Law) -> tuple[str, ...]:
+    """Those that a contact can have."""
+    return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(KINDS[2:] if law.mu * law.k_u > 0.0 else ()))
+
+
+def _places(width: int, part: int) -> npt.NDArray[np.intp]:
+    """Where the numbers of u (0) or v (1) are among the unknowns: mean, then Re, Im of each harmonic."""
+    pairs = np.arange(2 + 2 * part, width, 4)
+    return np.concatenate(([part], np.stack((pairs, pairs + 1), axis=1).ravel()))
+
+
+def _polynomial(x: FloatArray, part: int) -> ComplexArray:
+    """Mean and complex amplitudes of u or v."""
+    numbers = x[_places(x.size, part)]
+    found: ComplexArray = np.concatenate((numbers[:1], numbers[1::2] + 1j * numbers[2::2]))
+    return found
+
+
+def _waves(theta: float, harmonics: tuple[int, ...]) -> FloatArray:
+    """The derivatives of a displacement at an angle by its numbers."""
+    h = np.array(harmonics) * theta
+    return np.concatenate(([1.0], np.stack((np.cos(h), -np.sin(h)), axis=1).ravel()))
+
+
+def _least(c: ComplexArray, harmonics: tuple[int, ...]) -> tuple[float, float]:
+    """The least value of c_0 + Re sum c_h exp(i h theta), and where it is."""
+    h, wave = np.array(harmonics), c[1:]
+    if h.size == 1:
+        return float(c[0].real - abs(wave[0])), float(np.pi - np.angle(wave[0]))
+    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    at = float(theta[(np.exp(1j * np.outer(theta, h)) @ wave).real.argmin()])
+    for _ in range(REFINED):
+        turned = np.exp(1j * h * at) * wave
+        bend = float((h * h * turned).real.sum())
+        if bend >= 0.0:
+            break
+        at -= float((h * turned).imag.sum()) / bend
+    return float(c[0].real + (np.exp(1j * h * at) * wave).real.sum()), at

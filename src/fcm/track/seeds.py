@@ -1,0 +1,75 @@
+"""Where tracked curves begin: the special points of ordinary curves at some values of the number."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from copy import copy
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Mark, Path
+from fcm.harmonic.error import reported
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
+from fcm.scene.model import FloatArray, Scene
+from fcm.structure.linear import linear_of
+from fcm.track.onset import onset
+from fcm.track.tracked import Condition, Kind
+
+LOWEST = 1e-3  # of the greatest amplitude of a degree of freedom: lower peaks are not tracked
+
+
+def moved(system: System, scene: Scene) -> System:
+    """The system of another scene of the same contacts."""
+    other = copy(system)
+    object.__setattr__(other, "scene", scene)
+    object.__setattr__(other, "linear", linear_of(scene))
+    return other
+
+
+def special_points(
+    system: System, conditions: list[Condition]
+) -> tuple[list[tuple[Condition, FloatArray]], str]:
+    """Points z (unknown + 1,) of a system's curves at which conditions nearly hold; what is wrong with these.
+
+    Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
+    """
+    branches = traced(system).branches
+    found = []
+    for path in branches.paths:
+        for condition in conditions:
+            found += [(condition, z) for z in _points(system, path, condition)]
+    if not branches.paths:
+        return found, "no solution was found at either end of the range"
+    return found, "" if branches.status.name == "COMPLETE" else branches.status.value
+
+
+def _points(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
+    if condition.kind is Kind.FOLD:
+        yield from path.z[path.where(Mark.FOLD)]
+    elif condition.kind is Kind.END:
+        yield from path.z[path.parameter == condition.omega]
+    elif condition.kind is Kind.PEAK:
+        yield from path.z[_tops(reported(system, path).amplitude[:, condition.which])]
+    else:
+        yield from _onsets(system, path, condition)
+
+
+def _tops(amplitude: FloatArray) -> npt.NDArray[np.intp]:
+    """Points higher than their neighbours."""
+    inner = amplitude[1:-1]
+    tops = 1 + np.flatnonzero((inner >= amplitude[:-2]) & (inner > amplitude[2:]))
+    high: npt.NDArray[np.intp] = tops[amplitude[tops] > LOWEST * amplitude.max(initial=0.0)]
+    return high
+
+
+def _onsets(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
+    """Where a function of a contact changes its sign between points, by the chord."""
+    law, c = system.laws()[condition.which], condition.which
+    blocks = [np.ascontiguousarray(z[c * law.width : (c + 1) * law.width]) for z in path.z]
+    value = np.array([onset(law, x, condition.onset, system.harmonics).value for x in blocks])
+    for i in np.flatnonzero(value[:-1] * value[1:] < 0.0):
+        part = value[i] / (value[i] - value[i + 1])
+        yield path.z[i] + part * (path.z[i + 1] - path.z[i])
+    yield from path.z[value == 0.0]

@@ -1,0 +1,215 @@
+r"""A point of a response that is special - its fold, its peak, an onset - as the solution of more equations.
+
+The unknowns are those of the balance and its frequency, y = (x, omega); the parameter s moves numbers of the
+scene. One equation g = 0 is added to the balance R = 0. With the tangent t of the response curve,
+
+    [dR/d(x, omega); row] t = (0, 1),
+
+it is t_omega = 0 of a fold and grad a . t = 0 of a peak of the amplitude a. Its derivatives by any unknown
+are those of w^T dR t, with w the adjoint of the same matrix, so that two more evaluations of the exact
+Jacobian, a little way along t, give all of them.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation.problem import Problem
+from fcm.harmonic.by_number import growth_of
+from fcm.scene.model import FloatArray
+from fcm.track.onset import onset, onsets
+from fcm.track.varied import Varied
+
+ComplexArray = npt.NDArray[np.complex128]
+
+SMALLEST = 1e-150  # amplitudes below this count as this in a division
+ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
+
+LEAST_ASIDE = 1e-9  # and at least, where a corner is near
+
+
+class Kind(Enum):
+    """What is special of a point."""
+
+    FOLD = "fold"
+    PEAK = "peak"
+    ONSET = "onset"
+    END = "end"
+
+
+class Condition(NamedTuple):
+    """What is tracked: the fold, the peak of a degree of freedom, an onset of a contact, a frequency."""
+
+    kind: Kind
+    which: int = -1  # degree of freedom, or contact
+    onset: str = ""  # one of `onset.KINDS`
+    omega: float = np.nan
+
+
+class Tangent(NamedTuple):
+    """Of the response curve, in the problem's scale, with row . t = 1; adjoint solves are with the matrix."""
+
+    t: FloatArray  # (unknown + 1,)
+    matrix: FloatArray
+
+
+class Tracked(Problem):
+    """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
+
+    def __init__(self, varied: Varied, condition: Condition, span: float) -> None:
+        self.varied, self.condition, self.span = varied, condition, span
+        self.n, self.offset = varied.balance.unknowns, 0.0  # of an onset: its function, in the scale, is this
+        Problem.__init__(self, self.n + 1, 0, 0)
+        self.row = np.zeros(self.n + 1)
+        self.row[-1] = 1.0
+
+    def evaluate(self, z: FloatArray) -> int:
+        """Residual and derivatives."""
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, n = np.array(z[:-1]), self.n
+        by_s, shown = self.varied.by_s(y)
+        balance = self.varied.balance
+        residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
+        residual[:n] = balance.residual
+        jacobian[:n, : n + 1], jacobian[:n, n + 1] = balance.jacobian, by_s
+        value, gradient = self._condition(y, shown)
+        unit = np.asarray(self.scale)[n]  # by which the row of this unknown is divided
+        residual[n], jacobian[n] = unit * value, unit * gradient
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        """As the balance; s by the span. The row becomes the tangent of the response curve."""
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, balance, scale = np.array(z[:-1]), self.varied.balance, np.asarray(self.scale)
+        balance.measure(y)
+        scale[:-1], scale[-1] = balance.scale, self.span
+        balance.evaluate(y)
+        matrix = np.asarray(balance.jacobian) * scale[:-1] / scale[:-2, None]
+        t = np.linalg.svd(matrix)[2][-1]
+        self.row[:] = t if t @ self.row >= 0.0 else -t
+        return 0
+
+    def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Unit tangent of the response in the problem's scale, amplitudes and their growth along it (dof,).
+
+        Where the response has a corner, it is that of the side that z is on.
+        """
+        z = np.asarray(z)
+        self.varied.put(float(z[-1]))
+        y, balance = np.array(z[:-1]), self.varied.balance
+        balance.evaluate(y)
+        t = self._tangent(np.array(balance.jacobian)).t
+        t /= np.linalg.norm(t)
+        balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
+        return t, np.array(balance.output), np.array(balance.growth)
+
+    def _tangent(self, jacobian: FloatArray) -> Tangent:
+        scale = np.asarray(self.scale)[:-1]
+        scaled = jacobian * scale / scale[:-1, None]
+        matrix = np.concatenate((scaled, self.row[None]))
+        right = np.zeros(self.n + 1)
+        right[-1] = 1.0
+        return Tangent(np.linalg.solve(matrix, right), matrix)
+
+    def _condition(self, y: FloatArray, shown: ComplexArray) -> tuple[float, FloatArray]:
+        """g, without a unit, and its derivatives by (y, s)."""
+        kind = self.condition.kind
+        if kind is Kind.END:
+            gradient = np.zeros(self.n + 2)
+            gradient[-2] = 1.0 / self.varied.balance.span
+            return (y[-1] - self.condition.omega) / self.varied.balance.span, gradient
+        if kind is Kind.ONSET:
+            return self._onset(y)
+        return self._turning(y, shown)
+
+    def _onset(self, y: FloatArray) -> tuple[float, FloatArray]:
+        c, width = self.condition.which, self.varied.balance.width
+        block = slice(c * width, (c + 1) * width)
+        found = onset(self.varied.balance.laws[c], y[block], self.condition.onset, self.varied.harmonics)
+        gradient = np.zeros(self.n + 2)
+        gradient[block] = found.slope
+        gradient[-1] = self.varied.contact_rates()[c] @ found.by_number
+        unit = float(np.linalg.norm(gradient * np.asarray(self.scale))) or 1.0
+        return found.value / unit - self.offset, gradient / unit
+
+    def _turning(self, y: FloatArray, shown: ComplexArray) -> tuple[float, FloatArray]:
+        """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
+        scale, n, balance = np.asarray(self.scale)[:-1], self.n, self.varied.balance
+        tangent = self._tangent(np.array(balance.jacobian))
+        t, here = tangent.t, np.zeros(n + 2)
+        if self.condition.kind is Kind.PEAK:
+            here = self._growth(y, shown)
+        else:
+            here[-2] = 1.0 / scale[-1]
+        value = float(here[:-1] @ (scale * t))
+        adjoint = np.linalg.solve(tangent.matrix.T, here[:-1] * scale)[:-1] / scale[:-1]
+        ahead = scale * t / np.linalg.norm(t)
+        step = self._room(y, ahead)
+        gradient = self._aside(y + step * ahead, adjoint) - self._aside(y - step * ahead, adjoint)
+        gradient *= np.linalg.norm(t) / (2.0 * step)
+        return value, gradient
+
+    def _room(self, y: FloatArray, ahead: FloatArray) -> float:
+        """How far to go along the tangent so that no margin changes its sign, not even nearly."""
+        signs, step = self._margins(y), ASIDE
+        for there in (self._margins(y + step * ahead), self._margins(y - step * ahead)):
+            crossed = signs * there < 0.0
+            if crossed.any():
+                part = np.abs(signs[crossed] / (signs[crossed] - there[crossed])).min()
+                step = min(step, max(0.5 * part * ASIDE, LEAST_ASIDE))
+        return step
+
+    def _margins(self, y: FloatArray) -> FloatArray:
+        """Functions whose signs change where the Jacobian is not smooth."""
+        balance = self.varied.balance
+        if balance.margins:
+            balance.bound(y)
+            return np.array(balance.margin)
+        return np.array([one.value for one in onsets(balance.laws, y, self.varied.harmonics)])
+
+    def _growth(self, y: FloatArray, shown: ComplexArray) -> FloatArray:
+        """The slopes by (y, s) of the logarithm of the amplitude that is to be greatest."""
+        balance, d, slopes = self.varied.balance, self.condition.which, np.empty(self.n + 2)
+        for i, unit in enumerate(np.eye(self.n + 1)):
+            balance.report(y, unit)
+            slopes[i] = balance.growth[d]
+        slopes[-1] = growth_of(balance, shown)[d]
+        return slopes / max(float(balance.output[d]), SMALLEST)
+
+    def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
+        """What changes along the tangent, (unknown + 2,), at a place on it."""
+        by_s, shown = self.varied.by_s(y)
+        jacobian = np.asarray(self.varied.balance.jacobian)
+        changing: FloatArray = -np.append(adjoint @ jacobian, adjoint @ by_s)
+        if self.condition.kind is Kind.PEAK:
+            changing += self._growth(y, shown)
+        return changing
+
+    def is_top(self, z: FloatArray) -> bool:
+        """Whether a peak is one, and not a trough: whether growth falls along the response."""
+        self.measure(z)
+        self.evaluate(z)
+        gradient = np.asarray(self.jacobian)[self.n, : self.n + 1]
+        return bool(gradient @ (np.asarray(self.scale)[:-1] * self.row) < 0.0)
+
+    def onset_at(self, z: FloatArray, condition: Condition) -> float:
+        """The function of an onset."""
+        self.varied.put(float(z[-1]))
+        c, width = condition.which, self.varied.balance.width
+        block = np.ascontiguousarray(z[c * width : (c + 1) * width])
+        return onset(self.varied.balance.laws[c], block, condition.onset, self.varied.harmonics).value
+
+    def amplitude_along(self, z: FloatArray, direction: FloatArray, dof: int) -> tuple[float, float]:
+        """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
+        self.varied.put(float(z[-1]))
+        y, balance = np.array(z[:-1]), self.varied.balance
+        shown = self.varied.by_s(y)[1]
+        balance.report(y, np.ascontiguousarray(direction[:-1]))
+        rate = float(balance.growth[dof]) + float(direction[-1] * growth_of(balance, shown)[dof])
+        return float(balance.output[dof]), rate
