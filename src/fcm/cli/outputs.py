@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import schedule
+from fcm.cli import schedule, track
 from fcm.cli.messages import Messages
 from fcm.cli.report import as_table
 from fcm.cli.terminal import plain
@@ -69,6 +69,8 @@ class Outputs:
         from fcm.response import output
 
         table = output.write_csv if response.curves else schedule.write_csv
+        if response.tracking is not None and not response.curves:
+            table = output.write_tracked_csv
         files = (
             (self.output, output.write_netcdf),
             (self.csv, table),
@@ -92,5 +94,7 @@ class Outputs:
 def _tables(result: dict[str, Any], response: Response) -> str:
     """The curves, then the phases of the schedule."""
     histories, unit = result.get("histories", []), response.frequency_unit
-    parts = [as_table(result, unit)] if result["curves"] or not histories else []
+    found = "tracked" in result
+    parts = [track.as_table(result, unit)] if found else []
+    parts += [as_table(result, unit)] if result["curves"] or not (histories or found) else []
     return "\n\n".join([*parts, schedule.as_table(histories, unit)] if histories else parts)

@@ -14,15 +14,26 @@ from fcm.cli.messages import Messages, pass_messages
 @draws_file("-peak.png")
 @click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
 @click.option("--against", metavar="KEY", help="The swept quantity of the axis.  [default: the first]")
+@click.option("--folds", is_flag=True, help="The folds, of --track folds: where there are several solutions.")
 @pass_messages
-def peak(messages: Messages, file: Path, output: Path | None, dof: str | None, against: str | None) -> None:
+def peak(
+    messages: Messages, file: Path, output: Path | None, dof: str | None, against: str | None, folds: bool
+) -> None:
     """Draw the peaks of FILE, the netCDF file of `fcm respond -o FILE`, against what was swept.
 
-    The least peak is marked: of a sweep of the preload, the best preload.
+    The least peak is marked: of a sweep of the preload, the best preload. Of tracked peaks, as of an
+    [optimum], the curve is drawn; of tracked folds their frequencies, the window between them shaded.
     """
     from fcm.plot.peak import draw_peak, read_peaks
+    from fcm.plot.tracked import draw_tracked, read_tracked
 
     output = picture_of(file, output, "-peak.png")
-    figure = draw_peak(read_peaks(file), dof=dof, against=against)
+    tracked = read_tracked(file)
+    if tracked is not None and against is None:
+        figure = draw_tracked(tracked, dof=dof, folds=folds)
+    elif folds:
+        raise click.UsageError(f"{file} holds no tracked folds; write it with fcm respond --track folds.")
+    else:
+        figure = draw_peak(read_peaks(file), dof=dof, against=against)
     save_picture(figure, output)
     messages.info(f"wrote {output}")

@@ -10,6 +10,7 @@ import click
 
 from fcm.cli import balance, exact, nonlinear_mode, of_peaks, schedule
 from fcm.cli import cluster as cluster_option
+from fcm.cli import track as tracking
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
@@ -75,6 +76,7 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
     help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
     "for more. With --method exact.",
 )  # fmt: skip
+@tracking.track_options
 @click.option(
     "--table", type=click.Path(), metavar="FILE", help="A table of your own.  [default: the shipped one]"
 )
@@ -125,6 +127,10 @@ def respond(
     mode: int | None,
     force_levels: tuple[float, ...],
     at: tuple[float, ...] | None,
+    track: str | None,
+    over: str | None,
+    low: float | None,
+    high: float | None,
     table: str | None,
     max_step: float | None,
     jobs: int,
@@ -142,7 +148,8 @@ def respond(
     By harmonic balance, or with --method exact as periodic solutions of the exact motion. The peaks, folds
     and errors of every curve are printed; the curves go to files. A [[schedule]] of the scene is then
     simulated in time, without a time step; the amplitudes of its phases are printed, the motion goes to the
-    same file.
+    same file. With an [optimum] its numbers are chosen, and the response is that with them; with --track,
+    points of the response are followed in a number of the scene.
     """
     if compare:
         from fcm.cli.compare import refuse_other_options, write_comparison
@@ -153,6 +160,7 @@ def respond(
         return
     cluster_option.check_options(cluster, level)
     nonlinear_mode.check_options(mode, level, at, force_levels)
+    tracking.check_options(track, over, low, high, method)
     exact.check_options(method, at, level)
     balance.check_level(level, at, accuracy, method, mode)
     balance.check_peaks_only(peaks_only, level, csv)
@@ -166,6 +174,8 @@ def respond(
 
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
+    if loaded.optimum is not None and track is None:
+        tracking.check_scene(loaded, method, level is not None)
     announce(
         messages, loaded, method if mode is None else f"nonlinear mode {mode}", at if mode is None else ()
     )
@@ -174,11 +184,16 @@ def respond(
     outputs = Outputs(messages, output, csv, history_csv)
     with outputs.kept(resume) as checkpoint, cluster_option.place_of(cluster) as place:
         options: dict[str, Any] = {"jobs": jobs, "place": place, "keep": checkpoint}
-        if method == "exact" and (loaded.has_range or at):
-            response = exact.traced(messages, loaded, at, options)
+        if track is not None and over is not None and low is not None and high is not None:
+            response = tracking.tracked(messages, loaded, track, over, (low, high), harmonics, accuracy)
         elif mode is not None and level is not None:
             chosen = {"harmonics": harmonics, "accuracy": accuracy, "force_levels": force_levels or (1.0,)}
             response = nonlinear_mode.traced(loaded, mode, level, chosen)
+        elif loaded.optimum is not None:
+            kept = {**options, **balanced, "table": _opened(table)}
+            response = tracking.optimised(messages, loaded, method, kept)
+        elif method == "exact" and (loaded.has_range or at):
+            response = exact.traced(messages, loaded, at, options)
         elif level is not None and at is not None:
             response = _levels(loaded, at, level, harmonics)
         elif loaded.has_range:
@@ -187,7 +202,7 @@ def respond(
             response = _without_curves(loaded)
         if sensitivity:
             of_peaks.added(messages, response, loaded)
-        if loaded.schedule and level is None:
+        if loaded.schedule and level is None and track is None:
             response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)
         response.notes, response.units = list(loaded.notes), loaded.units
@@ -273,11 +288,15 @@ def _close(messages: Messages, result: dict[str, Any], defects: list[str]) -> No
         messages.info(f"left out: {text}")
     if result["curves"]:
         messages.info(cost_and_error(result))
+    elif "tracked" in result:
+        messages.info(f"{len(result['tracked']['curves'])} tracked curves in {result['seconds']:.2f} s")
     if short := short_of_accuracy(result):
         messages.warning(short)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))
-    if stopped := " and ".join(filter(None, (incomplete(result), schedule.incomplete(histories)))):
+    if stopped := " and ".join(
+        filter(None, (incomplete(result), tracking.incomplete(result), schedule.incomplete(histories)))
+    ):
         messages.error(f"error: {stopped}; what was traced is reported and written")
         click.get_current_context().exit(DEFECT if all_lost_to_defects(result) else NOT_COMPLETED)

@@ -115,6 +115,8 @@ def _curves(
         raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
     if at is not None and method != "exact":
         raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
+    if scene.optimum is not None:
+        return _optimum(scene, method, harmonics, accuracy)
     if at is None and not scene.has_range and scene.schedule:
         return Response.without_curves(scene)
     if method == "exact":
@@ -124,3 +126,14 @@ def _curves(
 
         return trace_exact(scene, at, place=place)
     return trace(scene, method, harmonics=harmonics, accuracy=accuracy, place=place)
+
+
+def _optimum(
+    scene: Scene, method: str, harmonics: int | Sequence[int] | None, accuracy: float | None
+) -> Response:
+    from fcm.response.optimum import optimise
+
+    if method == "exact" or scene.schedule:
+        what = "the method 'exact'" if method == "exact" else "[[schedule]]"
+        raise ResponseError(f"{what} is of no use with [optimum]")
+    return optimise(scene, harmonics=harmonics, accuracy=accuracy, method=method)

@@ -88,7 +88,7 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path", "peak_percentile",
+    "harmonic_amplitude", "slip_path", "peak_percentile", "tracked_amplitude", "optimum_peak",
 )  # fmt: skip
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
 FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
@@ -113,13 +113,17 @@ def fields_of(response: Response) -> dict[str, Field]:
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}
         out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"} | drawn)
-    if response.curves or response.histories is None:
+    if response.curves or (response.histories is None and response.tracking is None):
         out |= _gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= _curve_fields(response)
         if any(c.sensitivity is not None for c in response.curves):
             out |= _sensitivity_fields(response)
         if found := scatter(response):
             out |= _scatter_fields(found, response.frequency_unit)
+    if response.tracking is not None:
+        from fcm.response.tracked_fields import tracked_fields
+
+        out |= {name: Field(*parts) for name, parts in tracked_fields(response, response.tracking).items()}
     if response.histories is not None:
         from fcm.motion import output
 

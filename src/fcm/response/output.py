@@ -44,6 +44,11 @@ def summary(response: Response) -> dict[str, Any]:
         from fcm.motion import output
 
         data["histories"] = output.summary(response.histories)
+    if response.tracking is not None:
+        unit = response.frequency_unit
+        data["tracked"] = response.tracking.summary(unit)
+        if response.tracking.optima:
+            data["optimum"] = [one.summary(unit) for one in response.tracking.optima]
     return _without_nan(data)  # type: ignore[no-any-return]
 
 
@@ -82,6 +87,8 @@ def _kind(response: Response) -> str:
         kinds.append(exact if response.method == "exact" else balance)
     if response.histories is not None:
         kinds.append("exact simulation of a schedule")
+    if response.tracking is not None:
+        kinds.append(f"{response.tracking.what} tracked by extended systems of the balance")
     return "; ".join(kinds)
 
 
@@ -194,6 +201,25 @@ def write_csv(response: Response, path: str | Path) -> None:
                     + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
                     + ([] if orbits is None else _of_orbit(orbits, int(k)))
                 )
+
+
+def write_tracked_csv(response: Response, path: str | Path) -> None:
+    """Write tracked curves as CSV, a row for each point; frequencies in the scene's unit."""
+    tracking = response.tracking
+    assert tracking is not None
+    keys = list(tracking.curves[0].parameters) if tracking.curves else []
+    unit = f" [{response.units[0]}]" if response.units[0] else ""
+    amplitudes = [f"amplitude {dof}{unit}" for dof in response.dofs]
+    header = ["track", "what", *keys, tracking.key, f"frequency [{response.frequency_unit}]", *amplitudes]
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([*header, "corner", "turn", "trough"])
+        for number, one in enumerate(tracking.curves):
+            frequency = in_unit(one.frequency, response.frequency_unit)
+            for k in range(one.number.size):
+                values = [repr(float(x)) for x in (one.number[k], frequency[k], *one.amplitude[k])]
+                marks = [str(one.corner[k]), int(one.turn[k]), int(one.trough[k])]
+                writer.writerow([number, one.what, *one.parameters.values(), *values, *marks])
 
 
 def _of_orbit(orbits: Orbits, point: int) -> list[Any]:

@@ -14,6 +14,7 @@ from fcm.contact.limits import FloatArray
 from fcm.harmonic.sensitivity import Sensitivities
 from fcm.response.gist import Gist, gist_of, worst
 from fcm.response.jumps import Jump, jumps
+from fcm.response.tracked import Tracking
 from fcm.scene.model import Scene
 from fcm.units import in_unit
 
@@ -262,6 +263,7 @@ class Response:
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
     peaks_only: bool = False  # whether the curves were asked for without their points
+    tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
 
     @staticmethod
     def without_curves(scene: Scene) -> Response:
@@ -273,7 +275,8 @@ class Response:
     def complete(self) -> bool:
         """Whether every curve reached the end of its range, and of the schedule if there is one."""
         simulated = self.histories is None or self.histories.complete
-        return simulated and all(curve.complete for curve in self.curves)
+        tracked = self.tracking is None or self.tracking.complete
+        return simulated and tracked and all(curve.complete for curve in self.curves)
 
     @property
     def interrupted(self) -> bool:

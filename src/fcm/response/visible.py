@@ -36,7 +36,10 @@ def visible(response: Response, scene: Scene) -> Response:
         records = [_record(one, shown) for one in histories.records]
         modal = histories.scene.modal.at(shown)
         histories = replace(histories, records=records, scene=replace(histories.scene, modal=modal))
-    return replace(response, dofs=dofs, curves=curves, histories=histories)
+    tracking = response.tracking
+    if tracking is not None:
+        tracking = replace(tracking, curves=[_at(one, ("amplitude",), shown) for one in tracking.curves])
+    return replace(response, dofs=dofs, curves=curves, histories=histories, tracking=tracking)
 
 
 def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:

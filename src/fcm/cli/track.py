@@ -1,0 +1,160 @@
+"""``--track``, and scenes with an [optimum]: what is asked for, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.messages import Messages
+from fcm.cli.report import aligned, short
+from fcm.cli.terminal import plain
+
+if TYPE_CHECKING:
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+
+WHAT = ("folds", "peaks", "slip", "separation", "closing")
+OF_NO_USE = {  # beside --track, and why
+    "level": "give --over level instead",
+    "at": "every frequency of the range is looked at",
+    "table": "its points are exact",
+    "resume": "nothing is kept of it",
+    "jobs": "it is one run",
+    "tolerance": "it leaves nothing out",
+    "keep_all": "it leaves nothing out anyway",
+    "history_csv": "no motion is simulated",
+}
+
+
+def track_options(command: Any) -> Any:
+    """The options of tracking."""
+    options: list[Callable[[Any], Any]] = [
+        click.option(
+            "--track", type=click.Choice(WHAT),
+            help="Follow these points of the response as curves in the number --over: folds (jumps), "
+            "peaks, onset of slip, of separation, of contact at all.",
+        ),
+        click.option("--over", metavar="KEY", help='With --track: the number, as contact.NAME.n_0 or level.'),
+        click.option("--from", "low", type=float, metavar="X", help="Where it begins, with --track."),
+        click.option("--to", "high", type=float, metavar="X", help="Where it ends, with --track."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def check_options(
+    track: str | None, over: str | None, low: float | None, high: float | None, method: str
+) -> None:
+    """A usage error if these are given in part, or beside what means nothing then."""
+    rest = {"--over": over, "--from": low, "--to": high}
+    if track is None:
+        given = [name for name, value in rest.items() if value is not None]
+        if given:
+            raise click.UsageError(f"{given[0]} needs --track, what is to be followed.")
+        return
+    missing = [name for name, value in rest.items() if value is None]
+    if missing:
+        raise click.UsageError(f"--track needs {' and '.join(missing)}.")
+    if method == "exact":
+        raise click.UsageError(
+            "--track is of no use with --method exact: it is the balance that is followed."
+        )
+    context = click.get_current_context()
+    for name, why in OF_NO_USE.items():
+        if context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE:
+            (option,) = (param.opts[0] for param in context.command.params if param.name == name)
+            raise click.UsageError(f"{option} is of no use with --track: {why}.")
+
+
+def tracked(
+    messages: Messages, scene: Scene, what: str, over: str, span: tuple[float, float],
+    harmonics: tuple[int, ...] | None, accuracy: float | None,
+) -> Response:  # fmt: skip
+    """The curves that were asked for."""
+    from fcm.response.track import track
+
+    response = track(
+        scene, what, over, span, harmonics=harmonics, accuracy=accuracy, progress=messages.progress
+    )
+    messages.clear()
+    return response
+
+
+def optimised(messages: Messages, scene: Scene, method: str, options: dict[str, Any]) -> Response:
+    """The optimum of a scene, and the response with it."""
+    from fcm.response.optimum import optimise
+
+    response = optimise(scene, method=method, progress=messages.progress, **options)
+    messages.clear()
+    return response
+
+
+def check_scene(scene: Scene, method: str, other: bool) -> None:
+    """A usage error if a scene with an [optimum] is asked for what has no meaning with it."""
+    if method == "exact":
+        raise click.UsageError(
+            "--method exact is of no use with [optimum]: it is the balance that is followed."
+        )
+    if scene.schedule or other:
+        what = "[[schedule]]" if scene.schedule else "--level"
+        raise click.UsageError(
+            f"{what} is of no use with [optimum]: it is for numbers that are chosen already."
+        )
+
+
+def as_table(result: Mapping[str, Any], unit: str) -> str:
+    """A line for each optimum, one for each tracked curve, and one for each place where a number turns."""
+    parts = [_optimum(one, unit) for one in result.get("optimum", [])]
+    tracked = result["tracked"]
+    if tracked["what"] != "optimum":
+        parts += [_curves(tracked, unit), _turns(tracked, unit)]
+    return "\n\n".join(filter(None, parts))
+
+
+def _optimum(one: Mapping[str, Any], unit: str) -> str:
+    """What is least, where, and how sure that is."""
+    where = ", ".join(f"{plain(key)} = {value:.6g}" for key, value in one["values"].items())
+    swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
+    kind = {
+        "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
+        "bound": ", at a bound: beyond it there may be less",
+    }[one["kind"]]  # fmt: skip
+    at = " and ".join(f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}" for place in one["at"])
+    least = (
+        f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g} (error {short(one['error'])})"
+    )
+    return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}"
+
+
+def _curves(tracked: Mapping[str, Any], unit: str) -> str:
+    over = plain(tracked["over"])
+    if not tracked["curves"]:
+        low, high = tracked["span"]
+        return f"no {tracked['what']} with {over} from {low:g} to {high:g}"
+    rows = [["what", "points", f"{over} from", "to", f"{unit} from", "to", ""]]
+    for curve in tracked["curves"]:
+        ends = [f"{value:.6g}" for value in (*curve["number"], *curve["frequency"])]
+        rows.append([plain(curve["what"]), str(curve["points"]), *ends, curve.get("reason", "")])
+    return aligned(rows, left=1)
+
+
+def _turns(tracked: Mapping[str, Any], unit: str) -> str:
+    """Where windows of several solutions open and close."""
+    rows = [[f"turns at {plain(tracked['over'])}", unit, "kind"]]
+    for curve in tracked["curves"]:
+        for turn in curve["turns"]:
+            rows.append([f"{turn['number']:.8g}", f"{turn['frequency']:.8g}", turn["kind"]])
+    return aligned(rows, left=1) if len(rows) > 1 else ""
+
+
+def incomplete(result: Mapping[str, Any]) -> str:
+    """What of the tracked curves is missing; empty if nothing is."""
+    tracked = result.get("tracked")
+    if tracked is None or tracked["complete"]:
+        return ""
+    stopped = sum(not curve["complete"] for curve in tracked["curves"])
+    said = [f"{stopped} of {len(tracked['curves'])} tracked curves not complete"] if stopped else []
+    return "; ".join([*said, *tracked["problems"]])

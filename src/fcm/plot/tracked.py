@@ -1,0 +1,150 @@
+"""Peaks and folds followed in a number: the peak to design by, and the window of several solutions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import frequency_label, symbols, with_unit
+from fcm.plot.read import FloatArray, floats
+from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_NEEDED = ("tracked_number", "tracked_frequency", "tracked_amplitude", "tracked_turn", "track_what", "dof")
+_MARK, _SHADE = "#c03020", "#c0d4ea"
+
+
+@dataclass(frozen=True)
+class DrawnTrack:
+    """One curve without its padding."""
+
+    what: str
+    number: FloatArray  # (point,)
+    frequency: FloatArray  # (point,) in the file's unit
+    amplitude: FloatArray  # (point, dof)
+    turn: FloatArray  # (point,) 1 where the number turns back
+    trough: FloatArray  # (point,) 1 where a peak is none
+
+
+@dataclass(frozen=True)
+class DrawnTracking:
+    """All curves of a file, and the optimum if there is one."""
+
+    key: str
+    dofs: tuple[str, ...]
+    frequency_unit: str
+    tracks: tuple[DrawnTrack, ...]
+    optimum: tuple[float, float] | None = None  # the number, and the peak
+    length: str = ""
+
+
+def read_tracked(path: Path) -> DrawnTracking | None:
+    """Read what ``fcm respond`` has written with --track, or of an [optimum]; None of another file."""
+    from netCDF4 import Dataset
+
+    try:
+        data = Dataset(str(path))
+    except OSError as error:
+        raise PlotError(f"{path}: not a netCDF file that can be read") from error
+    with data:
+        variables = data.variables
+        if any(name not in variables for name in _NEEDED):
+            return None
+        names = (*_NEEDED[:4], "tracked_trough")
+        number, frequency, amplitude, turn, trough = (floats(variables[name]) for name in names)
+        whats = [str(one) for one in np.atleast_1d(variables["track_what"][:])]
+        tracks = []
+        for i, what in enumerate(whats):
+            there = np.isfinite(number[i])
+            columns = (one[i][there] for one in (number, frequency, amplitude, turn, trough))
+            tracks.append(DrawnTrack(what, *columns))
+        optimum = None
+        if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
+            optimum = (float(variables["optimum_number"][0, 0]), float(variables["optimum_peak"][0]))
+        return DrawnTracking(
+            str(getattr(variables["tracked_number"], "key", "")),
+            tuple(str(name) for name in np.atleast_1d(variables["dof"][:])),
+            str(getattr(data, "frequency_unit", "rad/s")),
+            tuple(tracks),
+            optimum,
+            str(getattr(variables["tracked_amplitude"], "units", "")),
+        )
+
+
+def draw_tracked(drawn: DrawnTracking, dof: str | None = None, folds: bool = False) -> Figure:
+    """Folds: their frequencies with the window between them shaded; peaks: height and frequency."""
+    is_fold = [track.what == "fold" for track in drawn.tracks]
+    if folds and not any(is_fold):
+        raise PlotError("the file holds no folds that were tracked; run fcm respond with --track folds")
+    if any(is_fold):
+        return _draw_folds(drawn)
+    return _draw_peaks(drawn, dof)
+
+
+def _draw_folds(drawn: DrawnTracking) -> Figure:
+    tracks = [track for track in drawn.tracks if track.what == "fold"]
+    with house_style():
+        figure = new_figure(WIDTH, HEIGHT)
+        axes = figure.subplots()
+        for track in tracks:
+            # an open curve ends at an end of the range: the window goes on beyond it
+            axes.fill(track.number, track.frequency, color=_SHADE, linewidth=0.0, zorder=0)
+            axes.plot(track.number, track.frequency, color="black", linewidth=1.0)
+            at = track.turn == 1.0
+            axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
+        axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
+        _name_number(axes, drawn.key)
+        axes.set_title("shaded: several solutions", loc="right", fontsize=8)
+    return figure
+
+
+def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
+    if dof is not None and dof not in drawn.dofs:
+        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(drawn.dofs)}")
+    peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
+    wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
+    with house_style():
+        figure = new_figure(WIDTH, 1.3 * HEIGHT)
+        upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        for track, colour in zip(wanted, sequence_colours(len(wanted)), strict=True):
+            name = dof or track.what.removeprefix("peak of ")
+            column = drawn.dofs.index(name) if name in drawn.dofs else 0
+            height = np.where(track.trough == 1.0, np.nan, track.amplitude[:, column])
+            frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
+            upper.plot(track.number, height, color=colour, linewidth=1.1, label=track.what)
+            lower.plot(track.number, frequency, color=colour, linewidth=1.1)
+        upper.set_ylabel(with_unit("Peak amplitude", drawn.length), parse_math=False)
+        lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
+        low, high = upper.get_ylim()
+        if low > 0.0 and high > 10.0 * low:
+            logarithmic_axis(upper)
+        if len(wanted) > 1:
+            upper.legend()
+        _name_number(lower, drawn.key)
+        _mark_optimum(upper, lower, drawn)
+    return figure
+
+
+def _name_number(axes: Axes, key: str) -> None:
+    (symbol,) = symbols([key])
+    axes.set_xlabel(symbol if symbol == key else f"{symbol}  ({key})", parse_math=symbol != key)
+    axes.minorticks_on()
+
+
+def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
+    """A ring around the least peak, a thin line down to its frequency, and its values above."""
+    if drawn.optimum is None:
+        return
+    x, y = drawn.optimum
+    upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=_MARK, markeredgewidth=1.0)
+    for axes in (upper, lower):
+        axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
+    (symbol,) = symbols([drawn.key])
+    upper.set_title(f"least peak {y:.5g} at {symbol} = {x:.5g}", loc="right", fontsize=8, color=_MARK)

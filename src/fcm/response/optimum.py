@@ -1,0 +1,213 @@
+"""The numbers of a scene with which a peak is least, and the response with them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fcm.harmonic.choice import accurate
+from fcm.harmonic.system import System
+from fcm.response.result import Response
+from fcm.response.sweep import trace
+from fcm.response.trace import ResponseError, wanted_of
+from fcm.response.track import as_curve
+from fcm.response.tracked import Optimal, TrackedCurve, Tracking
+from fcm.run import Progress
+from fcm.run.progress import part
+from fcm.scene.draft import Number, number_of
+from fcm.scene.model import FloatArray, Scene
+from fcm.track.curves import tracks
+from fcm.track.descent import Valley, descend
+from fcm.track.envelope import Least, Target, least, pieces_of
+from fcm.track.follow import Way
+from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import along
+
+ROUNDS = 3  # of choosing harmonics by the accuracy at the optimum
+AGAIN = 3  # times that curves are followed from the optimum, where it has higher peaks than were known
+HIGHER = 1e-5  # relative: a peak of the response that is this much higher was not followed
+SEEKING = 0.8  # share of the bar that is over when the optimum is found
+
+
+def optimise(
+    scene: Scene,
+    *,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Response:
+    """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
+
+    Parameters
+    ----------
+    harmonics, accuracy
+        As of `trace`: with an accuracy, as many harmonics as the response at the optimum takes.
+
+    Raises
+    ------
+    ResponseError
+        If nothing has a peak in the range.
+    """
+    aim = scene.optimum
+    assert aim is not None
+    begin = time.perf_counter()
+    numbers = [number for key in aim.vary if (number := number_of(scene, key)) is not None]
+    free = scene
+    for number in numbers:
+        free = number.freed(free)
+    wanted = wanted_of(scene, harmonics, accuracy)
+    key = aim.vary[0] if len(aim.vary) == 1 else ""
+    tracking = Tracking(key, "optimum", aim.bounds[0], wanted.harmonics or (1,), [])
+    curves = free.each_curve()
+    for i, curve in enumerate(curves):
+        if progress is not None:
+            progress(SEEKING * i / len(curves), "optimum")
+        found, tracked = _optimum(_Task(curve, numbers, wanted.accuracy), wanted.harmonics)
+        tracking.optima.append(found)
+        tracking.curves += tracked
+    tracking.harmonics = tuple(sorted({h for one in tracking.optima for h in one.harmonics}))
+    shown = None if progress is None else part(progress, SEEKING, 1.0 - SEEKING)
+    response = trace(
+        _at(free, numbers, tracking.optima), progress=shown, harmonics=tracking.harmonics, **options
+    )
+    tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
+    tracking.problems += _higher(tracking, response)
+    response.tracking = tracking
+    response.seconds = time.perf_counter() - begin
+    return response
+
+
+class _Task:
+    """One scene (of one curve) with what is to be chosen."""
+
+    def __init__(self, scene: Scene, numbers: list[Number], accuracy: float) -> None:
+        assert scene.optimum is not None
+        self.scene, self.numbers, self.accuracy = scene, numbers, accuracy
+        self.bounds = np.array(scene.optimum.bounds)
+        dofs = scene.modal.dofs
+        self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
+
+    def put(self, values: FloatArray) -> Scene:
+        """The scene with values of the numbers."""
+        return with_values(self.scene, self.numbers, values)
+
+    def conditions(self) -> list[Condition]:
+        """What is tracked."""
+        found = [Condition(Kind.PEAK, dof) for dof in sorted({target.dof for target in self.targets})]
+        if any(target.ends for target in self.targets):
+            found += [Condition(Kind.END, omega=omega) for omega in self.scene.frequency_range]
+        return found
+
+
+def _optimum(task: _Task, harmonics: tuple[int, ...] | None) -> tuple[Optimal, list[TrackedCurve]]:
+    """With given harmonics, or with those that the accuracy takes at the optimum itself."""
+    chosen = harmonics or (1,)
+    for _ in range(1 if harmonics else ROUNDS):
+        found = _on_line(task, chosen) if len(task.numbers) == 1 else _downhill(task, chosen)
+        if harmonics:
+            return found
+        values = np.array(list(found[0].values.values()))
+        more = accurate(System(task.put(values)), task.accuracy).system.harmonics
+        if set(more) <= set(chosen):
+            return found
+        chosen = tuple(sorted({*chosen, *more}))
+    return found
+
+
+def _on_line(task: _Task, harmonics: tuple[int, ...]) -> tuple[Optimal, list[TrackedCurve]]:
+    """Of one number: over all of its range, by the curves of the peaks."""
+    (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
+    system, line = System(task.scene, harmonics), along(number)
+    seeds: tuple[float, ...] = ()
+    while True:
+        found = tracks(system, line, span, task.conditions(), seeds)
+        way = Way(system, line, span, (), task.scene.max_step)
+        best = least(
+            way, [piece for target in task.targets for piece in pieces_of(way, found.curves, target)]
+        )
+        if best is None:
+            raise ResponseError(_nothing(task))
+        valley = Valley(System(task.scene, harmonics), [number], task.bounds, task.targets)
+        q = np.array([(best.s - span[0]) / (span[1] - span[0])])
+        there = max((valley.height(one, q)[0] for one in valley.peaks(q)), default=0.0)
+        if there <= best.value * (1.0 + HIGHER) or len(seeds) == AGAIN:
+            break
+        seeds = (*seeds, best.s)
+    curves = [as_curve(task.scene, one) for one in found.curves]
+    return _optimal(task, np.array([best.s]), best, harmonics), curves
+
+
+def _downhill(task: _Task, harmonics: tuple[int, ...]) -> tuple[Optimal, list[TrackedCurve]]:
+    """Of several numbers."""
+    found = descend(Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets))
+    if found is None:
+        raise ResponseError(_nothing(task))
+    return _optimal(task, found[0], found[1], harmonics), []
+
+
+def _nothing(task: _Task) -> str:
+    dofs = " and ".join(task.scene.modal.dofs[target.dof] for target in task.targets)
+    why = f"{dofs} has no peak inside the range of frequencies"
+    return f"optimum: {why}; minimise greatest.NAME, or widen the range"
+
+
+def _optimal(task: _Task, values: FloatArray, best: Least, harmonics: tuple[int, ...]) -> Optimal:
+    scene = task.scene
+    assert scene.optimum is not None
+    names = tuple(f"{'greatest' if aim.ends else 'peak'}.{aim.dof}" for aim in scene.optimum.minimise)
+    return Optimal(
+        parameters=dict(scene.parameters),
+        values={number.key: float(value) for number, value in zip(task.numbers, values, strict=True)},
+        minimised=names,
+        value=best.value,
+        active=tuple((scene.modal.dofs[one.dof], float(one.z[-2])) for one in best.active),
+        kind=best.kind,
+        harmonics=harmonics,
+    )
+
+
+def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scene:
+    """The scene (of one curve) with values of numbers."""
+    assert scene.draft is not None
+    every = {
+        a: x
+        for number, value in zip(numbers, values, strict=True)
+        for a, x in number.values(float(value)).items()
+    }
+    return scene.draft.curve(scene, scene.parameters, every)
+
+
+def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
+    """The scene whose curves are those at the optima."""
+    curves = []
+    for curve, found in zip(free.each_curve(), optima, strict=True):
+        there = with_values(curve, numbers, np.array(list(found.values.values())))
+        curves.append(replace(there, parameters={**curve.parameters, **found.values}, curves=(), draft=None))
+    return replace(free, curves=tuple(curves))
+
+
+def _with_error(found: Optimal, curve: Any) -> Optimal:
+    """With the estimated error of the peaks that are greatest."""
+    errors = [curve.peaks[dof].error for dof, _ in found.active]
+    return replace(found, error=float(np.max(errors)) if errors else np.nan)
+
+
+def _higher(tracking: Tracking, response: Response) -> list[str]:
+    """What is wrong where a response has a higher peak than the ones that were followed."""
+    said = []
+    for found, curve in zip(tracking.optima, response.curves, strict=True):
+        ends = (np.nanmin(curve.frequency), np.nanmax(curve.frequency)) if curve.points else (0.0, 0.0)
+        for name in found.minimised:
+            what, _, dof = name.partition(".")
+            peak = curve.peaks[dof]
+            inside = what == "greatest" or peak.frequency not in ends
+            if inside and peak.amplitude > found.value * (1.0 + 10.0 * HIGHER):
+                said.append(
+                    f"at the optimum there is a higher {name}, {peak.amplitude:.6g}, than was followed"
+                )
+    return said

@@ -1,0 +1,159 @@
+"""Folds, peaks and onsets of a scene's response followed in a number of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.harmonic.choice import accurate
+from fcm.harmonic.system import System
+from fcm.response.result import Response
+from fcm.response.trace import ResponseError, Wanted, wanted_of
+from fcm.response.tracked import TrackedCurve, Tracking
+from fcm.run import Progress
+from fcm.run.progress import part
+from fcm.scene.draft import Number, number_of
+from fcm.scene.model import Scene
+from fcm.track.curves import Track, Tracks, tracks
+from fcm.track.onset import KINDS
+from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import along
+
+WHAT = ("folds", "peaks", *KINDS)
+
+
+def track(
+    scene: Scene,
+    what: str,
+    over: str,
+    span: tuple[float, float],
+    *,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+    progress: Progress | None = None,
+) -> Response:
+    """Curves of special points of the response against a number of the scene.
+
+    Parameters
+    ----------
+    what : {"folds", "peaks", "slip", "separation", "closing"}
+        The frequencies at which the response turns back (jumps), its peaks, or the onsets of slip and of
+        separation, and of contact at all.
+    over : str
+        The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
+    span : (from, to)
+
+    Returns
+    -------
+    Response
+        Without curves of its own; `tracking` holds the others.
+
+    Raises
+    ------
+    ResponseError
+        If what is asked for, or the span, is wrong.
+    SceneError
+        If there is no such number.
+    """
+    if what not in WHAT:
+        raise ResponseError(f"track {what!r} is not one of {', '.join(WHAT)}")
+    number = number_of(scene, over)
+    assert number is not None
+    _check(scene, number, span)
+    begin = time.perf_counter()
+    free = number.freed(scene)
+    wanted = wanted_of(scene, harmonics, accuracy)
+    curves = free.each_curve()
+    chosen = wanted.harmonics or needed(curves, number, span, wanted)
+    tracking = Tracking(over, what, span, chosen, [])
+    for i, one in enumerate(curves):
+        shown = None if progress is None else part(progress, i / len(curves), 1.0 / len(curves))
+        found = _tracked(one, number, span, what, chosen, shown)
+        _add(tracking, one, found)
+    response = Response.without_curves(scene)
+    response.tracking, response.method = tracking, "tracked"
+    response.seconds = time.perf_counter() - begin
+    return response
+
+
+def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
+    low, high = span
+    if not scene.has_range:
+        raise ResponseError("the scene has no range of frequencies; give [response] frequency = [from, to]")
+    for end in span:
+        if fault := number.rule.fault(end):
+            raise ResponseError(f"{number.key} {fault}")
+    if not low < high:
+        raise ResponseError(f"{number.key} is from {low:g} to {high:g}, but must rise")
+
+
+def needed(
+    curves: Sequence[Scene], number: Number, span: tuple[float, float], wanted: Wanted
+) -> tuple[int, ...]:
+    """The harmonics that an accuracy takes, at both ends of a span and in its middle."""
+    found = {1}
+    for curve in (curves[0], curves[-1]) if len(curves) > 1 else curves:
+        for value in np.linspace(*span, 3).tolist():
+            found |= set(accurate(System(number.put(curve, value)), wanted.accuracy).system.harmonics)
+    return tuple(sorted(found))
+
+
+def _tracked(
+    scene: Scene, number: Number, span: tuple[float, float], what: str, harmonics: tuple[int, ...],
+    progress: Progress | None,
+) -> Tracks:  # fmt: skip
+    shown = None if progress is None else lambda share: progress(share, number.key)
+    return tracks(System(scene, harmonics), along(number), span, conditions_of(scene, what), (), shown)
+
+
+def conditions_of(scene: Scene, what: str) -> list[Condition]:
+    """What is tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
+    if what == "folds":
+        return [Condition(Kind.FOLD)]
+    if what == "peaks":
+        return [
+            Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if _is_shown(scene, name)
+        ]
+    return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
+
+
+def _is_shown(scene: Scene, name: str) -> bool:
+    return not scene.reported or name in scene.reported
+
+
+def _add(tracking: Tracking, scene: Scene, found: Tracks) -> None:
+    """The curves of one scene to those of all."""
+    where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
+    tracking.problems += [f"{where}: {text}" if where else text for text in found.problems]
+    tracking.curves += [as_curve(scene, one) for one in found.curves]
+
+
+def as_curve(scene: Scene, one: Track) -> TrackedCurve:
+    """A track in the words of its scene."""
+    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
+    stopped = [ending for ending in one.endings if not ending.whole]
+    end = one.s[0] if not one.endings[0].whole else one.s[-1]
+    return TrackedCurve(
+        parameters=dict(scene.parameters),
+        what=named(scene, one.condition),
+        number=one.s,
+        frequency=one.frequency,
+        amplitude=one.amplitude,
+        corner=np.array(corners, dtype=str),
+        turn=np.array([bool(spot.turn) for spot in one.spots]),
+        trough=~one.greatest,
+        closings=tuple(one.turns()),
+        complete=one.whole,
+        reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
+    )
+
+
+def named(scene: Scene, condition: Condition) -> str:
+    """What a condition is, in words."""
+    if condition.kind is Kind.PEAK:
+        return f"peak of {scene.modal.dofs[condition.which]}"
+    if condition.kind is Kind.ONSET:
+        return f"{condition.onset} of {scene.contacts[condition.which].name or condition.which}"
+    return "fold" if condition.kind is Kind.FOLD else "end of the range"

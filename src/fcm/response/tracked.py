@@ -1,0 +1,106 @@
+"""Special points of a response as curves in a number of its scene, and optima: what runs of these yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray
+from fcm.units import in_unit
+
+
+@dataclass(frozen=True)
+class TrackedCurve:
+    """One curve, points in the order along it; frequencies in rad/s."""
+
+    parameters: dict[str, float]  # swept values of the curve of the scene that it belongs to
+    what: str  # "fold", "peak of u", "slip of shroud", ...
+    number: FloatArray  # (point,)
+    frequency: FloatArray  # (point,)
+    amplitude: FloatArray  # (point, dof)
+    corner: npt.NDArray[np.str_]  # (point,) where the point is a corner of the response: of what
+    turn: npt.NDArray[np.bool_]  # (point,) where the number turns back
+    trough: npt.NDArray[np.bool_]  # (point,) of a peak that is none, but a least amplitude
+    closings: tuple[tuple[int, str], ...]  # points where it turns, and what they are
+    complete: bool
+    reason: str
+
+    def summary(self, unit: str) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "parameters": self.parameters,
+            "what": self.what,
+            "points": int(self.number.size),
+            "number": [float(self.number.min()), float(self.number.max())],
+            "frequency": in_unit([self.frequency.min(), self.frequency.max()], unit).tolist(),
+            "turns": [
+                {
+                    "number": float(self.number[i]),
+                    "frequency": float(in_unit(self.frequency[i], unit)),
+                    "kind": kind,
+                }
+                for i, kind in self.closings
+            ],
+            "complete": self.complete,
+            **({} if self.complete else {"reason": self.reason}),
+        }
+
+
+@dataclass(frozen=True)
+class Optimal:
+    """The least of the greatest of some peaks."""
+
+    parameters: dict[str, float]
+    values: dict[str, float]  # of the numbers chosen
+    minimised: tuple[str, ...]
+    value: float
+    active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
+    kind: str  # "smooth", "kink", "corner", "bound"
+    harmonics: tuple[int, ...]
+    error: float = np.nan  # of the value, estimated, relative
+
+    def summary(self, unit: str) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "parameters": self.parameters,
+            "values": self.values,
+            "minimise": list(self.minimised),
+            "value": self.value,
+            "at": [{"dof": dof, "frequency": float(in_unit(omega, unit))} for dof, omega in self.active],
+            "kind": self.kind,
+            "harmonics": list(self.harmonics),
+            "error": self.error,
+        }
+
+
+@dataclass
+class Tracking:
+    """All of a run; key is the number that the curves are followed in."""
+
+    key: str
+    what: str
+    span: tuple[float, float]
+    harmonics: tuple[int, ...]
+    curves: list[TrackedCurve]
+    optima: list[Optimal] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every curve was followed to its end."""
+        return not self.problems and all(curve.complete for curve in self.curves)
+
+    def summary(self, unit: str) -> dict[str, Any]:
+        """For JSON."""
+        return {
+            "what": self.what,
+            "over": self.key,
+            "span": list(self.span),
+            "harmonics": list(self.harmonics),
+            "complete": self.complete,
+            "problems": self.problems,
+            "curves": [curve.summary(unit) for curve in self.curves],
+        }

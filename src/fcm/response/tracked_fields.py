@@ -1,0 +1,119 @@
+"""What the variables of tracked curves and optima are: dimensions, values, meanings and units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.response.result import Response
+from fcm.response.tracked import Tracking
+from fcm.units import in_unit
+
+Parts = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]
+
+
+def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Parts]:
+    """The curves on dimensions track, tracked (padded); optima on optimum, varied."""
+    out: dict[str, Parts] = {}
+    if tracking.curves:
+        out |= _curves(response, tracking)
+    if tracking.optima:
+        out |= _optima(response, tracking)
+    return out
+
+
+def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
+    unit, curves, dims = response.frequency_unit, tracking.curves, ("track", "tracked")
+    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
+    ended = np.array([int(curve.complete) for curve in curves], dtype=np.int8)
+    out: dict[str, Parts] = {
+        "track_what": (
+            ("track",),
+            np.array([curve.what for curve in curves], dtype=str),
+            {"long_name": "what of the response is tracked"},
+        ),
+        "track_complete": (("track",), ended, {"long_name": "1 where the curve is whole", "units": "1"}),
+        "tracked_number": (
+            dims,
+            _padded([curve.number for curve in curves]),
+            {"long_name": f"tracked value of {tracking.key}", "key": tracking.key},
+        ),
+        "tracked_frequency": (
+            dims,
+            in_unit(_padded([curve.frequency for curve in curves]), unit),
+            {"long_name": "excitation frequency of the tracked point", "units": cf_unit},
+        ),
+        "tracked_amplitude": (
+            (*dims, "dof"),
+            _padded([curve.amplitude for curve in curves]),
+            {"long_name": "half the peak-to-peak displacement at the tracked point"},
+        ),
+        "tracked_turn": (
+            dims,
+            _padded([curve.turn.astype(float) for curve in curves]),
+            {"long_name": "1 where the number turns back: a window of several solutions opens or closes"},
+        ),
+        "tracked_trough": (
+            dims,
+            _padded([curve.trough.astype(float) for curve in curves]),
+            {"long_name": "1 where a tracked peak is a least amplitude, between two peaks"},
+        ),
+        "tracked_corner": (
+            dims,
+            _padded([curve.corner for curve in curves]),
+            {"long_name": "onset at which the response has a corner there, if it has"},
+        ),
+    }
+    for key in curves[0].parameters:
+        values = np.array([curve.parameters[key] for curve in curves])
+        out[f"track_{key}"] = (("track",), values, {"long_name": f"{key} of the curve"})
+    return out
+
+
+def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
+    optima = tracking.optima
+    minimised = " and ".join(optima[0].minimised)
+    keys = list(optima[0].values)
+    places = [np.array([omega for _, omega in one.active]) for one in optima]
+    return {
+        "varied": (("varied",), np.array(keys, dtype=str), {"long_name": "number that was chosen"}),
+        "optimum_number": (
+            ("optimum", "varied"),
+            np.array([list(one.values.values()) for one in optima]),
+            {"long_name": "number with which the greatest peak is least"},
+        ),
+        "optimum_peak": (
+            ("optimum",),
+            np.array([one.value for one in optima]),
+            {"long_name": f"the greatest of {minimised} with it"},
+        ),
+        "optimum_error": (
+            ("optimum",),
+            np.array([one.error for one in optima]),
+            {"long_name": "estimated relative error of that peak", "units": "1"},
+        ),
+        "optimum_frequency": (
+            ("optimum", "equal"),
+            in_unit(_padded(places), response.frequency_unit),
+            {"long_name": "excitation frequency of that peak, or of those that are equal"},
+        ),
+        "optimum_kind": (
+            ("optimum",),
+            np.array([one.kind for one in optima], dtype=str),
+            {"long_name": "smooth, kink of equal peaks, corner of the response, or bound of a number"},
+        ),
+    }
+
+
+def _padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """Arrays of different lengths as rows of one, with NaN, or empty text, at their ends."""
+    longest = max(len(one) for one in values)
+    text = values[0].dtype.kind == "U"
+    kind: Any = np.result_type(*values) if text else np.float64
+    out = np.full((len(values), longest, *values[0].shape[1:]), "" if text else np.nan, dtype=kind)
+    for row, one in zip(out, values, strict=True):
+        row[: len(one)] = one
+    return out

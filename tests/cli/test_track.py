@@ -1,0 +1,105 @@
+"""``fcm respond --track`` and scenes with an [optimum], from the command to files and pictures."""
+
+import csv
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
+FOLDS = ("--track", "folds", "--over", "contact.shroud.n_0", "--harmonics", "1", "--from")
+
+
+@pytest.fixture
+def optimum(scene):
+    scene.write_text(scene.read_text() + OPTIMUM)
+    return scene
+
+
+def test_an_optimum_is_written_drawn_and_told(fcm, optimum):
+    done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc")
+    assert done.code == 0 and done.out.startswith("least peak.u: ")
+    with netCDF4.Dataset("best.nc") as data:
+        value, peak = float(data["optimum_number"][0, 0]), float(data["optimum_peak"][0])
+        number, height = np.array(data["tracked_number"][0]), np.array(data["tracked_amplitude"][0, :, 0])
+        assert data["peak_amplitude"][0, 0] == pytest.approx(peak, rel=1e-9)  # of the response with it
+        assert data["contact.shroud.n_0"][0] == value and data["varied"][0] == "contact.shroud.n_0"
+    assert number.min() == 2.0 and number.max() == 20.0 and 2.0 < value < 20.0
+    assert peak <= height.min() * (1.0 + 1e-9)
+    done = fcm("plot", "peak", "best.nc", "-o", "best.png")
+    assert (done.code, done.err) == (0, "wrote best.png\n")
+    assert fcm("plot", "peak", "best.nc", "--folds").code == 2
+
+
+def test_as_json_an_optimum_has_its_error_and_harmonics(fcm, optimum):
+    done = fcm("respond", optimum, "--accuracy", "0.01", "--json")
+    (found,) = json.loads(done.out)["optimum"]
+    assert done.code == 0 and found["kind"] == "smooth" and found["harmonics"][0] == 1
+    assert 0.0 < found["error"] < 0.01
+
+
+def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
+    done = fcm("respond", "yang1998", *FOLDS, "4", "--to", "10", "-o", "folds.nc", "--csv", "folds.csv")
+    assert done.code == 0 and "cusp" in done.out
+    with netCDF4.Dataset("folds.nc") as data:
+        assert data["track_what"][0] == "fold" and data["tracked_number"].key == "contact.shroud.n_0"
+        points = int(np.isfinite(np.ma.filled(data["tracked_number"][:], np.nan)).sum())
+        assert np.ma.filled(data["tracked_turn"][:], 0.0).any()
+    rows = list(csv.reader((tmp_path / "folds.csv").read_text("utf-8").splitlines()))
+    assert len(rows) == 1 + points
+    assert fcm("plot", "peak", "folds.nc", "--folds", "-o", "folds.svg").code == 0
+
+
+@pytest.mark.parametrize(
+    ("args", "said"),
+    [
+        (["--over", "contact.shroud.n_0"], "--over needs --track"),
+        (["--track", "folds"], "--track needs --over and --from and --to"),
+        ([*FOLDS, "5", "--to", "4"], "must rise"),
+        ([*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"], "must be at least 0"),
+        ([*FOLDS[:3], "contact.shroud.n0", "--from", "1", "--to", "4"], "did you mean"),
+        ([*FOLDS, "1", "--to", "4", "--resume"], "--resume is of no use with --track"),
+        ([*FOLDS[:4], "--from", "1", "--to", "4", "--method", "exact"], "--method exact"),
+        ([*FOLDS[:4], "--from", "nan", "--to", "4"], "must be finite"),
+    ],
+)
+def test_what_is_wrong_is_said_and_nothing_is_written(fcm, scene, tmp_path, args, said):
+    done = fcm("respond", scene, *args, *(["-o", "a.nc"] if "--resume" not in args else []))
+    assert done.code == 2 and said in done.err and done.out == ""
+    assert not (tmp_path / "a.nc").exists()
+
+
+def test_an_optimum_excludes_what_is_for_numbers_already_chosen(fcm, optimum):
+    assert "[optimum]" in fcm("respond", optimum, "--method", "exact").err
+    optimum.write_text(optimum.read_text() + "[[schedule]]\nfrequency = 1.0\ncycles = 2\n")
+    assert "[[schedule]]" in fcm("respond", optimum).err
+
+
+def test_no_peak_in_the_range_is_said(fcm, optimum):
+    optimum.write_text(optimum.read_text().replace("[0.8, 1.6]", "[0.3, 0.4]"))
+    done = fcm("respond", optimum, "--harmonics", "1")
+    assert done.code == 2 and "no peak inside the range" in done.err
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ("", ["optimum.vary: missing", "optimum.minimise: missing"]),
+        (
+            'vary = ["contact.shroud.n_1"]\nminimise = "peak.x"',
+            ["no such number", 'no degree of freedom "x"'],
+        ),
+        ('vary = []\nminimise = "least.u"\nof = 1', ["an empty list", "must be peak.NAME", "unknown key"]),
+        ('vary = "level"\nminimise = "peak.u"\nbounds = [[3, 2]]', ["must rise"]),
+        ('vary = "contact.shroud.mu"\nminimise = "peak.u"\nbounds = [[-1, 2]]', ["must be at least 0"]),
+        (
+            'vary = ["level", "level"]\nminimise = "peak.u"\nbounds = [[1, 2]]',
+            ["the same number", "for each of"],
+        ),
+    ],
+)
+def test_all_mistakes_of_the_table_are_named_at_once(fcm, scene, table, said):
+    scene.write_text(f"{scene.read_text()}[optimum]\n{table}\n")
+    done = fcm("respond", scene)
+    assert done.code == 2 and all(text in done.err for text in said), done.err

@@ -1,0 +1,198 @@
+"""Curves of special points against ordinary runs at several values of the number, and against similarity."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from fcm.continuation import Mark
+from fcm.harmonic.record import recorded
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
+from fcm.response.optimum import optimise
+from fcm.response.track import track
+from fcm.scene import load_scene
+from fcm.scene.draft import number_of
+from fcm.scene.load import scene_from_dict
+from fcm.scene.model import Aim, Optimum
+
+PRELOAD = "contact.shroud.n_0"
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_scene("yang1998-n5")
+
+
+@pytest.fixture(scope="module")
+def folds(scene):
+    """Of the paper's oscillator, with one harmonic."""
+    return track(scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1).tracking
+
+
+def run(scene, value, harmonics=(1,), key=PRELOAD):
+    system = System(number_of(scene, key).put(scene, value), harmonics)
+    paths = traced(system).branches.paths
+    return system, paths
+
+
+def frequencies_at(curves, value):
+    """Of the tracked points at a value of the number."""
+    found = [one.frequency[np.abs(one.number - value) < 1e-9] for one in curves]
+    return np.unique(np.concatenate(found).round(12))
+
+
+@pytest.mark.parametrize("value", [-20.0, -10.0, 5.0, 7.5])
+def test_tracked_folds_are_those_of_ordinary_runs(scene, folds, value):
+    _, paths = run(scene, value)
+    expected = np.sort(np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in paths]))
+    assert frequencies_at(folds.curves, value) == pytest.approx(expected, abs=1e-9)
+    assert folds.complete
+
+
+def test_the_window_closes_where_two_folds_of_ordinary_runs_meet(scene, folds):
+    """At a cusp the width of the window vanishes as the distance to the power 3/2."""
+    least = min(one["number"] for curve in folds.curves[1:] for one in curve.summary("rad/s")["turns"])
+
+    def width(value):
+        _, paths = run(scene, value)
+        found = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in paths])
+        return np.ptp(found) if found.size else 0.0
+
+    near, far = width(least + 0.01), width(least + 0.04)
+    assert far / near == pytest.approx(8.0, rel=0.05)
+    assert width(least - 1e-4) == 0.0
+
+
+def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
+    """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
+    levels = track(scene, "folds", "level", (0.55, 2.5), harmonics=1).tracking
+    assert levels.complete
+    turns = np.sort([5.0 / one["number"] for c in levels.curves for one in c.summary("rad/s")["turns"]])
+    expected = [one["number"] for curve in folds.curves for one in curve.summary("rad/s")["turns"]]
+    assert turns == pytest.approx(np.sort([value for value in expected if value > 0.0]), abs=2e-6)
+
+
+@pytest.mark.parametrize(("harmonics", "to"), [((1,), 100.0), ((1, 2), 10.0)])
+def test_tracked_peaks_are_those_of_ordinary_runs(scene, harmonics, to):
+    tracking = track(scene, "peaks", PRELOAD, (-20.0, to), harmonics=harmonics).tracking
+    assert tracking.complete
+    for value in (-20.0, 10.0, to):
+        system, paths = run(scene, value, harmonics)
+        amplitude = recorded(system, paths).amplitude.max(axis=0)
+        for column, what in enumerate(("peak of u", "peak of v")):
+            mine = [one for one in tracking.curves if one.what == what]
+            heights = np.concatenate([c.amplitude[np.abs(c.number - value) < 1e-9, column] for c in mine])
+            assert heights.max() == pytest.approx(amplitude[column], rel=1e-8)
+
+
+def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
+    """Above the greatest preload of the curve nothing slips: the linear response of the stuck contact.
+
+    On the verge of slip its mean friction is between two limits that have met, and moves the mean load.
+    """
+    tracking = track(scene, "slip", PRELOAD, (20.0, 100.0), harmonics=1).tracking
+    highest = max(curve.number.max() for curve in tracking.curves)
+    contact, modal = scene.contacts[0], scene.modal
+
+    def needed(omega):  # the preload with which u and v of the linear response just stick
+        stiffness = np.diag(modal.frequency**2 - omega**2 + 2j * modal.damping * modal.frequency * omega)
+        ports = modal.shapes @ np.stack((contact.tangential, contact.normal), axis=1)
+        stiffness = stiffness + ports @ np.diag((contact.k_u, contact.k_v)) @ ports.T
+        U, V = ports.T @ np.linalg.solve(stiffness, modal.shapes @ np.ones(2))
+        push, load = contact.k_u * U, contact.mu * contact.k_v * V
+        friction = 0.5 * (abs(push + load) - abs(push - load))
+        flexible = ports.T @ np.diag(modal.frequency**-2) @ ports
+        mean = -flexible[1, 0] * friction / (1.0 + flexible[1, 1] * contact.k_v)
+        return 0.5 * (abs(push + load) + abs(push - load)) / contact.mu - contact.k_v * mean
+
+    best = minimize_scalar(lambda omega: -needed(omega), bounds=(1.3, 1.5), options={"xatol": 1e-10})
+    assert highest == pytest.approx(-best.fun, rel=1e-8)
+
+
+def test_separation_that_comes_and_goes_between_the_seeds_is_met_by_the_peak(scene):
+    tracking = track(scene, "separation", PRELOAD, (-20.0, 100.0), harmonics=1).tracking
+    (curve,) = tracking.curves
+    top = curve.number.max()
+    for value, opens in ((top - 1e-3, True), (top + 1e-3, False)):
+        _, paths = run(scene, value)
+        z = np.concatenate([path.z for path in paths])
+        load = value + z[:, 1] - np.hypot(z[:, 4], z[:, 5])  # k_v is 1
+        assert bool((load < 0.0).any()) is opens
+
+
+def chosen(scene, bounds, *aims, vary=(PRELOAD,), **options):
+    aimed = replace(scene, optimum=Optimum(vary, bounds, aims))
+    response = optimise(aimed, **{"harmonics": 1, **options})
+    assert response.complete
+    return response
+
+
+def test_the_least_peak_is_that_of_a_fine_minimisation_of_ordinary_runs(scene):
+    """The paper's is at n_0 = 10, of the preloads that it has."""
+
+    def peak(value):
+        system, paths = run(scene, value)
+        return recorded(system, paths).amplitude[:, 0].max()
+
+    expected = minimize_scalar(peak, bounds=(9.0, 10.5), method="bounded", options={"xatol": 1e-6})
+    found = chosen(scene, ((0.0, 60.0),), Aim("u")).tracking.optima[0]
+    assert found.value == pytest.approx(expected.fun, rel=1e-9)
+    assert found.values[PRELOAD] == pytest.approx(expected.x, abs=1e-4)
+    assert found.kind == "smooth" and found.error < 0.01
+
+
+def test_a_kink_of_two_equal_peaks_is_landed_on():
+    """Two resonances apart from one another, each damped best at a preload of its own."""
+    scene = two_resonances()
+    found = chosen(scene, ((0.2, 12.0),), Aim("a"), Aim("b"), vary=("contact.c.n_0",)).tracking.optima[0]
+
+    def peaks(value):
+        system, paths = run(scene, value, key="contact.c.n_0")
+        return recorded(system, paths).amplitude.max(axis=0)
+
+    assert found.kind == "kink" and len(found.active) == 2
+    heights = peaks(found.values["contact.c.n_0"])
+    assert heights[0] == pytest.approx(heights[1], rel=1e-6)
+    for beside in (-0.01, 0.01):
+        assert peaks(found.values["contact.c.n_0"] + beside).max() > found.value
+
+
+def two_resonances():
+    """One contact on two modes: the first is pushed harder, and is damped best by a greater preload."""
+    modal = {
+        "dofs": ["a", "b", "n"],
+        "frequency": [1.0, 2.0, 20.0],
+        "damping": [0.01, 0.01, 0.01],
+        "shapes": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    }
+    contact = {
+        "name": "c",
+        "tangential": {"a": 1.0, "b": 1.0},
+        "normal": "n",
+        "mu": 0.5,
+        "k_u": 1.0,
+        "k_v": 1.0,
+    }
+    forces = [{"dof": "a", "amplitude": 1.0}, {"dof": "b", "amplitude": 1.5}]
+    data = {"modal": modal, "contact": [contact | {"n_0": 1.0}], "force": forces}
+    return scene_from_dict(data | {"response": {"frequency": [0.7, 2.6]}})
+
+
+def test_two_numbers_are_chosen_together(scene):
+    """The best friction for the best preload: no response beside it has a lower peak."""
+    keys = (PRELOAD, "contact.shroud.mu")
+    found = chosen(scene, ((1.0, 40.0), (0.1, 0.6)), Aim("v"), vary=keys).tracking.optima[0]
+    best = np.array([found.values[key] for key in keys])
+
+    def peak(values):
+        contact = replace(scene.contacts[0], n_0=values[0], mu=values[1])
+        system = System(replace(scene, contacts=(contact,)))
+        return recorded(system, traced(system).branches.paths).amplitude[:, 1].max()
+
+    assert peak(best) == pytest.approx(found.value, rel=1e-8)
+    for step in ((0.3, 0.0), (-0.3, 0.0), (0.0, 0.01), (0.0, -0.01)):
+        beside = best + step
+        if 0.1 <= beside[1] <= 0.6:
+            assert peak(beside) > found.value
