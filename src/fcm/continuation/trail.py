@@ -63,7 +63,7 @@ class Trail:
         if self.count < self.mark.shape[0]:
             return 0
         self.z, self.direction = _twice(self.z), _twice(self.direction)
-        self.mark, self.rest = _twice(self.mark), _twice(self.rest)  # type: ignore[assignment]
+        self.mark, self.rest = _twice(self.mark), _twice(self.rest)
         return 0
 
     def last(self) -> FloatArray:

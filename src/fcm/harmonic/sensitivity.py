@@ -131,15 +131,15 @@ class _Moved:
 
 def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...]) -> _Moved:
     each = number.each(scene)
-    size = max(abs(value) for _, value in each)
+    size = max(abs(value) for _, value, _ in each)
     step = STEP * (size or 1.0)
-    inside = all(not number.rule.fault(value - 2.0 * step) for _, value in each)
+    inside = all(not number.rule.fault(value - 2.0 * step) for _, value, _ in each)
     terms = [(sign * k, sign * w) for k, w in STENCIL for sign in (1, -1)] if inside else list(ONE_SIDED)
     draft = scene.draft
     assert draft is not None
     found = []
     for k, weight in terms:
-        values = {one.addresses[0]: value + k * step for one, value in each}
+        values = {one.addresses[0]: value + k * step * share for one, value, share in each}
         moved = replace(draft.curve(scene, {}, values), draft=None)
         found.append((weight / step, Newton(System(moved, harmonics).balance())))
     return _Moved(found)
