@@ -23,7 +23,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     """List the modes of SCENE: frequency, damping, mass, and participation at contacts and forces.
 
     The participation is the share of a mode in the static flexibility along a contact or a force. Modes that
-    stand for the flexibility of those left out are marked "flexibility".
+    stand for the flexibility of those left out are marked "flexibility". Of a ring of sectors they are listed
+    by nodal diameter, with the share among the modes of the same.
     """
     from fcm.scene import load_scene
     from fcm.scene.listing import listing
@@ -41,13 +42,23 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 def as_table(found: dict[str, Any]) -> str:
     """One line for each mode."""
     directions = list(found["modes"][0]["participation"])[:_MOST_DIRECTIONS]
-    header = ["mode", f"at {found['frequency_unit']}", "damping", "mass", *map(_short, directions), ""]
+    ring = "nodal_diameter" in found["modes"][0]
+    header = [
+        "mode",
+        *(["diameter"] if ring else []),
+        f"at {found['frequency_unit']}",
+        "damping",
+        "mass",
+        *map(_short, directions),
+        "",
+    ]
     rows = [header]
     for mode in found["modes"]:
         shares = (mode["participation"][name] for name in directions)
         rows.append(
             [
                 str(mode["mode"]),
+                *([str(mode["nodal_diameter"])] if ring else []),
                 number(mode["frequency"]),
                 f"{mode['damping']:.4g}",
                 f"{mode['mass']:.4g}",

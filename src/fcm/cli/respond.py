@@ -170,10 +170,13 @@ def respond(
     of_peaks.check_options(sensitivity, method, level, mode)
     if resume and output is None and csv is None and history_csv is None:
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
+    from fcm.response.around import check_no_ring
     from fcm.response.visible import visible
 
     check_different({"-o": output, "--csv": csv, "--history-csv": history_csv})
     loaded = _loaded(messages, scene, max_step, history_csv, largest_file)
+    if sensitivity:
+        check_no_ring(loaded, "sensitivities")
     if loaded.optimum is not None and track is None:
         tracking.check_scene(loaded, method, level is not None)
     announce(

@@ -10,6 +10,7 @@ from pathlib import Path
 from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
+from fcm.response.around import refuse_ring
 from fcm.response.leave_out import TOLERANCE
 from fcm.response.sweep import trace
 from fcm.scene.model import Scene
@@ -149,6 +150,7 @@ def compare(
     >>> str(comparison.shown("exact", comparison.find("default table"), "peak"))  # doctest: +SKIP
     '6.6e-02'
     """
+    refuse_ring(scene, "a comparison with the exact motion")
     begin = time.perf_counter()
     out = Comparison(scene)
     show = progress or (lambda _share, _text: None)

@@ -22,7 +22,6 @@ from fcm.scene.model import FloatArray
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
-LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
@@ -63,15 +62,11 @@ class Further:
 
         The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
         """
-        linear = self.system.linear
         others = np.ones(self.highest, dtype=np.bool_)
         others[np.array(self.system.harmonics) - 1] = False
-        h = 1.0 + np.flatnonzero(others)
-        w = (z[:, -1:] * h)[..., None]
-        dynamic = (linear.natural - w) * (linear.natural + w) + 2j * linear.damping * linear.natural * w
-        modal = force[:, others] @ linear.ports.T / np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
+        h = 1.0 + np.flatnonzero(others).astype(np.float64)
         size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
-        answer = np.abs(modal @ linear.dofs)
+        answer = np.abs(self.system.linear.answers(h, z[:, -1], force[:, others]))
         share = np.zeros((len(z), self.highest))
         share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
         return share

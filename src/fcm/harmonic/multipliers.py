@@ -39,9 +39,7 @@ class Multipliers:
         contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
-        far = np.zeros(linear.natural.size, dtype=bool)
-        if far.size > FEW:
-            far = linear.natural > highest * max(FAR, FURTHER * max(harmonics))
+        far = far_above(linear.natural, highest, harmonics)
         soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
         stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
@@ -52,13 +50,21 @@ class Multipliers:
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
-        return self._values(self.fine, z[-1]) if self.fine.sequence.look(self.finer.x) else None
+        return self._values(self.fine, z[-1]) if self.see(self.fine.sequence, self.finer.x) else None
+
+    def see(self, sequence: Sequence, x: FloatArray) -> bool:
+        """Let a sequence look at the motion x; false where a number is not finite."""
+        return bool(sequence.look(x))
+
+    def of_period(self, values: list[complex]) -> list[complex]:
+        """The multipliers of a period from the eigenvalues of what the monodromy follows."""
+        return values
 
     def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
         """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
         fine, plain, omega = self.fine.sequence, self.plain.sequence, float(z[-1])
         self.finer.at(z)
-        if not (plain.look(z) and fine.look(self.finer.x)):
+        if not (self.see(plain, z) and self.see(fine, self.finer.x)):
             return UNKNOWN
         if plain.moving + plain.held + fine.moving + fine.held == 0:
             return PASSIVE
@@ -86,7 +92,7 @@ class Multipliers:
             found = np.linalg.eigvals(matrix)
         except np.linalg.LinAlgError:
             return None
-        values: list[complex] = found.astype(np.complex128).tolist()
+        values = self.of_period(found.astype(np.complex128).tolist())
         for _ in range(2 * self.adrift):
             nearest = min(values, key=_from_one)
             if _from_one(nearest) < NEUTRAL:
@@ -97,14 +103,31 @@ class Multipliers:
         """With the sliders that an extreme of a limit holds left where they are."""
         sequence = self.fine.sequence
         sequence.yielding = False
-        sequence.look(self.finer.x)
+        self.see(sequence, self.finer.x)
         values = self._values(self.fine, omega) if sequence.moving else []
         sequence.yielding = True
         return UNKNOWN if values is None else Spectrum.of(values).verdict()
 
 
+def far_above(natural: FloatArray, highest: float, harmonics: list[int]) -> npt.NDArray[np.bool_]:
+    """Which of many modes are so far above the excitation that they follow without delay."""
+    if natural.size <= FEW:
+        return np.zeros(natural.size, dtype=bool)
+    far: npt.NDArray[np.bool_] = natural > highest * max(FAR, FURTHER * max(harmonics))
+    return far
+
+
 def _from_one(value: complex) -> float:
     return abs(value - 1.0)
+
+
+def multipliers_of(system: System, highest: float) -> Multipliers:
+    """The workspace for a system, be it a structure or a sector of a ring."""
+    if system.scene.ring is None:
+        return Multipliers(system, highest)
+    from fcm.harmonic.ring_multipliers import RingMultipliers
+
+    return RingMultipliers(system, highest)
 
 
 def multipliers(system: System, z: FloatArray) -> ComplexArray:
@@ -138,5 +161,5 @@ def multipliers(system: System, z: FloatArray) -> ComplexArray:
     >>> abs(multipliers(system, z)).max().round(2)
     np.float64(0.88)
     """
-    values = Multipliers(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
+    values = multipliers_of(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
     return np.array(sorted(values or [], key=abs, reverse=True), dtype=np.complex128)

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Between, Mark, Path
-from fcm.harmonic.multipliers import Multipliers, multipliers
+from fcm.harmonic.multipliers import multipliers, multipliers_of
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -88,7 +88,7 @@ class _Along:
         self.system, self.path = system, path
         self.verdicts: dict[int, Verdict] = {}
         self.evaluations = 0
-        self.multipliers = Multipliers(system, float(path.parameter.max(initial=0.0)))
+        self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
         self.fold = (path.mark & Mark.FOLD) != 0
 
     def run(self) -> Stability:

@@ -150,10 +150,8 @@ def _motions(system: System, x: FloatArray) -> Iterator[tuple[float, tuple[float
 def resonances(system: System) -> list[float]:
     """Natural frequencies within the range, with all contacts stuck and with all open, in order."""
     low, high = system.scene.frequency_range
-    linear = system.linear
     found: set[float] = set()
     for stuck in (True, False):
-        stiffness = np.diag(linear.natural**2) + (linear.ports * system.springs(stuck)) @ linear.ports.T
-        natural = np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0)) * (1.0 + BESIDE)
+        natural = system.linear.stiffened(system.springs(stuck)) * (1.0 + BESIDE)
         found.update(float(w) for w in natural if low < w < high)
     return sorted(found)

@@ -23,7 +23,10 @@ from fcm.harmonic.balance import Balance
 from fcm.harmonic.record import Record
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray, Force
-from fcm.structure.linear import linear_of
+from fcm.structure.linear import Linear, linear_of
+from fcm.structure.receptance import Receptance
+from fcm.structure.ring import RingLinear, Wave
+from fcm.structure.travelling import TravellingReceptance
 
 STIFF = 1e4  # k |G| of a contact from which digits are counted
 EPS = 2.2e-16
@@ -48,6 +51,7 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     """Points with the digits that can be kept, and the relative rounding of the amplitudes (point, dof).
 
     Points of a structure whose contacts are not stiff stay as they are; their rounding is not looked at: 0.
+    Of a sector of a ring it is told what digits are lost.
     """
     rounding = np.zeros_like(points.amplitude)
     balance, springs = system.balance(), system.springs(stuck=True)
@@ -136,9 +140,9 @@ def _point(balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces
     """A point with the digits that can be kept."""
     balance.evaluate(z)
     G, held = _receptance(balance), _held(balance, springs)
-    if held is None or not np.linalg.cond(G) < DEPENDENT:
-        return _as_balanced(balance, z, G, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
+    if held is None or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
+        return _as_balanced(balance, linear, G, springs)
     compliance = np.asarray(seen.c_re)[seen.driven] + 1j * np.asarray(seen.c_im)[seen.driven]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
@@ -155,8 +159,8 @@ def _point(balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces
     )
 
 
-def _as_balanced(balance: Balance, z: FloatArray, G: ComplexArray, springs: FloatArray) -> Digits:
-    """A point as it is; its rounding from what its equations are summed of."""
+def _as_balanced(balance: Balance, linear: Linear, G: ComplexArray, springs: FloatArray) -> Digits:
+    """The point evaluated last as it is; its rounding from what its equations are summed of."""
     seen, n, at = balance.seen, balance.unknowns, _places(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
@@ -165,10 +169,15 @@ def _as_balanced(balance: Balance, z: FloatArray, G: ComplexArray, springs: Floa
     terms[at + 1] = terms[at]
     off = np.abs(np.linalg.inv(np.asarray(balance.jacobian)[:, :n])) @ (ROUNDINGS * EPS * terms)
     ports = np.hypot(off[at], off[at + 1])
-    compliance = np.hypot(np.asarray(seen.c_re)[seen.driven], np.asarray(seen.c_im)[seen.driven])
-    shapes, external = np.abs(seen.shapes), np.hypot(seen.force_re, seen.force_im)
+    modes: Receptance = seen
+    met: Linear | Wave = linear
+    j = seen.driven
+    if isinstance(seen, TravellingReceptance) and isinstance(linear, RingLinear):
+        modes, j, met = seen.waves[j], 0, linear.wave(1)
+    compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
+    shapes, external = np.abs(met.ports), np.hypot(modes.force_re, modes.force_im)
     on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
-    return Digits(z, None, ports, (compliance * on_modes) @ np.abs(balance.shown.shapes))
+    return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
 
 
 def _places(balance: Balance) -> npt.NDArray[np.intp]:

@@ -16,8 +16,12 @@ from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
 from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.single import SingleHarmonic
+from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import Linear, linear_of
+from fcm.structure.receptance import Receptance
+from fcm.structure.ring import RingLinear
+from fcm.structure.travelling import TravellingReceptance
 from fcm.table.lookup import Table
 
 
@@ -57,8 +61,7 @@ class System:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
         seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
-        shown = Displacements(seen, self.linear)
-        linear = self.linear
+        shown, linear = _displacements(self.linear, seen), self.linear
         balance = Balance(seen, self.laws(), shown, linear.counted, high - low, linear.flexibility)
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
@@ -79,3 +82,10 @@ class System:
         """Stiffnesses of all contacts, (port,): all stuck, or all open."""
         k = [k for c in self.scene.contacts for k in (c.k_u if c.mu > 0.0 else 0.0, c.k_v)]
         return np.array(k) * float(stuck)
+
+
+def _displacements(linear: Linear, seen: Receptance) -> Displacements:
+    """What is reported of the structure that a receptance is of."""
+    if not (isinstance(linear, RingLinear) and isinstance(seen, TravellingReceptance)):
+        return Displacements(seen, linear)
+    return TravellingDisplacements(seen, linear, [linear.wave(int(h)).dofs for h in seen.harmonics])

@@ -77,6 +77,7 @@ def respond(
     >>> data.fold_frequency.values.round(4).tolist()
     [[1.2388, 1.1875]]
     """
+    from fcm.response.around import check_no_ring
     from fcm.response.output import to_dataset
     from fcm.response.visible import check_solvable, visible
 
@@ -89,6 +90,8 @@ def respond(
         scene = replace(scene, max_step=max_step, curves=curves)
     if sensitivity and method == "exact":
         raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
+    if sensitivity:
+        check_no_ring(scene, "sensitivities")
     place = None if executor is None else place_of(executor)
     response = _curves(scene, method, at, harmonics, accuracy, place)
     if sensitivity:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from fcm.scene.model import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
+SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,7 @@ def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> li
     >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found]
     [('up', 3.0, [5.0]), ('down', 2.0, [2.0])]
     """
+    frequency, amplitude, stable = _once(frequency, amplitude, stable)
     known = np.flatnonzero(np.isfinite(frequency))
     if not stable[known].any():  # no motion that could be lost
         return []
@@ -37,6 +39,16 @@ def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> li
     return _sweep(frequency, amplitude, stable, int(first), "up") + _sweep(
         frequency, amplitude, stable, int(last), "down"
     )
+
+
+def _once(
+    frequency: FloatArray, amplitude: FloatArray, stable: BoolArray
+) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """The points without those that are there twice, as a peak at a corner is."""
+    again = np.diff(frequency) == 0.0
+    again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=SAME, atol=0.0).all(axis=1)
+    kept = np.concatenate((np.ones(min(frequency.size, 1), dtype=bool), ~again))
+    return frequency[kept], amplitude[kept], stable[kept]
 
 
 def _sweep(

@@ -17,8 +17,9 @@ from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
+from fcm.response.around import check_modes
 from fcm.response.result import Curve, Peak, Response
-from fcm.response.trace import ResponseError, pick, wanted_of
+from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
 
@@ -54,6 +55,7 @@ def trace_levels(
         scene, 1 if harmonics is None and scene.harmonics is None else harmonics, None
     ).harmonics
     assert chosen is not None
+    check_modes(scene, Wanted(chosen))
     curves = [
         _level(curve, chosen, frequency * UNIT[scene.frequency_unit], span)
         for curve in scene.each_curve()

@@ -27,9 +27,7 @@ def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
 
 def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
     """Natural frequencies with springs (2 contacts,) for contacts."""
-    linear = linear_of(scene)
-    square = np.linalg.eigvalsh(np.diag(linear.natural**2) + (linear.ports * springs) @ linear.ports.T)
-    return np.asarray(np.sqrt(np.maximum(square, 0.0)), dtype=np.float64)
+    return linear_of(scene).stiffened(springs)
 
 
 def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> ComplexArray:

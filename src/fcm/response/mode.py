@@ -13,6 +13,7 @@ from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops, states
 from fcm.harmonic.system import System
+from fcm.response.around import check_no_ring
 from fcm.response.result import Curve, NonlinearMode, Resonance, Response
 from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
 from fcm.scene.model import FloatArray, Scene
@@ -72,8 +73,7 @@ def check_free(scene: Scene) -> None:
     """Raise ResponseError for scenes of which no nonlinear mode is computed."""
     if any(curve.loads for curve in scene.each_curve()):
         raise ResponseError(f"{scene.name}: load: nonlinear modes under static loads are not computed")
-    if getattr(scene, "ring", None) is not None:
-        raise ResponseError(f"{scene.name}: cyclic: nonlinear modes of a ring of sectors are not computed")
+    check_no_ring(scene, "nonlinear modes")
 
 
 def _curve(

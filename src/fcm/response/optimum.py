@@ -11,6 +11,7 @@ import numpy as np
 
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
+from fcm.response.around import check_no_ring
 from fcm.response.result import Response
 from fcm.response.sweep import trace
 from fcm.response.trace import ResponseError, wanted_of
@@ -55,6 +56,7 @@ def optimise(
     """
     aim = scene.optimum
     assert aim is not None
+    check_no_ring(scene, "optima")
     begin = time.perf_counter()
     numbers = [number for key in aim.vary if (number := number_of(scene, key)) is not None]
     free = scene

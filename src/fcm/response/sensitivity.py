@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.sensitivity import Kind, Sensitivities, sensitivities
+from fcm.response.around import check_no_ring
 from fcm.response.put_back import unknowns
 from fcm.response.result import Curve, Response
-from fcm.response.trace import ResponseError
 from fcm.run import Progress
 from fcm.scene.model import FloatArray, Scene
 
@@ -21,8 +21,7 @@ REMARKS = {
 
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
     """Give every curve that has peaks their sensitivities; the scene is that of the response."""
-    if getattr(scene, "ring", None) is not None:
-        raise ResponseError(f"{scene.name}: cyclic: sensitivities of a ring of sectors are not computed")
+    check_no_ring(scene, "sensitivities")
     scenes = scene.each_curve() if response.curves else ()
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
         if progress is not None:

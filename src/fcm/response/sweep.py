@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from fcm.response import sentences
+from fcm.response.around import check_modes, unknown
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
 from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
@@ -87,9 +88,10 @@ def trace(
     if not scene.has_range:
         raise ResponseError("the scene has no [response] with frequency = [from, to], so no curve to trace")
     begin = time.perf_counter()
+    wanted = wanted_of(scene, harmonics, accuracy)
+    check_modes(scene, wanted)
     with checkpoint_of(keep, resume) as checkpoint:
         curves = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
-        wanted = wanted_of(scene, harmonics, accuracy)
         response = _traced(_Sweep(scene, method, table, wanted, peaks_only, curves), tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
@@ -104,7 +106,10 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
     highest = max(sweep.wanted.harmonics or (HIGHEST_EXPECTED,))
-    lighter = keep_all(curves) if tolerance is None else leave_out(curves, tolerance, highest)
+    if tolerance is None or sweep.scene.ring is not None:
+        lighter = keep_all(curves)
+    else:
+        lighter = leave_out(curves, tolerance, highest)
     response, said = sweep.run(lighter, part(progress, 0.0, FIRST)), list(lighter.sentences)
     if lighter.above is not None and tolerance is not None:
         shift = checked(response, lighter)
@@ -116,7 +121,7 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     response = restored(response, lighter)
     if sweep.table_idle:
         said.append("the table: no contact needs it (no effect)")
-    response.left_out = [*said, *sentences.on_means(lighter)]
+    response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.wanted)]
     return response
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
+from fcm.response.around import check_no_ring
 from fcm.response.result import Response
 from fcm.response.trace import ResponseError, Wanted, wanted_of
 from fcm.response.tracked import TrackedCurve, Tracking
@@ -80,6 +81,7 @@ def track(
 
 def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     low, high = span
+    check_no_ring(scene, "tracked points")
     if not scene.has_range:
         raise ResponseError("the scene has no range of frequencies; give [response] frequency = [from, to]")
     for end in span:

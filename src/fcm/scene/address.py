@@ -119,6 +119,8 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
         if values is not None:
             yield f"modal.{key}", ("modal", key)
             yield from ((f"modal.{key}.{index}", ("modal", key, index)) for index in range(len(values)))
+    if parts.get("cyclic"):
+        yield "cyclic.engine_order", ("cyclic", 0, "engine_order")
     for draft in parts["base"]:
         yield from ((f"base.{key}", ("base", 0, key)) for key in ("acceleration", "phase") if key in draft)
     for kind, keys in NUMBERS.items():
@@ -128,7 +130,7 @@ def _numbers(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
 
 def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
     """Key paths of arrays over the dofs."""
-    shapes = parts["modal"]["shapes"]
+    shapes = None if parts.get("cyclic") else parts["modal"]["shapes"]
     for index in range(0 if shapes is None else len(shapes)):
         yield f"modal.shapes.{index}", ("modal", "shapes", index)
     for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",)), ("load", ("dof",))):

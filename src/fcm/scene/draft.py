@@ -10,11 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.address import Address, Addresses, overlap, replaced
+from fcm.scene.cyclic import ring_of
 from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.excitation import DIRECTIONS, base_force, load_of
-from fcm.scene.modal import modal_of
-from fcm.scene.model import Force, Scene
+from fcm.scene.modal import UNITS, modal_of
+from fcm.scene.model import Force, Modal, Scene
 from fcm.scene.parts import contact_of, force_of
+from fcm.scene.ring import Ring
 from fcm.scene.rules import RULES, Rule
 from fcm.scene.sweep import Swept, combinations, field_of
 
@@ -39,7 +41,10 @@ class Draft:
             draft = replaced(draft, address, value)
         changed: dict[str, Any] = {}
         if draft["modal"] is not parts["modal"]:
-            changed["modal"] = modal_of(draft["modal"], scene.frequency_unit)
+            changed["modal"], changed["ring"] = modes_of(draft, scene.frequency_unit)
+        elif scene.ring is not None and draft["cyclic"] is not parts["cyclic"]:
+            order = int(draft["cyclic"][0]["engine_order"])
+            changed["ring"] = replace(scene.ring, engine_order=order)
         if draft["contact"] is not parts["contact"]:
             changed["contacts"] = tuple(map(contact_of, draft["contact"]))
         if draft["force"] is not parts["force"] or draft["base"] is not parts["base"]:
@@ -72,9 +77,11 @@ class Draft:
     def at(self, used: npt.NDArray[np.bool_]) -> Draft:
         """The same at some of the degrees of freedom."""
         modal = self.parts["modal"]
+        shapes = modal["shapes"]  # of a sector of a ring on its own, which are the first
         names = tuple(name for name, one in zip(modal["dofs"], used, strict=True) if one)
         parts = self.parts | {
-            "modal": modal | {"dofs": type(modal["dofs"])(names), "shapes": modal["shapes"][:, used]}
+            "modal": modal
+            | {"dofs": type(modal["dofs"])(names), "shapes": shapes[:, used[: shapes.shape[1]]]}
         }
         for table, keys in DIRECTIONS.items():
             parts[table] = [draft | {key: draft[key][used] for key in keys} for draft in parts[table]]
@@ -182,6 +189,13 @@ def _level(parts: Parts, path: str, mistakes: Mistakes) -> Number | None:
         return None
     addresses, weights = zip(*found, strict=True)
     return Number(LEVEL, addresses, weights)
+
+
+def modes_of(parts: Parts, unit: str) -> tuple[Modal, Ring | None]:
+    """The modes, which are those that the mean meets where the scene is a sector of a ring."""
+    if parts["cyclic"]:
+        return ring_of(parts["modal"], parts["cyclic"][0], UNITS[unit])
+    return modal_of(parts["modal"], unit), None
 
 
 def forces_of(parts: Parts) -> tuple[Force, ...]:

@@ -41,6 +41,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "frequency_unit": Key("of all frequencies, also in results", '"rad/s" or "Hz"', '"rad/s"'),
         "modal": Key("the structure by its modes, without the contacts", "[modal]", "[structure]"),
         "structure": Key("the structure by its matrices, without the contacts", "[structure]", "[modal]"),
+        "cyclic": Key("the structure is a sector of a ring, around which a wave travels", "[cyclic]", "none"),
         "contact": Key("the contacts", "[[contact]]", "none"),
         "force": Key("the harmonic forces", "[[force]]", "needed without [base]"),
         "load": Key("static loads", "[[load]]", "none"),
@@ -60,6 +61,10 @@ TABLES: dict[str, dict[str, Key]] = {
         "damping": Key("damping ratios", RULES["damping"], _GIVEN),
         "shapes": Key("shapes[i][j]: mode i at dofs[j]", "list of lists", _GIVEN),
         "participation": Key("phi^T M d, d the direction of [base]", RULES["participation"], "none"),
+        "nodal_diameter": Key("of each mode, with [cyclic]; shapes may have pairs [re, im]",
+                              RULES["nodal_diameter"], "none"),
+        "pairs": Key("whether modes are cosines and sines of the whole ring, with [cyclic]",
+                     "true or false", "false"),
     },
     "structure": {
         "dofs": Key("names of the rows", "list of names, or a text file", "file"),
@@ -69,11 +74,21 @@ TABLES: dict[str, dict[str, Key]] = {
         "damping": Key("of every mode, in proportion, or a matrix", "ratio, table, or matrix as above"),
         "modes": Key("how many are kept", "whole number", "all up to 3 times the range's end"),
         "flexibility": Key("whether that of the other modes is kept", "true or false", "true"),
+        "coupling": Key("to the next sector, with [cyclic]", "table", "none"),
+    },
+    "structure.coupling": {
+        "mass": Key("block of this sector's rows and the next one's columns", _MATRIX, "none"),
+        "stiffness": Key("block of this sector's rows and the next one's columns", _MATRIX, "none"),
     },
     "structure.damping": {
         "mass": Key("factor of the mass matrix", RULES["damping"], "0"),
         "stiffness": Key("factor of the stiffness matrix", RULES["damping"], "0"),
         "loss_factor": Key("hysteretic damping", RULES["damping"], "none"),
+    },
+    "cyclic": {
+        "sectors": Key("how many there are", RULES["sectors"]),
+        "engine_order": Key("of the forces: that on sector k is 2 pi k engine_order / sectors ahead",
+                            RULES["engine_order"]),
     },
     "contact": {
         "name": Key("of the contact", "string"),

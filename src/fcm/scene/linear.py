@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.scene.cyclic import own_name, ring_names
 from fcm.scene.errors import quoted
 from fcm.scene.excitation import BASE, DIRECTIONS, distributions, with_displacements
 from fcm.scene.files import Files
 from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.model import FloatArray
 from fcm.scene.names import Names, RowNames
+from fcm.scene.ring import NEXT
 from fcm.scene.section import Section
 from fcm.structure.rigid_body import rigid_by_gap
 
@@ -26,15 +28,23 @@ OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everyth
 Parts = dict[str, Any]  # drafts of modal, contact, force, ...
 
 
-def read_linear(top: Section, files: Files, unit: str) -> tuple[Parts, Matrices | None]:
-    """The draft of the modal table, and the matrices that it is still to be made of."""
+def read_linear(top: Section, files: Files, unit: str, cyclic: list[Parts]) -> tuple[Parts, Matrices | None]:
+    """The draft of the modal table, and the matrices that it is still to be made of.
+
+    Of a ring's sector, the degrees of freedom of the next are there as well.
+    """
     if "structure" not in top.data:
-        return read_modal(top, files, unit), None
+        modal = read_modal(top, files, unit, cyclic)
+        return (modal | {"dofs": ring_names(top, modal["dofs"])} if cyclic else modal), None
     if "modal" in top.data:
         top.wrong("", "has both [modal] and [structure]; give one of them")
     from fcm.scene.structure_table import read_structure  # scipy, which other scenes do without
 
     dofs, matrices = read_structure(top, files)
+    if cyclic:
+        dofs = ring_names(top, dofs)
+    elif matrices is not None and matrices.coupling is not None:
+        top.wrong("structure.coupling", "couples the sectors of a ring: give [cyclic]")
     return dict.fromkeys(KEYS) | {"dofs": dofs}, matrices
 
 
@@ -44,6 +54,8 @@ def with_modes(
     """The parts with the modes of matrices at all rows, and what is to be said of them."""
     from fcm.scene.reduction import modal_of_matrices
 
+    if parts["cyclic"]:
+        return _of_ring(top, parts, matrices, output, ends, unit)
     dofs = parts["modal"]["dofs"]
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
     only = [dofs.place[name] for name in output]
@@ -55,6 +67,29 @@ def with_modes(
         return parts, notes
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
     columns = {name: shapes.T @ load for name, load in over_rows.items()}
+    return with_displacements(parts | {"modal": draft}, columns), notes
+
+
+def _of_ring(
+    top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
+) -> tuple[Parts, list[str]]:
+    """As `with_modes`, with the modes of every nodal diameter."""
+    from fcm.scene.ring_reduction import modal_of_ring
+
+    dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
+    swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
+    over_rows = distributions(parts, matrices.M)
+    pushed = np.concatenate((_columns(_directions(parts), len(dofs)), np.eye(len(dofs))[:, swept]), axis=1)
+    distributed = _columns([*over_rows.values()], len(own))
+    only = np.eye(len(own))[:, [own.place[name] for name in output]]
+    sectors = int(parts["cyclic"][0]["sectors"])
+    draft, notes = modal_of_ring(top, matrices, sectors, pushed, distributed, only, ends)
+    if draft is None:
+        return parts, notes
+    of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
+    columns = {name: draft["shapes"] @ load for name, load in over_rows.items()}
+    shapes = np.concatenate((draft["shapes"], of_next), axis=1)
+    draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes}
     return with_displacements(parts | {"modal": draft}, columns), notes
 
 
@@ -106,19 +141,19 @@ def read_output(section: Section, dofs: Names | None) -> list[str]:
 def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]:
     """The degrees of freedom in results: those of contacts and forces and those asked for, or all of few."""
     dofs: Names = parts["modal"]["dofs"]
-    own = [name for name in dofs if not name.startswith(HIDDEN)]
+    own = [name for name in dofs if not name.startswith((HIDDEN, NEXT))]
     if not asked and len(own) <= ALL_REPORTED:
         return tuple(own)
     used = _columns(_directions(parts), len(dofs)).any(axis=1)
-    wanted = {*output, *(dofs[i] for i in np.flatnonzero(used))}
+    wanted = {*output, *(own_name(dofs[i]) for i in np.flatnonzero(used))}
     return tuple(name for name in own if name in wanted)
 
 
 def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Parts:
     """The parts without the rows of matrices that nothing is attached to and that are not reported."""
     dofs: Names = parts["modal"]["dofs"]
-    needed = {*reported, *_swept(top, dofs)}
-    kept = [i for i, name in enumerate(dofs) if name in needed or name.startswith(HIDDEN)]
+    needed = {*reported, *map(own_name, _swept(top, dofs))}
+    kept = [i for i, name in enumerate(dofs) if own_name(name) in needed or name.startswith(HIDDEN)]
     modal = parts["modal"] | {"dofs": RowNames(dofs[i] for i in kept)}
     parts = parts | {"modal": modal | {"shapes": parts["modal"]["shapes"][:, kept]}}
     for kind, keys in DIRECTIONS.items():

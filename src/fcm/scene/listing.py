@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.model import FloatArray, Force, Scene
+from fcm.scene.ring import Ring
 
 ROUNDING = 1e-12  # relative: a displacement this small is none
 SPARSE_ABOVE = 2.0  # times the range's end: modes ought to reach there, or their flexibility be kept
@@ -20,6 +21,8 @@ def listing(scene: Scene) -> dict[str, Any]:
     flexibility along it, phi^2 / (m omega^2) by the sum over all modes; None where rigid-body modes make
     that infinite. `displacement` is phi / sqrt(m), the motion of the mode of mass 1.
     """
+    if scene.ring is not None:
+        return _of_ring(scene, scene.ring)
     modal, directions = scene.modal, _directions(scene)
     motion = {name: modal.shapes @ direction / np.sqrt(modal.mass) for name, direction in directions.items()}
     shares = {name: _shares(modal.frequency, along) for name, along in motion.items()}
@@ -44,6 +47,44 @@ def listing(scene: Scene) -> dict[str, Any]:
         "normalisation": _normalisation(scene),
         "notes": list(scene.notes),
         "warnings": _warnings(scene, directions, motion),
+    }
+
+
+def _of_ring(scene: Scene, ring: Ring) -> dict[str, Any]:
+    """The modes of every nodal diameter; shares are among those of one, displacements magnitudes."""
+    directions = _directions(scene)
+    motion = {name: np.abs(ring.shapes @ direction) for name, direction in directions.items()}
+    order = np.lexsort((ring.frequency, ring.added, ring.diameter))
+    shares: dict[str, dict[int, float | None]] = {name: {} for name in motion}
+    for name, along in motion.items():
+        for number in set(ring.diameter.tolist()):
+            which = np.flatnonzero(ring.diameter == number)
+            part = _shares(ring.frequency[which], along[which])
+            for place, i in enumerate(which.tolist()):
+                shares[name][i] = None if part is None else part[place]
+    modes = [
+        {
+            "mode": number + 1,
+            "nodal_diameter": int(ring.diameter[i]),
+            "kind": "flexibility" if ring.added[i] else "mode" if ring.frequency[i] else "rigid body",
+            "frequency": float(ring.frequency[i] / UNIT[scene.frequency_unit]),
+            "damping": float(ring.damping[i]),
+            "mass": 1.0,
+            "participation": {name: share[i] for name, share in shares.items()},
+            "displacement": {name: float(along[i]) for name, along in motion.items()},
+        }
+        for number, i in enumerate(order.tolist())
+    ]
+    size = np.abs(ring.shapes)
+    idle = [n for n, d in directions.items() if (motion[n] <= ROUNDING * (size @ np.abs(d))).all()]
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "frequency_unit": scene.frequency_unit,
+        "modes": modes,
+        "normalisation": "every modal mass is 1 for each sector",
+        "notes": list(scene.notes),
+        "warnings": [f"{name}: no mode moves along it" for name in idle],
     }
 
 

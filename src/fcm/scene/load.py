@@ -8,7 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from fcm.scene.draft import Draft, forces_of
+from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
+from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, read_base, read_loads
 from fcm.scene.files import LARGEST, Files
@@ -23,7 +24,7 @@ from fcm.scene.linear import (
     without_others,
     without_rounding,
 )
-from fcm.scene.modal import UNITS, modal_of
+from fcm.scene.modal import UNITS
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (
@@ -109,9 +110,11 @@ def scene_from_dict(
     draft = Draft(parts, tuple(swept))
     optimum = read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ()))
     mistakes.raise_if_any()
+    modal, ring = modes_of(parts, unit)
     scene = Scene(
         title=title,
-        modal=modal_of(parts["modal"], unit),
+        modal=modal,
+        ring=ring,
         contacts=tuple(map(contact_of, parts["contact"])),
         forces=forces_of(parts),
         loads=tuple(map(load_of, parts["load"])),
@@ -130,6 +133,7 @@ def scene_from_dict(
         draft=draft,
     )
     scene = replace(scene, curves=tuple(draft.curve(scene, values) for values in combinations(swept)))
+    scene = replace(scene, notes=(*scene.notes, *note_of_stability(scene)))
     _check_curves(scene, mistakes)
     return scene
 
@@ -138,13 +142,16 @@ def _parts(
     top: Section, files: Files, unit: str, response: Section | None, ends: tuple[float, float]
 ) -> tuple[Parts, tuple[str, ...], list[str]]:
     """The drafts of modes, contacts and forces; the degrees of freedom in results; and what is to be said."""
-    modal, matrices = read_linear(top, files, unit)
-    parts: Parts = {"modal": modal}
+    cyclic = read_cyclic(top)
+    modal, matrices = read_linear(top, files, unit, cyclic)
+    parts: Parts = {"modal": modal, "cyclic": cyclic}
     parts["contact"] = read_contacts(top, modal["dofs"])
     parts["force"] = read_forces(top, modal["dofs"])
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
     parts["base"] = read_base(top, modal["dofs"], "structure" in top.data)
-    output = read_output(response, modal["dofs"]) if response is not None else []
+    if cyclic:
+        only_own(top, parts, modal["dofs"])
+    output = read_output(response, own_names(modal["dofs"])) if response is not None else []
     if top.mistakes.count:
         return parts, (), []
     if matrices is not None:
@@ -164,10 +171,10 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
     for curve in scene.each_curve():
         where = ", ".join(f"{key} = {value:g}" for key, value in curve.parameters.items())
         where = f"sweep with {where}" if where else ""
-        if curve.has_range and not _moved(curve):
+        if check_diameters(curve, mistakes, where) and curve.has_range and not _moved(curve):
             mistakes.add(where, "the forces move no mode, so the response is zero")
         masses = curve.modal.mass
-        if masses.max() > MASS_RATIO * masses.min():
+        if masses.size and masses.max() > MASS_RATIO * masses.min():
             low, high = masses.min(), masses.max()
             what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
             mistakes.add(where, f"{what}: beside the light ones nothing is left of the heavy ones")
@@ -180,7 +187,8 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
 def _moved(curve: Scene) -> bool:
     """Whether any force has a component on any mode."""
     pushes: list[FloatArray] = [force.direction for force in curve.forces if force.amplitude]
-    return any((curve.modal.shapes @ push).any() for push in pushes)
+    shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(1)[2]
+    return any((shapes @ push).any() for push in pushes)
 
 
 def _unit(top: Section) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from fcm.scene.cyclic import complex_row, read_diameters, travelling
 from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
@@ -16,14 +18,16 @@ from fcm.scene.names import Names, checked_names
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
 
-KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation")
+KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation", "diameter")
 UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
 
 
-def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
+def read_modal(
+    top: Section, files: Files, unit: str, cyclic: Sequence[Mapping[str, float]]
+) -> dict[str, Any]:
     """Dofs and arrays of the modal table, frequencies in the scene's unit; None for what is mistaken."""
     section = top.table("modal", "a [modal] table with dofs, frequency, damping and shapes")
-    section, notes = _with_file(section, files, unit) if section else (None, [])
+    section, notes = _with_file(section, files, unit, bool(cyclic)) if section else (None, [])
     if section is None:
         return dict.fromkeys(KEYS)
     section.only(*names("modal"))
@@ -32,15 +36,22 @@ def read_modal(top: Section, files: Files, unit: str) -> dict[str, Any]:
     modes = len(frequency) if frequency is not None else None
     if frequency is not None and not modes:
         section.wrong("frequency", "is empty; there must be at least one mode")
-    return {
+    draft = {
         "dofs": dofs,
         "mass": _per_mode(section, "mass", modes, default=1.0),
         "frequency": frequency,
         "damping": _per_mode(section, "damping", modes),
-        "shapes": _shapes(section, dofs, modes),
+        "shapes": _shapes(section, dofs, modes, complex_row if cyclic else Section.numbers),
         "participation": _participation(section, modes),
         "notes": notes,
     }
+    if cyclic:
+        draft["diameter"] = read_diameters(section, modes, cyclic[0]["sectors"])
+        return travelling(section, draft, cyclic[0]["sectors"])
+    for key in ("nodal_diameter", "pairs"):
+        if key in section.data:
+            section.wrong(key, "is of the modes of a ring: give [cyclic] with sectors and engine_order")
+    return draft
 
 
 def modal_of(draft: dict[str, Any], unit: str) -> Modal:
@@ -52,7 +63,7 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     return Modal(dofs=tuple(draft["dofs"]), added=draft.get("added", 0), **arrays)
 
 
-def _with_file(section: Section, files: Files, unit: str) -> tuple[Section | None, list[str]]:
+def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[Section | None, list[str]]:
     """The section with what its file holds; a key given inline takes precedence."""
     if "file" not in section.data:
         return section, []
@@ -62,7 +73,7 @@ def _with_file(section: Section, files: Files, unit: str) -> tuple[Section | Non
             section.wrong("file", "is empty; name a file of modes")
         return None, []
     try:
-        found = read_modal_file(name, files)
+        found = read_modal_file(name, files, waves)
     except DataFileError as error:
         section.wrong("file", str(error))
         return None, []
@@ -101,16 +112,16 @@ def _participation(section: Section, modes: int | None) -> FloatArray | None:
     return _per_mode(section, "participation", modes)
 
 
-def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None) -> FloatArray | None:
-    """The mode shapes, (mode, dof)."""
+def _shapes(section: Section, dofs: tuple[str, ...] | None, modes: int | None, read_row: Any) -> Any:
+    """The mode shapes, (mode, dof), their rows read by section, value and path."""
     if section.missing("shapes", "one list for each mode, one number in it for each of the dofs"):
         return None
     value = section.data["shapes"]
     if not _is_rows(value):
         section.wrong("shapes", f"must be a list of lists, one for each mode, is {kind(value)}")
         return None
-    path, rule = section.at("shapes"), RULES["shapes"]
-    rows = [section.numbers(row, f"{path}[{index}]", rule) for index, row in enumerate(value)]
+    path = section.at("shapes")
+    rows = [read_row(section, row, f"{path}[{index}]", RULES["shapes"]) for index, row in enumerate(value)]
     good = [row for row in rows if row is not None]
     if len(good) < len(rows):
         return None

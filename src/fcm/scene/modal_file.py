@@ -21,13 +21,16 @@ KEYS = {  # of a file, and names that other programs give the same
     "damping": ("zeta", "damping_ratio", "damping_ratios", "modal_damping"),
     "shapes": ("phi", "modes", "mode_shapes", "shape"),
     "participation": (),
+    "nodal_diameter": ("nodal_diameters", "harmonic_index"),
 }
 WANTED = tuple(name for key, others in KEYS.items() for name in (key, *others))
 LARGEST_VALUE = 1e-6  # relative: how near to 1 the largest value of a shape is that was scaled to it
 
 
-def read_modal_file(name: str, files: Files) -> dict[str, Any]:
+def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
     """What a file of modes holds of dofs, mass, frequency, damping and shapes, and "notes" on it.
+
+    waves : whether shapes may be complex, as those of travelling waves are.
 
     A universal file is always in Hz: it has angular_frequency [rad/s] in place of frequency.
     """
@@ -47,7 +50,10 @@ def read_modal_file(name: str, files: Files) -> dict[str, Any]:
         found = _by_keys(found, others, name, notes)
         if ending == ".mat":
             found = {key: _without_matrix(key, value) for key, value in found.items()}
-        return {key: _plain(key, value) for key, value in found.items()} | {"notes": notes}
+        kinds = {"shapes": "iufc" if waves else "iuf"}
+        return {key: _plain(key, value, kinds.get(key, "iuf")) for key, value in found.items()} | {
+            "notes": notes
+        }
 
 
 def note_of_scale(name: str, shapes: Any) -> list[str]:
@@ -91,11 +97,13 @@ def _without_matrix(key: str, array: Any) -> Any:
     return flat[0] if flat.size == 1 and key in ("mass", "damping") else flat
 
 
-def _plain(key: str, value: Any) -> Any:
+def _plain(key: str, value: Any, kinds: str) -> Any:
     """An array of numbers as it is; a single number as a float; names as a list of strings."""
     if key == "dofs":
         return [str(name) for name in np.ravel(np.asarray(value))]
     array = np.asarray(value)
-    if array.dtype.kind not in "iuf":
+    if array.dtype.kind not in kinds:
         raise DataFileError(f"{key} must hold real numbers, is {kind(value)} of {array.dtype}")
+    if array.dtype.kind == "c":
+        return array.astype(np.complex128)
     return float(array) if array.ndim == 0 else array.astype(np.float64)

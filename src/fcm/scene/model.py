@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.scene.ring import Ring, with_own
+
 if TYPE_CHECKING:
     from fcm.scene.draft import Draft
 
@@ -119,6 +121,7 @@ class Scene:
     reported: tuple[str, ...] = ()  # of modal.dofs, those in results; the others carry loads and contacts
     loads: tuple[Load, ...] = ()  # static, beside the forces
     units: tuple[str, str] = ("", "")  # of length and force, for labels; empty where they are not given
+    ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
     optimum: Optimum | None = None
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
@@ -139,6 +142,8 @@ class Scene:
         different = {id(one): one for curve in self.each_curve() for one in curve.directions()}
         for direction in different.values():
             used |= direction != 0.0
+        if self.ring is not None:
+            used = with_own(self.modal.dofs, used)
         if used.all():
             return self
         modals = {id(curve.modal): curve.modal.at(used) for curve in (self, *self.curves)}
@@ -161,7 +166,9 @@ class Scene:
         )
         forces = tuple(replace(one, direction=one.direction[used]) for one in self.forces)
         loads = tuple(replace(one, direction=one.direction[used]) for one in self.loads)
-        return replace(self, modal=modals[id(self.modal)], contacts=contacts, forces=forces, loads=loads)
+        ring = None if self.ring is None else self.ring.at(used)
+        modal = modals[id(self.modal)]
+        return replace(self, modal=modal, ring=ring, contacts=contacts, forces=forces, loads=loads)
 
     def each_curve(self) -> tuple[Scene, ...]:
         """The scenes to trace: those of the sweep, or this one alone."""

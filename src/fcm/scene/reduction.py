@@ -35,7 +35,7 @@ def modal_of_matrices(
     except StructureError as error:
         top.wrong("structure", str(error))
         return None, np.zeros((len(matrices.dofs), 0)), []
-    ratio, said = _damping(matrices, found, loads, outputs, ends)
+    ratio, said = damping_of(matrices, found, loads, outputs, ends)
     draft = {
         "mass": np.ones(found.modes.count),
         "frequency": np.sqrt(found.modes.stiffness),
@@ -70,7 +70,7 @@ def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
     return said
 
 
-def _damping(
+def damping_of(
     matrices: Matrices, found: Reduced, loads: FloatArray, outputs: FloatArray, ends: tuple[float, float]
 ) -> tuple[FloatArray, list[str]]:
     """Damping ratios of the modes, and what the ratios leave out."""
@@ -84,13 +84,13 @@ def _damping(
         said = _undamped(matrices.by_mass, found.rigid)
         return proportional(matrices.by_mass, matrices.by_stiffness, stiffness), said
     modal = projected(matrices.C, found.modes)
-    coefficients = np.diagonal(modal)
+    coefficients = np.diagonal(modal).real
     ratio = ratios(coefficients, stiffness)
     said = _undamped(float(np.abs(coefficients[: found.rigid]).max(initial=0.0)), found.rigid)
     if np.isfinite(ends).all():
         shapes = found.modes.shapes
-        seen = shapes.T @ np.concatenate((loads, outputs), axis=1)
-        effect = coupling_effect(modal, stiffness, shapes.T @ loads, seen, *ends)
+        seen = shapes.conj().T @ np.concatenate((loads, outputs), axis=1)
+        effect = coupling_effect(modal, stiffness, shapes.conj().T @ loads, seen, *ends)
         if effect > WORTH_SAYING:
             said.append(
                 "structure: damping between modes is left out; with it, the response without contacts "

@@ -35,12 +35,14 @@ class Rule:
     low: float = -inf
     high: float = inf
     zero: bool = True  # whether zero itself is allowed
+    whole: bool = False  # whether it must be a whole number
 
     def fault(self, value: float) -> str:
         """What is wrong with the value; empty when nothing is."""
         if not isfinite(value):
             return f"must be finite, is {shown(value)}"
-        if not (self.low <= value <= self.high and (value or self.zero)):
+        right = self.low <= value <= self.high and (value or self.zero)
+        if not right or (self.whole and value != int(value)):
             return f"must be {self.text}, is {shown(value)}"
         if abs(value) > LARGEST:
             return f"{shown(value)} is too large to calculate with (more than {LARGEST:g})"
@@ -55,6 +57,8 @@ class Rule:
             right &= values != 0
         if self.low == 0:
             right &= (values == 0) | (values >= SMALLEST)
+        if self.whole:
+            right &= values == np.rint(values)
         return np.argwhere(~right)
 
 
@@ -119,6 +123,9 @@ RULES = {
     "acceleration": ANY,
     "force": ANY,
     "phase": ANY,
+    "sectors": Rule("a whole number from 2 to 1000", low=2.0, high=1000.0, whole=True),
+    "engine_order": Rule("a whole number from -1000 to 1000", low=-1000.0, high=1000.0, whole=True),
+    "nodal_diameter": Rule("a whole number of at least 0", low=0.0, whole=True),
 }
 
 

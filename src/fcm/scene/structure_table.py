@@ -36,6 +36,15 @@ class Matrices:
     hysteretic: float  # loss factor
     modes: int | None  # how many are kept
     flexibility: bool  # whether that of the others is kept
+    coupling: Coupling | None = None  # to the next sector of a ring
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Blocks of a ring's matrices: this sector's rows, the next one's columns."""
+
+    K: Any
+    M: Any
 
 
 def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices | None]:
@@ -54,12 +63,15 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         _check_symmetric(section, key, matrix, dofs)
     damping = _damping(section, files, rows, dofs)
     modes = _modes(section)
+    coupling = _coupling(section, files, rows)
     keep = section.data.get("flexibility", True)
     if not isinstance(keep, bool):
         section.wrong("flexibility", f"must be true or false, is {kind(keep)}")
     if top.mistakes.count > before or dofs is None:
         return dofs, None
-    return dofs, Matrices(dofs, _symmetric(K), _symmetric(M), modes=modes, flexibility=keep, **damping)
+    return dofs, Matrices(
+        dofs, _symmetric(K), _symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
+    )
 
 
 def _matrix(section: Section, key: str, files: Files) -> Any:
@@ -213,6 +225,29 @@ def _proportional(table: Section) -> dict[str, Any]:
         "by_mass": table.number("mass", NOT_NEGATIVE, default=0.0),
         "by_stiffness": table.number("stiffness", NOT_NEGATIVE, default=0.0),
     }
+
+
+def _coupling(section: Section, files: Files, rows: int | None) -> Coupling | None:
+    """The blocks to the next sector; None where there are none, or after a mistake."""
+    if "coupling" not in section.data:
+        return None
+    table = section.table("coupling", "")
+    if table is None:
+        return None
+    table.only(*names("structure.coupling"))
+    if not table.data:
+        table.wrong("", "is empty; give { stiffness = } or { mass = , stiffness = }")
+        return None
+    K, M = (_block(table, key, files, rows) for key in ("stiffness", "mass"))
+    return Coupling(K, M)
+
+
+def _block(table: Section, key: str, files: Files, rows: int | None) -> Any:
+    """A block to the next sector, zero where it is not given."""
+    block = matrix_of(table, key, table.data[key], files) if key in table.data else None
+    if block is not None and rows is not None and block.shape[0] != rows:
+        table.wrong(key, f"has {block.shape[0]} rows, but the stiffness has {rows}")
+    return scipy.sparse.csc_array((rows or 1, rows or 1)) if block is None else block
 
 
 def _modes(section: Section) -> int | None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from fcm.motion.errors import SimulationError
+from fcm.response.around import refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
 from fcm.response.result import INTERRUPTED, Curve, Response
@@ -67,6 +68,7 @@ def trace_exact(
     >>> [round(fold, 6) for fold in response.curves[0].folds]
     [1.239829, 1.193559]
     """
+    refuse_ring(scene, "the exact motion")
     begin, scenes, frequencies = time.perf_counter(), scene.each_curve(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
         sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)

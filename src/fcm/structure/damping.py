@@ -27,7 +27,7 @@ def proportional(by_mass: float, by_stiffness: float, stiffness: FloatArray) -> 
 
 def projected(C: Matrix, modes: Modes) -> FloatArray:
     """The damping matrix in modal coordinates, (mode, mode)."""
-    matrix: FloatArray = modes.shapes.T @ (C @ modes.shapes)
+    matrix: FloatArray = modes.shapes.conj().T @ (C @ modes.shapes)
     return matrix
 
 
@@ -44,8 +44,8 @@ def coupling_effect(
     worst = 0.0
     for omega in (low, *inside.tolist(), high):
         undamped = np.diag(stiffness - omega**2).astype(np.complex128)
-        whole = seen.T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
-        alone = seen.T @ (pushes / (np.diagonal(undamped) + 1j * omega * np.diagonal(modal))[:, None])
+        whole = seen.conj().T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
+        alone = seen.conj().T @ (pushes / (np.diagonal(undamped) + 1j * omega * np.diagonal(modal))[:, None])
         size = np.abs(whole).max()
         worst = max(worst, float(np.abs(whole - alone).max() / size) if size else 0.0)
     return worst

@@ -1,4 +1,4 @@
-"""Normal modes of a structure given by its stiffness and mass matrices.
+"""Normal modes of a structure given by its stiffness and mass matrices, symmetric or Hermitian.
 
 K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s):
 K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes are the
@@ -58,7 +58,7 @@ class System:
 
 def system_of(K: Matrix, M: Matrix) -> System:
     """Factorise K - s M; StructureError where the matrices are no stiffness and mass."""
-    stiff, heavy = K.diagonal(), M.diagonal()
+    stiff, heavy = K.diagonal().real, M.diagonal().real
     if not (heavy > 0.0).any():
         raise StructureError("the mass has no entry greater than 0 on its diagonal")
     with np.errstate(over="ignore"):
@@ -92,7 +92,7 @@ def _factor(matrix: Matrix, singular: str) -> Any:
 def _negative(factor: Any) -> int | None:
     """How many eigenvalues are negative (Sylvester's law of inertia); None if rows were exchanged."""
     exchanged = (factor.perm_r != factor.perm_c).any()
-    return None if exchanged else int((factor.U.diagonal() < 0.0).sum())
+    return None if exchanged else int((factor.U.diagonal().real < 0.0).sum())
 
 
 def modes_of(system: System, count: int) -> Modes:
@@ -101,9 +101,11 @@ def modes_of(system: System, count: int) -> Modes:
     if rows <= DENSE or count > rows // 3:
         shapes = _all(system)
     else:
-        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=np.float64)
+        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=system.K.dtype)
         start = np.random.default_rng(0).standard_normal(rows)  # the same answer every time
         _, shapes = eigsh(system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start)
+        if np.iscomplexobj(shapes):  # those of close frequencies are not orthogonal to each other
+            shapes = _apart(system, shapes)
     shapes = shapes / np.sqrt(_energy(system.M, shapes))
     stiffness = _energy(system.K, shapes)
     order = np.argsort(stiffness)[:count]
@@ -119,9 +121,16 @@ def _all(system: System) -> FloatArray:
     return found
 
 
+def _apart(system: System, shapes: FloatArray) -> FloatArray:
+    """The modes within the space of some shapes."""
+    left = shapes.conj().T
+    found: FloatArray = shapes @ scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
+    return found
+
+
 def _energy(matrix: Matrix, shapes: FloatArray) -> FloatArray:
-    """phi^T A phi of each shape."""
-    energy: FloatArray = np.einsum("ij,ij->j", shapes, matrix @ shapes)
+    """phi^H A phi of each shape."""
+    energy: FloatArray = np.einsum("ij,ij->j", shapes.conj(), matrix @ shapes).real
     return energy
 
 

@@ -64,38 +64,38 @@ def error_bound(
     if omega**2 >= beyond:
         return np.inf
     outer = _without(system, kept, loads)
-    answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.T @ outer)
+    answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.conj().T @ outer)
     residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
     residual = _without(system, kept, residual)
-    error = np.einsum("ij,ij->j", residual, _orthogonal(system, kept, system.solve(residual)))
+    error = np.einsum("ij,ij->j", residual.conj(), _orthogonal(system, kept, system.solve(residual)))
     return float((np.abs(error) / (1.0 - omega**2 / beyond) / static_receptance(system, kept, loads)).max())
 
 
 def static_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
     """Displacement of each load along itself, at rest, without the rigid-body modes."""
     outer = _without(system, kept, loads)
-    rest = np.einsum("ij,ij->j", outer, _orthogonal(system, kept, system.solve(outer)))
+    rest = np.einsum("ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))).real
     elastic = kept.stiffness > -system.shift
-    on_modes = kept.shapes[:, elastic].T @ loads
+    on_modes = np.abs(kept.shapes[:, elastic].conj().T @ loads)
     total: FloatArray = rest + (on_modes**2 / kept.stiffness[elastic, None]).sum(axis=0)
     return np.where(total > 0.0, total, 1.0)
 
 
 def _without(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
     """Loads less the part that pushes the kept modes."""
-    outer: FloatArray = loads - system.M @ (kept.shapes @ (kept.shapes.T @ loads))
+    outer: FloatArray = loads - system.M @ (kept.shapes @ (kept.shapes.conj().T @ loads))
     return outer
 
 
 def _orthogonal(system: System, kept: Modes, displacements: FloatArray) -> FloatArray:
     """Displacements less their part in the kept modes."""
-    part: FloatArray = displacements - kept.shapes @ (kept.shapes.T @ (system.M @ displacements))
+    part: FloatArray = displacements - kept.shapes @ (kept.shapes.conj().T @ (system.M @ displacements))
     return part
 
 
 def _unit(columns: FloatArray) -> FloatArray:
     """Columns of length 1; those of length 0 left out."""
-    size = np.sqrt((columns * columns).sum(axis=0))
+    size = np.linalg.norm(columns, axis=0)
     unit: FloatArray = columns[:, size > 0.0] / size[size > 0.0]
     return unit
 
@@ -104,13 +104,13 @@ def _galerkin(system: System, basis: FloatArray) -> Modes:
     """The modes within a space of displacements; what is nearly a combination of others is left out."""
     if not basis.shape[1]:
         return Modes(np.zeros(0), basis)
-    stiffness = basis.T @ (system.K @ basis)
-    unit = 1.0 / np.sqrt(np.diagonal(stiffness))
+    stiffness = basis.conj().T @ (system.K @ basis)
+    unit = 1.0 / np.sqrt(np.diagonal(stiffness).real)
     value, vector = scipy.linalg.eigh(stiffness * unit * unit[:, None])
     good = value > INDEPENDENT * value.max()
     basis = basis @ ((unit[:, None] * vector[:, good]) / np.sqrt(value[good]))  # of stiffness 1
-    mass, turn = scipy.linalg.eigh(basis.T @ (system.M @ basis))
+    mass, turn = scipy.linalg.eigh(basis.conj().T @ (system.M @ basis))
     heavy = mass > INDEPENDENT * mass.max(initial=0.0)
     # in descending order of mass: in ascending order of frequency
     shapes = (basis @ turn[:, heavy] / np.sqrt(mass[heavy]))[:, ::-1]
-    return Modes(np.einsum("ij,ij->j", shapes, system.K @ shapes), shapes)
+    return Modes(np.einsum("ij,ij->j", shapes.conj(), system.K @ shapes).real, shapes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,8 @@ from fcm.structure.loads import loads_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.rigid import settled
 
+ComplexArray = npt.NDArray[np.complex128]
+LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 ROUNDING = 1e-12  # relative: shapes this near are the same
 MOST = 10.0  # times a shape, of those that it is combined from
 TURN = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
@@ -26,8 +28,8 @@ class Linear:
     damping: FloatArray  # (mode,) ratio
     ports: FloatArray  # (mode, port)
     dofs: FloatArray  # (mode, dof)
-    force: npt.NDArray[np.complex128]  # (mode,) of x = Re(X exp(i omega t))
-    square: npt.NDArray[np.complex128]  # (mode,) times omega^2, beside the force
+    force: ComplexArray  # (mode,) of x = Re(X exp(i omega t))
+    square: ComplexArray  # (mode,) times omega^2, beside the force
     load: FloatArray  # (mode,) static
     flexibility: FloatArray  # (mode, mode) displacements under mean forces
     counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
@@ -51,20 +53,8 @@ class Linear:
 
     @cached_property
     def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
-        """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
-
-        A combination of several ports is one only where they do not nearly cancel.
-        """
-        ports, dofs = self.ports, self.dofs
-        shares = np.zeros((ports.shape[1], dofs.shape[1]))
-        if ports.size:
-            shares[:] = np.linalg.lstsq(ports, dofs, rcond=1e-10)[0]
-        shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
-        size = np.abs(dofs).max(axis=0, initial=0.0)
-        off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
-        large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > MOST * size
-        apart = (off > ROUNDING * size) | large | (size == 0.0)
-        return np.ascontiguousarray(shares), apart.astype(np.intc)
+        """As `attached_to`, of the degrees of freedom."""
+        return attached_to(self.ports, self.dofs)
 
     def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
         """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
@@ -77,18 +67,61 @@ class Linear:
     def _fundamental(self) -> Receptance:
         return self.receptance(np.ones(1))
 
+    def answers(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
+        """Displacements (point, harmonic, dof) that forces on the ports (point, harmonic, port) make."""
+        modal = force @ self.ports.T
+        return amplitudes(self.natural, self.damping, omega, harmonics, modal) @ self.dofs
+
+    def stiffened(self, springs: FloatArray) -> FloatArray:
+        """Natural frequencies (mode,) [rad/s] with springs (port,) for contacts."""
+        return with_springs(self.natural, self.ports, springs)
+
+
+def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.NDArray[np.intc]]:
+    """Which combination of ports (port, dof) each degree of freedom is, and whether it is none (dof,).
+
+    Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
+    nearly cancel.
+    """
+    shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
+    if ports.size:
+        shares = np.asarray(np.linalg.lstsq(ports, dofs, rcond=1e-10)[0], dtype=np.float64)
+    shares[np.abs(shares) < ROUNDING * np.abs(shares).max(axis=0, initial=1e-300)] = 0.0
+    size = np.abs(dofs).max(axis=0, initial=0.0)
+    off = np.abs(ports @ shares - dofs).max(axis=0, initial=0.0)
+    large = np.abs(ports).max(axis=0, initial=0.0) @ np.abs(shares) > MOST * size
+    apart = (off > ROUNDING * size) | large | (size == 0.0)
+    return np.ascontiguousarray(shares), apart.astype(np.intc)
+
+
+def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray) -> FloatArray:
+    """Natural frequencies of modes with springs (port,) on their ports (mode, port), in ascending order."""
+    stiffness = np.diag(natural**2) + (ports.conj() * springs) @ ports.T
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0)), dtype=np.float64)
+
+
+def amplitudes(
+    natural: FloatArray, damping: FloatArray, omega: FloatArray, harmonics: FloatArray, force: ComplexArray
+) -> ComplexArray:
+    """Modal amplitudes (point, harmonic, mode) under modal forces, at frequencies omega (point,)."""
+    w = (omega[:, None] * harmonics)[..., None]
+    dynamic = (natural - w) * (natural + w) + 2j * damping * natural * w
+    found: ComplexArray = force / np.where(dynamic == 0.0, LEAST_DAMPING * w * w, dynamic)
+    return found
+
 
 def linear_of(scene: Scene) -> Linear:
     """The structure of a scene (of one curve)."""
     modal, adrift = settled(scene)
     unit = 1.0 / np.sqrt(modal.mass)[:, None]
     directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
-    ports = modal.shapes @ np.array(directions, dtype=np.float64).reshape(len(directions), len(modal.dofs)).T
+    along = np.array(directions, dtype=np.float64).reshape(len(directions), len(modal.dofs)).T
+    ports = modal.shapes @ along
     loads = loads_of(scene)
     rigid = modal.frequency == 0.0
     k_v = np.array([c.k_v if rigid.any() else 0.0 for c in scene.contacts])
     ports = ports * unit
-    return Linear(
+    linear = Linear(
         natural=modal.frequency,
         damping=modal.damping,
         ports=np.ascontiguousarray(ports),
@@ -100,6 +133,12 @@ def linear_of(scene: Scene) -> Linear:
         counted=k_v,
         adrift=adrift,
     )
+    if scene.ring is None:
+        return linear
+    from fcm.structure.ring import RingLinear
+
+    own = {field.name: getattr(linear, field.name) for field in fields(Linear)}
+    return RingLinear(**own, ring=scene.ring, directions=along, loads=loads)
 
 
 def _flexibility(

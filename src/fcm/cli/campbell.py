@@ -1,0 +1,114 @@
+"""``fcm plot campbell SCENE``: what an engine order meets around a ring of sectors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.drawing import ENDINGS, picture_of, save_picture
+from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.messages import Messages, pass_messages
+
+if TYPE_CHECKING:
+    from fcm.scene.model import Scene
+
+MOST_HARMONICS = 10  # of which it is said what they meet
+
+
+@click.command()
+@click.argument("scene", metavar="SCENE")
+@output_option(
+    "-o", "--output", endings=ENDINGS,
+    help="The picture to write: .png, .svg or .pdf.  [default: SCENE with the ending -campbell.png]",
+)  # fmt: skip
+@click.option("--json", "to_json", is_flag=True, help="Print the numbers; draw only with -o.")
+@largest_file_option
+@pass_messages
+def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool, largest_file: int) -> None:
+    """Draw the natural frequencies of SCENE, a sector of a ring, by nodal diameter (SAFE diagram).
+
+    With its contacts open and stuck, and the engine order over the range of frequencies: bars where its
+    harmonics are, and the lines of all engine orders at the lowest (dotted) and highest (dashed) speed.
+    """
+    from fcm.scene import load_scene
+
+    loaded = load_scene(scene, largest_file=largest_file).in_use()
+    if loaded.ring is None:
+        what = "a ring of sectors, a scene with [cyclic]; of others, fcm plot modes lists the modes"
+        raise click.UsageError(f"{scene}: this diagram is of {what}.")
+    found = numbers(loaded)
+    if to_json:
+        click.echo(json.dumps(found, indent=2, allow_nan=False))
+    for note in loaded.notes:
+        messages.info(note)
+    if not to_json or output is not None:
+        output = picture_of(Path(scene), output, "-campbell.png")
+        save_picture(_picture(found), output)
+        messages.info(f"wrote {output}")
+
+
+def numbers(scene: Scene) -> dict[str, Any]:
+    """The diagram in numbers, frequencies in the scene's unit."""
+    from fcm.structure.diameters import nodal_diameters
+    from fcm.units import in_unit
+
+    ring, unit = scene.ring, scene.frequency_unit
+    assert ring is not None
+    orders = {one.ring.engine_order: one.ring for one in scene.each_curve() if one.ring is not None}
+    span = in_unit(scene.frequency_range, unit).tolist()
+    diameters = [
+        {
+            "nodal_diameter": one.number,
+            "open": in_unit(one.opened, unit).tolist(),
+            "stuck": in_unit(one.stuck, unit).tolist(),
+        }
+        for one in nodal_diameters(scene)
+    ]
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "frequency_unit": unit,
+        "sectors": ring.sectors,
+        "range": span,
+        "engine_orders": [
+            {
+                "engine_order": order,
+                "speeds": [end / abs(order) for end in span] if order else None,
+                "nodal_diameters": [of_order.meets(h) for h in range(MOST_HARMONICS + 1)],
+                "resonances": _resonances(diameters, of_order.meets(1), span),
+            }
+            for order, of_order in orders.items()
+        ],
+        "diameters": diameters,
+    }
+
+
+def _resonances(diameters: list[dict[str, Any]], number: int, span: list[float]) -> dict[str, list[float]]:
+    """Natural frequencies of one diameter within the range."""
+    met = [one for one in diameters if one["nodal_diameter"] == number]
+    low, high = span
+    return {k: [f for one in met for f in one[k] if low <= f <= high] for k in ("open", "stuck")}
+
+
+def _picture(found: dict[str, Any]) -> Any:
+    import numpy as np
+
+    from fcm.plot.campbell import Ring, draw_campbell
+
+    diameters = found["diameters"]
+    opened, stuck = (tuple(np.array(one[state]) for one in diameters) for state in ("open", "stuck"))
+    return draw_campbell(
+        Ring(
+            title=found["title"],
+            sectors=found["sectors"],
+            engine_orders=tuple(one["engine_order"] for one in found["engine_orders"]),
+            span=(found["range"][0], found["range"][1]),
+            unit=found["frequency_unit"],
+            diameters=tuple(one["nodal_diameter"] for one in diameters),
+            opened=opened,
+            stuck=stuck,
+        )
+    )

@@ -1,0 +1,10 @@
+from fcm.harmonic.monodromy cimport Monodromy
+
+cdef class RingMonodromy(Monodromy):
+    cdef double part, start
+    cdef object turn, source
+    cdef int first
+    cdef int[::1] memory
+    cpdef int follow(self, double omega) except -1
+    cdef void widest(self) noexcept
+    cdef int begin(self) except -1

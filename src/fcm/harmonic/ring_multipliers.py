@@ -1,0 +1,157 @@
+r"""Floquet multipliers of a wave that travels around a ring of sectors.
+
+The motion repeats after n sectors, n = sectors / gcd(engine_order, sectors), and so do the disturbances that
+are looked at: with n = sectors these are all that there are. Their growth in the n-th part of a period, seen
+from the wave, is an eigenvalue of `RingMonodromy`; one that is real and above 1 leaves at a fold of the curve
+of travelling waves, another one breaks up the wave, even where it is a real multiplier of the whole period.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.finer import Finer, beyond
+from fcm.harmonic.monodromy import Monodromy
+from fcm.harmonic.multipliers import Multipliers, far_above
+from fcm.harmonic.ring_monodromy import RingMonodromy
+from fcm.harmonic.sequence import Sequence
+from fcm.harmonic.stiffness import Stiffness
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+from fcm.scene.ring import Ring
+from fcm.structure.ring import RingLinear
+
+MOST_NAMED = 8  # diameters in a sentence
+MOST = 600  # disturbances: with more, finding what they grow by takes seconds a point
+
+
+def stability_unknown(system: System, highest: float) -> str:
+    """Why the stability of a system's waves cannot be told; empty if it can."""
+    ring = system.scene.ring
+    assert ring is not None
+    missing = sorted(set(ring.lacking(range(ring.period)).values()))
+    if missing:
+        diameters = ", ".join(map(str, missing[:MOST_NAMED])) + (", ..." if len(missing) > MOST_NAMED else "")
+        return f"there are no modes of nodal diameter {diameters}, which disturbances have"
+    natural = ring.frequency[_places(ring)]
+    near = ~far_above(natural, highest, [int(h) for h in system.harmonics])
+    count = 2 * int(near.sum()) + ring.period * len(system.scene.contacts)
+    if count > MOST:
+        return f"{count} disturbances of {ring.period} sectors are too many; up to {MOST} are looked at"
+    return ""
+
+
+@dataclass(frozen=True)
+class Around:
+    """The modes of n sectors, of mass 1, and how they look from j sectors behind."""
+
+    natural: FloatArray  # (mode,)
+    damping: FloatArray
+    ports: FloatArray  # (mode, port), sector after sector
+    turn: FloatArray  # (mode, mode)
+
+    def some(self, which: npt.NDArray[np.bool_]) -> Around:
+        """Some of the modes."""
+        turn = np.ascontiguousarray(self.turn[np.ix_(which, which)])
+        return Around(self.natural[which], self.damping[which], self.ports[which], turn)
+
+
+class RingMultipliers(Multipliers):
+    """The multipliers of solutions of one sector."""
+
+    def __init__(self, system: System, highest: float) -> None:
+        linear, ring = system.linear, system.scene.ring
+        assert isinstance(linear, RingLinear) and ring is not None
+        n = ring.period
+        self.contacts = len(system.scene.contacts)
+        of_one = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
+        contact = np.tile(of_one, (n, 1))
+        harmonics = [int(h) for h in system.harmonics]
+        finer = beyond(harmonics)
+        self.unknown = bool(stability_unknown(system, highest))
+        around = modes_around(linear, ring)
+        far = far_above(around.natural, highest, harmonics)
+        soft = None
+        if far.any():
+            soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
+        near = around.some(~far)
+        stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
+        source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
+        self.adrift = int(np.count_nonzero(linear.adrift))
+        self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), of_one, harmonics)
+        self.fine, self.plain = (
+            RingMonodromy(stiffness, Sequence(contact, numbers), 2.0 * np.pi / n, near.turn, source)
+            for numbers in (finer, harmonics)
+        )
+        self.ring = ring
+        self.turns = {
+            len(numbers): np.exp(1j * np.outer(np.arange(n), _phases(ring, numbers)))
+            for numbers in (finer, harmonics)
+        }
+
+    def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
+        """As `Multipliers._values`; None where modes are missing, or there are too many."""
+        return None if self.unknown else Multipliers._values(self, monodromy, omega)
+
+    def see(self, sequence: Sequence, x: FloatArray) -> bool:
+        """As `Multipliers.see`, with the unknowns of one sector."""
+        count = (sequence.width - 2) // 4
+        blocks = np.asarray(x)[: self.contacts * sequence.width].reshape(self.contacts, sequence.width)
+        turn = self.turns[count]
+        pairs = np.ascontiguousarray(blocks[:, 2:]).view(np.complex128).reshape(self.contacts, count, 2)
+        turned = pairs[None] * turn[:, None, :, None]  # (sector, contact, harmonic, direction)
+        whole = np.empty((len(turn), self.contacts, sequence.width))
+        whole[..., :2] = blocks[:, :2]
+        whole[..., 2:] = turned.reshape(len(turn), self.contacts, 2 * count).view(np.float64)
+        return bool(sequence.look(whole.ravel()))
+
+    def of_period(self, values: list[complex]) -> list[complex]:
+        """Magnitudes of a whole period, with the angles of its part."""
+        return [abs(value) ** (self.ring.period - 1) * value for value in values]
+
+
+def _phases(ring: Ring, harmonics: list[int]) -> FloatArray:
+    """By how much each harmonic of a sector is ahead of that of the one before."""
+    return 2.0 * np.pi / ring.sectors * np.array([ring.turns(h) for h in harmonics])
+
+
+def behind(ring: Ring) -> int:
+    """The sectors j that the wave passes in the n-th part of a period: j engine_order = gcd, of the sectors.
+
+    >>> none = np.zeros(0)
+    >>> ring = Ring(8, 3, none, none, np.zeros((0, 0), complex), none, none)
+    >>> behind(ring)  # 3 * 3 = 9
+    3
+    """
+    n = ring.period
+    order = ring.engine_order // (ring.sectors // n)
+    return pow(order, -1, n) if n > 1 else 0
+
+
+def modes_around(linear: RingLinear, ring: Ring) -> Around:
+    """The modes of n sectors, those of a nodal diameter between 0 and n / 2 as cosine and sine."""
+    n, places = ring.period, _places(ring)
+    step = 2.0 * np.pi * ring.diameter[places] / ring.sectors
+    second = np.concatenate(([False], np.diff(places) == 0))  # the sine of a pair
+    first = np.concatenate((second[1:], [False]))
+    turned = np.exp(1j * np.outer(step, np.arange(n)))[..., None]
+    wave = ((ring.shapes[places] @ linear.directions)[:, None, :] * turned).reshape(places.size, -1)
+    ports = (
+        np.where(second[:, None], wave.imag, wave.real)
+        * np.sqrt(np.where(first | second, 2.0, 1.0) / n)[:, None]
+    )
+    by = step * behind(ring)
+    turn = np.diag(np.cos(by))
+    at = np.flatnonzero(first)
+    turn[at, at + 1], turn[at + 1, at] = -np.sin(by[at]), np.sin(by[at])
+    return Around(ring.frequency[places], ring.damping[places], ports, turn)
+
+
+def _places(ring: Ring) -> npt.NDArray[np.intp]:
+    """The modes whose diameters disturbances have, those that are cosine and sine twice."""
+    repeats = ring.diameter % (ring.sectors // ring.period) == 0
+    single = (ring.diameter == 0) | (2 * ring.diameter == ring.sectors)
+    return np.repeat(np.arange(ring.diameter.size), np.where(repeats, np.where(single, 1, 2), 0))

@@ -1,0 +1,7 @@
+from fcm.harmonic.displacement cimport Displacements
+
+cdef class TravellingDisplacements(Displacements):
+    cdef public list waves
+    cdef double[:, :, ::1] wave_re
+    cdef double[:, :, ::1] wave_im
+    cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept

@@ -1,0 +1,78 @@
+"""Displacements of one sector of a ring in which a wave travels."""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.displacement import Displacements
+from fcm.structure.linear import Linear
+from fcm.structure.receptance import Receptance
+from fcm.structure.travelling import TravellingReceptance
+
+
+@cython.cclass
+class TravellingDisplacements(Displacements):
+    """As `Displacements`, each harmonic by the shapes (mode, dof) of the modes that it meets."""
+
+    def __init__(
+        self, seen: TravellingReceptance, linear: Linear, shapes: list[npt.NDArray[np.complex128]]
+    ) -> None:
+        Displacements.__init__(self, seen, linear)
+        self.waves = seen.waves
+        most = max((len(one) for one in shapes), default=0)
+        self.wave_re, self.wave_im = np.zeros((2, len(shapes), most, self.dofs))
+        for j, one in enumerate(shapes):
+            np.asarray(self.wave_re)[j, : len(one)] = one.real
+            np.asarray(self.wave_im)[j, : len(one)] = one.imag
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def harmonic(
+        self,
+        j: cython.int,
+        load: cython.double,
+        force: cython.double[::1],
+        d_force: cython.double[::1],
+        d_omega: cython.double,
+    ) -> cython.void:
+        """Amplitudes of one harmonic, mode by mode."""
+        wave: Receptance = self.waves[j]
+        n: cython.Py_ssize_t = self.seen.ports
+        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
+        i: cython.Py_ssize_t
+        d: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        driven: cython.double = load if j == self.seen.driven else 0.0
+        for d in range(self.dofs):
+            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        for i in range(wave.modes):
+            f_re: cython.double = driven * wave.force_re[i]
+            f_im: cython.double = driven * wave.force_im[i]
+            g_re: cython.double = driven * d_omega * wave.slope_re[i]
+            g_im: cython.double = driven * d_omega * wave.slope_im[i]
+            for p in range(n):
+                k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                a: cython.double = wave.shapes[i, p]
+                b: cython.double = wave.shapes[i, n + p]
+                f_re -= a * force[k] + b * force[k + 1]
+                f_im -= a * force[k + 1] - b * force[k]
+                g_re -= a * d_force[k] + b * d_force[k + 1]
+                g_im -= a * d_force[k + 1] - b * d_force[k]
+            c_re: cython.double = wave.c_re[0, i]
+            c_im: cython.double = wave.c_im[0, i]
+            s_re: cython.double = wave.s_re[0, i] * d_omega
+            s_im: cython.double = wave.s_im[0, i] * d_omega
+            q_re: cython.double = c_re * f_re - c_im * f_im
+            q_im: cython.double = c_re * f_im + c_im * f_re
+            r_re: cython.double = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
+            r_im: cython.double = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
+            for d in range(self.dofs):
+                a = self.wave_re[j, i, d]
+                b = self.wave_im[j, i, d]
+                self.re[j, d] += a * q_re - b * q_im
+                self.im[j, d] += a * q_im + b * q_re
+                self.d_re[j, d] += a * r_re - b * r_im
+                self.d_im[j, d] += a * r_im + b * r_re

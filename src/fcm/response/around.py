@@ -1,0 +1,58 @@
+"""What a response of a ring's sector cannot know, and what it is asked that needs the whole ring."""
+
+from __future__ import annotations
+
+from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.ring_multipliers import stability_unknown
+from fcm.harmonic.system import System
+from fcm.response.trace import ResponseError, Wanted
+from fcm.scene.cyclic import WHOLE_RING, lacks
+from fcm.scene.model import Scene
+
+MOST_NAMED = 6  # harmonics in a sentence
+
+
+def refuse_ring(scene: Scene, what: str) -> None:
+    """Raise ResponseError where something is asked of a sector that needs the whole ring."""
+    if scene.ring is not None:
+        raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
+
+
+def check_no_ring(scene: Scene, what: str) -> None:
+    """Raise ResponseError for a sector of a ring, of which this is not computed."""
+    if scene.ring is not None:
+        raise ResponseError(f"{scene.name}: cyclic: {what} of a ring of sectors are not computed")
+
+
+def check_modes(scene: Scene, wanted: Wanted) -> None:
+    """Raise ResponseError where harmonics are asked for that meet a nodal diameter without modes."""
+    for curve in scene.each_curve():
+        if curve.ring is None:
+            return
+        harmonics = range(HIGHEST + 1) if wanted.harmonics is None else (0, *wanted.harmonics)
+        for harmonic, diameter in curve.ring.lacking(harmonics).items():
+            what = f"{scene.name}: {lacks(curve.ring, harmonic, diameter)}"
+            hint = "; give its modes, or the harmonics (--harmonics 1)" if wanted.harmonics is None else ""
+            raise ResponseError(f"{what}{hint}")
+
+
+def unknown(scene: Scene, wanted: Wanted) -> list[str]:
+    """Sentences on what is not known of the curves of a scene, for want of modes or of time."""
+    found: dict[str, None] = {}
+    orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
+    for curve in orders.values():
+        assert curve.ring is not None
+        lacking = curve.ring.lacking(range(1, HIGHEST + 1))
+        if lacking:
+            named = ", ".join(map(str, list(lacking)[:MOST_NAMED])) + (
+                ", ..." if len(lacking) > MOST_NAMED else ""
+            )
+            diameters = ", ".join(map(str, sorted(set(lacking.values()))))
+            found[
+                f"the answer to the harmonics {named}: there are no modes of nodal diameter {diameters} "
+                "(errors are estimated without them)"
+            ] = None
+        system = System(curve, wanted.harmonics or (1,))
+        if why := stability_unknown(system, curve.frequency_range[1]):
+            found[f"stability: {why}"] = None
+    return list(found)

@@ -1,0 +1,123 @@
+"""From the matrices of a ring's sector to the modes of every nodal diameter."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.reduction import MOST_OUTPUTS, damping_of
+from fcm.scene.ring import ComplexArray, FloatArray
+from fcm.scene.section import Section
+from fcm.scene.structure_table import Matrices
+from fcm.structure.eigen import StructureError
+from fcm.structure.reduced import Reduced, reduced
+
+
+@dataclass(frozen=True)
+class Diameter:
+    """The modes of one nodal diameter."""
+
+    number: int
+    found: Reduced
+    damping: FloatArray
+    said: list[str]
+
+
+def modal_of_ring(
+    top: Section,
+    matrices: Matrices,
+    sectors: int,
+    pushed: FloatArray,
+    distributed: FloatArray,
+    outputs: FloatArray,
+    ends: tuple[float, float],
+) -> tuple[dict[str, Any] | None, list[str]]:
+    """Modal table (frequencies in rad/s, shapes at all rows), and what is to be said.
+
+    pushed (rows of two sectors, load) are the directions of contacts and forces, distributed and outputs
+    (row, load) loads on the sector alone and what is only reported; `ends` is the range of frequencies.
+    """
+    rows = len(pushed) // 2
+    diameters = []
+    for number in range(sectors // 2 + 1):
+        turn = np.exp(2j * np.pi * number / sectors)
+        loads = np.concatenate((pushed[:rows] + pushed[rows:] * np.conj(turn), distributed), axis=1)
+        at = _plain(_at_diameter(matrices, turn), loads, number in (0, sectors / 2))
+        try:
+            diameters.append(_modes(*at, number, outputs, ends))
+        except StructureError as error:
+            top.wrong("structure", f"{error} (at nodal diameter {number})")
+            return None, []
+    modes = [one.found.modes for one in diameters]
+    counts = [one.count for one in modes]
+    flexible = [np.arange(one.found.modes.count) >= one.found.kept for one in diameters]
+    draft = {
+        "mass": np.ones(sum(counts)),
+        "frequency": np.concatenate([np.sqrt(one.stiffness) for one in modes]),
+        "damping": np.concatenate([one.damping for one in diameters]),
+        "shapes": np.concatenate([one.shapes.T for one in modes]).astype(np.complex128),
+        "diameter": np.repeat([one.number for one in diameters], counts),
+        "flexible": np.concatenate(flexible),
+    }
+    return draft, _notes(matrices, diameters, ends)
+
+
+def _at_diameter(matrices: Matrices, turn: complex) -> Matrices:
+    """The matrices of a sector whose next one moves as itself, times a factor of magnitude 1."""
+    if matrices.coupling is None:
+        return matrices
+    K, M = (block * turn + (block * turn).conj().T for block in (matrices.coupling.K, matrices.coupling.M))
+    return replace(matrices, K=(matrices.K + K).tocsc(), M=(matrices.M + M).tocsc())
+
+
+def _plain(matrices: Matrices, loads: ComplexArray, standing: bool) -> tuple[Matrices, Any]:
+    """Real arrays where they are real: of standing waves, and of couplings that turn nothing."""
+    imaginary = any(np.any(matrix.imag.data) for matrix in (matrices.K, matrices.M)) or loads.imag.any()
+    if standing or not imaginary:
+        return replace(matrices, K=matrices.K.real, M=matrices.M.real), np.ascontiguousarray(loads.real)
+    return replace(matrices, K=matrices.K.astype(complex), M=matrices.M.astype(complex)), loads
+
+
+def _modes(
+    matrices: Matrices, loads: Any, number: int, outputs: FloatArray, ends: tuple[float, float]
+) -> Diameter:
+    few = outputs[:, :MOST_OUTPUTS] if outputs.shape[1] <= MOST_OUTPUTS else outputs[:, :0]
+    directions = np.concatenate((loads, few), axis=1)
+    top = ends[1] if np.isfinite(ends[1]) else 0.0
+    found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility)
+    ratio, said = damping_of(matrices, found, loads, outputs, ends)
+    return Diameter(number, found, ratio, said)
+
+
+def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, float]) -> list[str]:
+    """What is kept of the structure, how far it is off, and what is amiss."""
+    all_found = [one.found for one in diameters]
+    kept = sorted({one.kept for one in all_found})
+    count = str(kept[0]) if len(kept) == 1 else f"{kept[0]} to {kept[-1]}"
+    text = f"structure: {count} modes of each of the nodal diameters 0 to {len(diameters) - 1} are kept"
+    bound = max(one.bound for one in all_found)
+    if not any(np.isfinite(one.beyond) for one in all_found):
+        text += ", all that there are"
+    elif not matrices.flexibility:
+        text += "; the flexibility of the others is left out"
+    elif np.isfinite(bound):
+        text += (
+            ", and the flexibility of the others: receptances up to the range's end are off by at most "
+            f"{max(bound, 1e-15):.1e}"
+        )
+    else:
+        text += ", and the flexibility of the others; how far it is off cannot be told"
+    notes = [text]
+    for what, which in (
+        ("has rigid-body modes, of frequency 0", [one.found.rigid for one in diameters]),
+        ("has modes that the eigensolver missed: ask for another number", [one.missed for one in all_found]),
+        (
+            "has modes within the range that are not kept: raise structure.modes",
+            [one.beyond < ends[1] for one in all_found],
+        ),
+    ):
+        numbers = [str(one.number) for one, flag in zip(diameters, which, strict=True) if flag]
+        notes += [f"structure: nodal diameter {', '.join(numbers)} {what}"] if numbers else []
+    return [*notes, *dict.fromkeys(text for one in diameters for text in one.said)]

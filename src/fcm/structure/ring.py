@@ -1,0 +1,81 @@
+"""The structure of a sector of a ring as arrays: another one for each harmonic of a travelling wave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray
+from fcm.scene.ring import Ring
+from fcm.structure.linear import TURN, Linear, amplitudes, attached_to, with_springs
+from fcm.structure.loads import Loads
+from fcm.structure.receptance import Receptance
+from fcm.structure.travelling import TravellingReceptance
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Wave:
+    """The structure as one harmonic meets it."""
+
+    natural: FloatArray  # (mode,) [rad/s]
+    damping: FloatArray  # (mode,) ratio
+    ports: ComplexArray  # (mode, port)
+    dofs: ComplexArray  # (mode, dof)
+
+
+@dataclass(frozen=True)
+class RingLinear(Linear):
+    """The structure of a sector; the fields of `Linear` are what the mean meets, of nodal diameter 0."""
+
+    ring: Ring
+    directions: FloatArray  # (dof, port)
+    loads: Loads  # (dof,)
+
+    def wave(self, harmonic: int) -> Wave:
+        """What a harmonic meets."""
+        natural, damping, shapes = self.ring.modes(harmonic)
+        return Wave(natural, damping, shapes @ self.directions, shapes)
+
+    @cached_property
+    def attached(self) -> tuple[FloatArray, npt.NDArray[np.intc]]:
+        """As `Linear.attached`: a displacement is a combination of ports only if it is that in every wave."""
+        waves = [self.wave(harmonic) for harmonic in range(self.ring.period)]
+        ports, dofs = (np.concatenate([getattr(one, name) for one in waves]) for name in ("ports", "dofs"))
+        return attached_to(*(np.concatenate((shapes.real, shapes.imag)) for shapes in (ports, dofs)))
+
+    def receptance(self, harmonics: FloatArray) -> Receptance:
+        """The sector seen from its ports at some harmonics."""
+        waves = [self._real(int(h)) for h in harmonics]
+        return TravellingReceptance(waves, self.static, harmonics)
+
+    def _real(self, harmonic: int) -> Receptance:
+        """The receptance of one harmonic on ports with the real and those with the imaginary parts."""
+        wave = self.wave(harmonic)
+        both = np.concatenate((wave.ports.real, wave.ports.imag), axis=1)
+        pushed = [TURN * (wave.dofs.conj() @ load) for load in (self.loads.constant, self.loads.square)]
+        force, square = pushed if harmonic == 1 else np.zeros((2, len(wave.dofs)), complex)
+        static = np.zeros((both.shape[1], both.shape[1]))
+        seen = Receptance(both, wave.natural, wave.damping, force, static, np.array([float(harmonic)]))
+        seen.grows(square)
+        return seen
+
+    def answers(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
+        """As `Linear.answers`."""
+        found = np.zeros((*force.shape[:2], self.directions.shape[0]), dtype=np.complex128)
+        for j, h in enumerate(harmonics):
+            wave = self.wave(int(h))
+            modal = force[:, j : j + 1] @ wave.ports.conj().T
+            found[:, j : j + 1] = (
+                amplitudes(wave.natural, wave.damping, omega, np.array([h]), modal) @ wave.dofs
+            )
+        return found
+
+    def stiffened(self, springs: FloatArray) -> FloatArray:
+        """As `Linear.stiffened`, of the modes that the excitation meets."""
+        wave = self.wave(1)
+        return with_springs(wave.natural, wave.ports, springs)

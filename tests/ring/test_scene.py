@@ -1,0 +1,165 @@
+"""What a scene of a ring may say, what it may be asked, and what is drawn of it."""
+
+from __future__ import annotations
+
+import copy
+import json
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.cli import main
+from fcm.plot.campbell import folded
+from fcm.response.trace import ResponseError
+from fcm.scene import SceneError, scene_from_dict
+
+from . import rings
+
+MODAL = {
+    "dofs": rings.DOFS, "damping": 0.01, "frequency": [100.0, 200.0, 300.0], "nodal_diameter": [0, 1, 1],
+    "shapes": [[1, 1, 1], [1, 0.5, [0.2, 0.3]], [1.0, [1, 2], 0]],
+}  # fmt: skip
+WHOLE = "a simulation in time needs the whole ring"
+
+
+def wrong(**tables):
+    """The mistakes of a scene of six sectors with some tables changed; None takes a table away."""
+    data = copy.deepcopy(rings.sector(6, 1)) | tables
+    with pytest.raises(SceneError) as caught:
+        scene_from_dict({key: value for key, value in data.items() if value is not None}, "ring.toml")
+    return list(caught.value.mistakes)
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        ({"cyclic": {"sectors": 1, "engine_order": 1}}, ["cyclic.sectors: must be a whole number from 2 to"]),
+        ({"cyclic": {"sectors": 6.5, "engine_order": 0.5}}, ["cyclic.sectors: must be a whole", "is 0.5"]),
+        ({"cyclic": {}}, ["cyclic.sectors: missing", "cyclic.engine_order: missing"]),
+        ({"cyclic": None}, ["structure.coupling: couples the", '"next.tip"', '"next.blade"']),
+        ({"force": [{"dof": "next.tip", "amplitude": 1.0}]}, ['force[0].dof: is of the next']),
+        ({"schedule": [{"frequency": 1.0, "cycles": 2}]}, [f"schedule: cannot be beside [cyclic]: {WHOLE}"]),
+        ({"base": {"acceleration": 1.0, "direction": {"tip": 1.0}}}, ["base: cannot be beside [cyclic]"]),
+        ({"contact": [rings.SHROUD | {"tangential": "next.tp"}]}, ['unknown degree of freedom "next.tp"']),
+        ({"sweep": {"cyclic.engine_order": [1, 1.5]}}, ['"cyclic.engine_order"[1]: must be a whole number']),
+        ({"sweep": {"cyclic.sectors": [5, 6]}}, ['did you mean "cyclic.engine_order"?']),
+        ({"structure": rings.STRUCTURE | {"coupling": {"stiffness": [[1.0]]}}}, ["has 1 rows, but"]),
+        ({"structure": rings.STRUCTURE | {"stiffness": [1.0, 1.0, 1.0]}}, ["negative eigenvalues"]),
+        ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1]}}, ["has 2 numbers, but"]),
+        ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1, 4]}}, ["[2]: is 4, but those"]),
+        ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 2, 2]}}, ["diameter 1, which harm"]),
+        ({"structure": None, "modal": MODAL | {"nodal_diameter": [1, 1, 1]}}, ["diameter 0, which the"]),
+        ({"structure": None, "modal": MODAL | {"nodal_diameter": [1, 1, 0]}}, ["of diameter 0, so it"]),
+        ({"structure": None, "modal": MODAL | {"pairs": True}}, ["frequencies differ, 200 and 300"]),
+        ({"structure": None, "cyclic": None, "modal": MODAL, "contact": None},
+         ["shapes[1][2]: must be a number", "shapes[2][1]", "modal.nodal_diameter: is of the modes of"]),
+    ],
+)  # fmt: skip
+def test_mistakes_are_named(tables, said):
+    found = wrong(**tables)
+    assert len(found) == len(said)
+    for mistake, part in zip(found, said, strict=True):
+        assert part in mistake
+
+
+@pytest.mark.parametrize("ask", [{"method": "exact"}, {"method": "exact", "at": [190.0]}])
+def test_the_exact_motion_needs_the_whole_ring(ask):
+    with pytest.raises(ResponseError, match="needs the whole ring: write all its sectors out"):
+        fcm.respond(scene_from_dict(rings.sector(6, 1)), **ask)
+
+
+def test_harmonics_without_modes_are_refused_and_their_absence_is_said():
+    data = rings.sector(6, 1)
+    del data["structure"]
+    scene = scene_from_dict(data | {"modal": MODAL})
+    with pytest.raises(ResponseError, match="no modes of nodal diameter 2, which harmonic 2"):
+        fcm.respond(scene, harmonics=2)
+    with pytest.raises(ResponseError, match="give its modes, or the harmonics"):
+        fcm.respond(scene, accuracy=0.01)
+    response = fcm.respond(scene, harmonics=1)
+    left_out = json.loads(response.attrs["summary"])["left_out"]
+    assert any("stability: there are no modes of nodal diameter 2, 3" in text for text in left_out)
+    assert np.isnan(response.stable.values).any()
+
+
+def test_engine_orders_are_swept():
+    """Each curve as if it were alone, and those of a number beyond the sectors as that of the remainder."""
+    data = rings.sector(5, 1, harmonics=1, max_step=0.3)
+    found = fcm.respond(scene_from_dict(data | {"sweep": {"cyclic.engine_order": [1, 2, 7]}}))
+    assert found["cyclic.engine_order"].values.tolist() == [1, 2, 7]
+    alone = fcm.respond(scene_from_dict(rings.sector(5, 2, harmonics=1, max_step=0.3)))
+    assert found.peak_amplitude.values[1:] == pytest.approx(np.tile(alone.peak_amplitude.values, (2, 1)))
+    assert abs(found.peak_frequency.values[0] / alone.peak_frequency.values[0] - 1.0).max() > 0.01
+
+
+def run(capsys, *arguments):
+    with pytest.raises(SystemExit) as stopped:
+        main(list(arguments))
+    out, err = capsys.readouterr()
+    return stopped.value.code, out, err
+
+
+@pytest.mark.parametrize(
+    "options, what",
+    [
+        (["--sensitivity"], "sensitivities"),
+        (["--mode", "1", "--level", "1:2"], "nonlinear modes"),
+        (["--track", "peaks", "--over", "level", "--from", "1", "--to", "2"], "tracked points"),
+    ],
+)
+def test_what_is_not_computed_of_a_ring_is_refused_at_once(capsys, tmp_path, options, what):
+    code, out, err = run(capsys, "respond", "bladed-disk", "-o", str(tmp_path / "a.nc"), *options)
+    assert code == 2 and not out and not list(tmp_path.iterdir())
+    assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed" in err
+
+
+def test_a_sector_keeps_its_own_degree_of_freedom_of_a_next_one_that_is_used():
+    """Curves that are made again of a scene at the degrees of freedom in use are those made of the whole."""
+    data = rings.sector(5, 1, harmonics=1) | {"sweep": {"cyclic.engine_order": [1, 2]}}
+    data["response"]["output"] = ["blade"]
+    scene = scene_from_dict(data).in_use()
+    for curve in scene.curves:
+        again = scene.draft.curve(scene, curve.parameters, {("modal", "damping", 0): 0.5})
+        assert again.ring.engine_order == curve.ring.engine_order
+        assert again.ring.shapes == pytest.approx(curve.ring.shapes)
+        assert (again.ring.damping != curve.ring.damping).sum() == 1
+
+
+def test_campbell_in_numbers(capsys):
+    code, out, err = run(capsys, "plot", "campbell", "bladed-disk", "--json")
+    found = json.loads(out)
+    assert code == 0 and "stability is that of disturbances of the same travelling wave" in err
+    (order,) = found["engine_orders"]
+    assert order["nodal_diameters"] == [0, 3, 6, 9, 12, 9, 6, 3, 0, 3, 6] and order["speeds"] == [60.0, 80.0]
+    assert found["diameters"][2]["open"][0] == pytest.approx(189.3018526, rel=1e-9)
+    for one in found["diameters"]:
+        assert all(stuck > free for stuck, free in zip(one["stuck"], one["open"], strict=True))
+    assert order["resonances"]["stuck"] == found["diameters"][3]["stuck"][:1]
+
+
+def test_campbell_draws_and_refuses(capsys, tmp_path):
+    picture = tmp_path / "disk.svg"
+    assert run(capsys, "plot", "campbell", "bladed-disk", "-o", str(picture))[0] == 0
+    assert picture.stat().st_size > 10_000
+    code, _, err = run(capsys, "plot", "campbell", "yang1998")
+    assert code == 2 and "this diagram is of a ring of sectors" in err
+
+
+def test_lines_of_engine_orders_run_up_and_down():
+    turns = np.arange(0, 30)
+    phases = np.exp(2j * np.pi * np.outer(turns, range(7)) / 7)  # as sectors see them
+    for order, seen in zip(turns.tolist(), phases, strict=True):
+        number = folded(order, 7)
+        assert 0 <= number <= 3
+        assert seen.real == pytest.approx(np.cos(2.0 * np.pi * number * np.arange(7) / 7), abs=1e-9)
+
+
+def test_modes_are_listed_by_diameter(capsys):
+    code, out, _ = run(capsys, "plot", "modes", "bladed-disk", "--json")
+    modes = json.loads(out)["modes"]
+    assert code == 0 and len(modes) == 39
+    assert [mode["nodal_diameter"] for mode in modes[:4]] == [0, 0, 0, 1]
+    for number in range(13):
+        shares = [m["participation"]["force.tip"] for m in modes if m["nodal_diameter"] == number]
+        assert sum(shares) == pytest.approx(1.0)
