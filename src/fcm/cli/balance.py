@@ -38,9 +38,9 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
         low, high = (float(part) for part in text.split(":"))
     except ValueError:
         raise click.BadParameter(f"{text!r}: give a span of levels FROM:TO, as in 0:2.") from None
-    from fcm.response.level import level_fault
+    from fcm.response.level import span_fault
 
-    if fault := level_fault(low, high):
+    if fault := span_fault(low, high):
         raise click.BadParameter(f"{text!r}: {fault}.")
     return low, high
 
@@ -52,7 +52,8 @@ def check_level(
     method: str,
     mode: int | None = None,
 ) -> None:
-    """A usage error if a span of levels lacks its frequency, or is given with what means nothing then."""
+    """A usage error if a span of levels of the forces lacks its frequency, is given with what means nothing
+    then, or is out of range; with a mode the levels are modal amplitudes."""
     if span is None or mode is not None:
         return
     if at is None:
@@ -65,6 +66,10 @@ def check_level(
         )
     if error is not None:
         raise click.UsageError("--accuracy is of no use with --level: give --harmonics.")
+    from fcm.response.level import level_fault
+
+    if fault := level_fault(*span):
+        raise click.BadParameter(f"'{span[0]:g}:{span[1]:g}': {fault}.", param_hint="'--level'")
 
 
 def check_peaks_only(wanted: bool, span: tuple[float, float] | None, csv: object) -> None:

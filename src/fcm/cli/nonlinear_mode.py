@@ -1,15 +1,12 @@
-"""``fcm respond --mode`` and ``fcm plot mode``: frequency and damping of a mode against its amplitude."""
+"""``fcm respond --mode``: frequency and damping of a mode against its amplitude."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
-from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.report import aligned, counted, number, short, swept
 
 if TYPE_CHECKING:
@@ -88,18 +85,3 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
             ]
         )
     return aligned([header, *rows], left=2)
-
-
-@click.command()
-@draws_file("-mode.png")
-@pass_messages
-def mode(messages: Messages, file: Path, output: Path | None) -> None:
-    """Draw the nonlinear modes of FILE, the netCDF file of `fcm respond --mode N --level FROM:TO -o FILE`.
-
-    Frequency and damping ratio against the modal amplitude; where a mode is damped most is marked.
-    """
-    from fcm.plot.mode import draw_modes, read_modes
-
-    output = picture_of(file, output, "-mode.png")
-    save_picture(draw_modes(read_modes(file)), output)
-    messages.info(f"wrote {output}")

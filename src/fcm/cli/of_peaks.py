@@ -1,16 +1,13 @@
-"""``fcm respond --sensitivity`` and ``fcm plot sensitivity``: what the numbers of a scene do to its peaks."""
+"""``fcm respond --sensitivity``: what the numbers of a scene do to its peaks."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
-from fcm.cli.messages import Messages, pass_messages
-
 if TYPE_CHECKING:
+    from fcm.cli.messages import Messages
     from fcm.response import Response
     from fcm.scene.model import Scene
 
@@ -34,21 +31,3 @@ def added(messages: Messages, response: Response, scene: Scene) -> None:
     messages.clear()
     for remark in remarks(response):
         messages.info(remark)
-
-
-@click.command()
-@draws_file("-sensitivity.png")
-@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
-@click.option("--curve", type=click.IntRange(min=0), default=0, metavar="I", help="Of a sweep.  [default: 0]")
-@pass_messages
-def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | None, curve: int) -> None:
-    """Draw what each number does to a peak of FILE, the netCDF file of `fcm respond --sensitivity -o FILE`.
-
-    Relative: by how many percent the peak rises, and its frequency, for each percent of the number. The
-    numbers that do most come first.
-    """
-    from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
-
-    output = picture_of(file, output, "-sensitivity.png")
-    save_picture(draw_sensitivity(read_sensitivity(file), dof=dof, curve=curve), output)
-    messages.info(f"wrote {output}")

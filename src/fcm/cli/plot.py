@@ -17,11 +17,14 @@ if TYPE_CHECKING:
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "modes": ("fcm.cli.modes:modes", "The modes of a scene and what moves them, as a table."),
-    "mode": ("fcm.cli.nonlinear_mode:mode", "Frequency and damping of a nonlinear mode against amplitude."),
+    "mode": ("fcm.cli.mode_picture:mode", "Frequency and damping of a nonlinear mode against amplitude."),
     "campbell": ("fcm.cli.campbell:campbell", "Frequencies of a ring of sectors by nodal diameter."),
     "history": ("fcm.cli.history:history", "Motion through the phases of a schedule."),
     "peak": ("fcm.cli.peak:peak", "Peak amplitude and frequency against what was swept."),
-    "sensitivity": ("fcm.cli.of_peaks:sensitivity", "What each number of the scene does to a peak."),
+    "sensitivity": (
+        "fcm.cli.sensitivity_picture:sensitivity",
+        "What each number of the scene does to a peak.",
+    ),
     "accuracy": ("fcm.cli.accuracy:accuracy", "Error against run time, one line a method."),
     "loop": ("fcm.cli.loop:loop", "Hysteresis loops of a contact, given or of a response."),
     "surface": ("fcm.cli.coefficients:surface", "Friction coefficients over preload and load variation."),

@@ -9,7 +9,9 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-LARGE = cython.declare(cython.int, 72)  # from here on LAPACK is faster, its call included
+LARGE = cython.declare(
+    cython.int, 40
+)  # from here on LAPACK; its pivots by columns keep the digits of stiff contacts
 
 
 @cython.cclass

@@ -69,10 +69,15 @@ def trace_levels(
     return response
 
 
+def span_fault(low: float, high: float) -> str:
+    """What is wrong with a span of levels, of the forces or of a mode; empty if nothing is."""
+    return "" if 0.0 <= low < high else "the levels must rise, from 0 or more"
+
+
 def level_fault(low: float, high: float) -> str:
-    """What is wrong with a span of levels; empty if nothing is."""
-    if not 0.0 <= low < high:
-        return "the levels must rise, from 0 or more"
+    """What is wrong with a span of levels of the forces; empty if nothing is."""
+    if fault := span_fault(low, high):
+        return fault
     if high > FAR:
         return f"a level beyond {FAR:g} is a mistake of units"
     return "" if high > NOTHING else f"up to a level of {NOTHING:g} there is but rest"
