@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.corrector import COVERED
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.shifted import Beside
@@ -86,6 +87,10 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     error = np.abs(shift)
     typical = np.median(error, axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
+    # what is covered in part only is known in part only, though the displacements cancel at a frequency
+    error = np.maximum(
+        error, (1.0 - COVERED) * (corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:]))
+    )
     inside = (tops > 0) & (tops < len(path.z) - 1)
     now = shown.amplitude[tops, d]
     height = np.where(inside, _heights(corrected, change[:, 1:], tops), now * (1.0 + shift[tops, d]))
