@@ -35,18 +35,18 @@ class Corrected:
         self.weight = np.maximum(1.0, _steepness(path, amplitude))
         self.known = self.linear.copy()
 
-    def everywhere(self, places: Indices) -> FloatArray:
+    def everywhere(self, places: Indices, tops: Indices) -> FloatArray:
         """Relative displacement (point, 1 + dof), interpolated between points at which it is found.
 
         These are the places given, every so many points, those next to a linear part, and those between two
-        of them if the middle one is not what they lead to expect. The places get the best further harmonics
+        of them if the middle one is not what they lead to expect. The tops get the best further harmonics
         of their own, whatever points lie around them.
         """
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
         first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
-        self.find(places, True)
+        self.find(np.unique(tops), True)
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):

@@ -82,7 +82,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         none = np.zeros_like(shown.amplitude)
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
-    change = corrected.everywhere(turns)
+    change = corrected.everywhere(turns, tops)
     shift = _at_frequency(path, shown, change[:, 0], change[:, 1:])
     error = np.abs(shift)
     typical = np.median(error, axis=1, keepdims=True)
