@@ -9,9 +9,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-LARGE = cython.declare(
-    cython.int, 40
-)  # from here on LAPACK; its pivots by columns keep the digits of stiff contacts
+LARGE = cython.declare(cython.int, 40)  # from here on LAPACK: pivots by columns suit stiff contacts
 
 
 @cython.cclass

@@ -14,6 +14,7 @@ from fcm.scene.model import FloatArray
 EVERY = 16  # points from one that is displaced to the next, before it is known how they change
 OFF = 0.3  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
+STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
 
 Indices = npt.NDArray[np.intp]
@@ -31,18 +32,21 @@ class Corrected:
         count, dofs = amplitude.shape
         self.linear = self.further.linear(path.z)
         self.change = np.zeros((count, 1 + dofs))
+        self.weight = np.maximum(1.0, _steepness(path, amplitude))
         self.known = self.linear.copy()
 
-    def everywhere(self, places: Indices) -> FloatArray:
+    def everywhere(self, places: Indices, tops: Indices) -> FloatArray:
         """Relative displacement (point, 1 + dof), interpolated between points at which it is found.
 
         These are the places given, every so many points, those next to a linear part, and those between two
-        of them if the middle one is not what they lead to expect.
+        of them if the middle one is not what they lead to expect. The tops get the best further harmonics
+        of their own, whatever points lie around them.
         """
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
         first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
+        self.find(np.unique(tops), True)
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):
@@ -88,26 +92,42 @@ class Corrected:
             self.change[place] = 0.5 * (beside[0] + beside[1])
 
     def unforeseen(self, before: Indices, middle: Indices, after: Indices) -> npt.NDArray[np.bool_]:
-        """Where a displacement is not what the two around it lead to expect."""
+        """Where a displacement is not what the two around it lead to expect.
+
+        Along a steep part a displacement of the frequency is a so much larger error of the amplitude.
+        """
         part = ((middle - before) / (after - before))[:, None]
         found = self.change[middle]
         expected = (1.0 - part) * self.change[before] + part * self.change[after]
-        off = np.abs(found - expected).max(axis=1)
+        miss = np.abs(found - expected)
+        off = np.maximum(miss[:, 1:].max(axis=1), self.weight[middle] * miss[:, 0])
         differs = off > np.maximum(OFF * np.abs(found).max(axis=1), NOTHING)
         lost, missing = np.isnan(found[:, 0]), np.isnan(expected[:, 0])
         more: npt.NDArray[np.bool_] = differs | (lost != missing)
         return more
 
-    def find(self, places: Indices) -> None:
-        """The displacements of some points, which are then known."""
+    def find(self, places: Indices, best: bool = False) -> None:
+        """The displacements of some points, which are then known; with the best harmonics of each, or with
+        those that are nearly as good and there already."""
         places = places[~self.known[places]]
         if not places.size:
             return
         z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
         share = self.further.shares(z[places], self.further.forces(z[places]), now[:, 1:])
-        sets = self.corrector.sets(share)
+        sets = [self.corrector.best(one) for one in share] if best else self.corrector.sets(share)
         for i, before, more in zip(places.tolist(), now, sets, strict=True):
             found = self.corrector.displaced(z[i], self.path.direction[i], more, before[1:])
             if found is not None:
                 self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
         self.known[places] = True
+
+
+def _steepness(path: Path, amplitude: FloatArray) -> FloatArray:
+    """Greatest relative change of an amplitude over that of the frequency (point,), up to STEEP."""
+    count = len(amplitude)
+    before, after = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
+    rise = np.abs(amplitude[after] - amplitude[before]) / np.where(amplitude > 0.0, amplitude, np.inf)
+    run = np.abs(path.parameter[after] - path.parameter[before]) / np.abs(path.parameter)
+    most = rise.max(axis=1)
+    steep: FloatArray = np.where(most < STEEP * run, most / np.where(run > 0.0, run, 1.0), STEEP)
+    return steep

@@ -27,6 +27,8 @@ class Corrector:
 
     def __init__(self, system: System, again: bool = True, enough: float = ENOUGH) -> None:
         self.system, self.again, self.enough = system, again, enough
+        contacts = max(len(system.scene.contacts), 1)
+        self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
         self.known: dict[tuple[int, ...], Lifted] = {}
         self.second: dict[tuple[int, ...], tuple[Further, Corrector]] = {}
 
@@ -75,21 +77,22 @@ class Corrector:
         A set that is there already is taken where it covers nearly as much.
         """
         square = share * share
-        contacts = max(len(self.system.scene.contacts), 1)
-        count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))
-        most = -np.sort(-square, axis=1)[:, :count]
+        most = -np.sort(-square, axis=1)[:, : self.count]
         enough = COVERED**2 * np.where(most > LEAST**2 * most[:, :1], most, 0.0).sum(axis=1)
         chosen: list[tuple[int, ...] | None] = [None] * len(share)
         for more in self.known:
             self._fill(chosen, more, square, enough)
         for i in range(len(share)):
             if chosen[i] is None:
-                order = np.argsort(-share[i])[:count]
-                order = order[share[i, order] > LEAST * share[i, order[0]]]
-                more = tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
-                chosen[i] = more
+                more = chosen[i] = self.best(share[i])
                 self._fill(chosen, more, square, enough)
         return [more for more in chosen if more is not None]
+
+    def best(self, share: FloatArray) -> tuple[int, ...]:
+        """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point."""
+        order = np.argsort(-share)[: self.count]
+        order = order[share[order] > LEAST * share[order[0]]]
+        return tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
 
     def _fill(
         self,

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.corrector import COVERED
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.shifted import Beside
@@ -81,11 +82,15 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         none = np.zeros_like(shown.amplitude)
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
-    change = corrected.everywhere(turns)
+    change = corrected.everywhere(turns, tops)
     shift = _at_frequency(path, shown, change[:, 0], change[:, 1:])
     error = np.abs(shift)
     typical = np.median(error, axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
+    # what is covered in part only is known in part only, though the displacements cancel at a frequency
+    error = np.maximum(
+        error, (1.0 - COVERED) * (corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:]))
+    )
     inside = (tops > 0) & (tops < len(path.z) - 1)
     now = shown.amplitude[tops, d]
     height = np.where(inside, _heights(corrected, change[:, 1:], tops), now * (1.0 + shift[tops, d]))
