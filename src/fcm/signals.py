@@ -95,6 +95,15 @@ def give_back() -> None:
         _program = None
 
 
+def interrupt() -> None:
+    """Interrupt the program from another thread, by a signal that it takes."""
+    import _thread
+
+    taken = () if _program is None else _program.before
+    number = next((number for number in ALL if number in taken), signal.SIGINT)
+    _thread.interrupt_main(number)
+
+
 def works() -> None:
     """From now on there may be something to save."""
     if _program is not None:

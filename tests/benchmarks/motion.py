@@ -24,8 +24,8 @@ from fcm.motion.system import System
 from fcm.orbit import Shooting, periodic
 from fcm.orbit.derivative import derivative_at
 from fcm.response import Response
+from fcm.response.exact import trace_exact
 from fcm.scene import Contact, Force, Modal, Scene
-from fcm.simulate import trace_exact
 
 FREQUENCIES = np.linspace(0.7, 1.7, 40)
 STEPS = (100, 200, 400)  # in a cycle

@@ -88,12 +88,10 @@ def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
         (["--method", "exact", "--at", "1:2:0"], "the count must be"),
         (["--method", "exact", "--at", "1", "--max-step", "0.1"], "--max-step is of no use with --at"),
         (["--method", "exact", "--table", "t.nc"], "--table is of no use"),
-        (["--method", "exact", "--keep-all"], "--keep-all is of no use"),
-        (["--method", "exact", "--leave-out-tolerance", "0"], "--leave-out-tolerance is of no use"),
     ],
 )
 def test_options_that_do_not_fit_are_refused(fcm, scene, monkeypatch, args, said):
-    monkeypatch.setattr("fcm.simulate.trace_exact", refuse)
+    monkeypatch.setattr("fcm.response.exact.trace_exact", refuse)
     monkeypatch.setattr(response, "trace", refuse)
     done = fcm("respond", scene, *args)
     assert done.code == 2 and done.out == "" and said in done.err and "Traceback" not in done.err
@@ -136,3 +134,33 @@ def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
     least, greatest = curve["peak_range"]["v"]
     assert least < 1.36 and greatest > 2.90 and curve["not_unique"] == 2
     assert "points that are not unique: 2" in run.err and "[start] friction chooses" in run.err
+
+
+def test_a_time_limit_ends_a_run_as_ctrl_c_does(fcm, scene):
+    """A curve of thousands of points is not finished in a second; what there is of it is kept and written."""
+    args = ("respond", scene, "--method", "exact", "--max-step", "0.0001", "-o", "a.nc", "--json")
+    run = fcm(*args, "--time-limit", "1")
+    assert run.code == 3 and "the time limit of 1 s is over" in run.err
+    assert "kept in a.nc.unfinished: continue with --resume" in run.err
+    (curve,) = json.loads(run.out)["curves"]
+    assert not curve["complete"] and curve["points"] > 0 and curve["reason"].startswith("interrupted at ")
+    again = json.loads(fcm(*args, "--time-limit", "1", "--resume").out)["curves"][0]
+    assert again["points"] > curve["points"]
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "x"])
+def test_a_time_limit_is_a_number_of_seconds(fcm, scene, value):
+    run = fcm("respond", scene, "--time-limit", value)
+    assert run.code == 2 and "--time-limit" in run.err
+
+
+def test_only_peaks_says_so(fcm, scene):
+    run = fcm("respond", scene, "--method", "exact", "--only", "peaks", "--json")
+    whole = json.loads(fcm("respond", scene, "--method", "exact", "--json").out)["curves"][0]
+    (curve,) = json.loads(run.out)["curves"]
+    assert run.code == 0 and curve["only"] == "peaks" and curve["points"] < whole["points"]
+    assert "left out: of the exact curves all points but their peaks, folds and jumps" in run.err
+    assert curve["peak"]["u"]["amplitude"] == pytest.approx(whole["peak"]["u"]["amplitude"], rel=1e-8)
+    for wrong in ([], ["--method", "exact", "--at", "1"]):
+        refused = fcm("respond", scene, "--only", "peaks", *wrong)
+        assert refused.code == 2 and "--only needs --method exact" in refused.err

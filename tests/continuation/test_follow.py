@@ -277,3 +277,40 @@ def test_a_start_inside_the_range_is_followed_both_ways():
     assert found.status is Status.COMPLETE
     assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
     assert path.where(Mark.FOLD).size == 2
+
+
+class Labelled(Planar):
+    """A curve whose only margin is the label of its smooth piece."""
+
+    def __init__(self, f, label):
+        Planar.__init__(self, f, label)
+        self.soft = True
+
+
+def tent():
+    """p = 1 - |x| (1 + x / 4): a fold that is a corner, at x = 0."""
+
+    def f(x, p):
+        side = np.sign(x) or 1.0
+        return 1.0 - side * x * (1.0 + 0.25 * x) - p, -side * (1.0 + 0.5 * x), -1.0
+
+    return Labelled(f, lambda x: float(x < 0.0))
+
+
+@pytest.mark.parametrize("max_step", STEPS)
+def test_a_corner_that_only_a_label_tells_of_is_turned_at(max_step):
+    path = follow(tent(), start(-0.9, 0.3025), (0.3, 2.0), True, max_step)
+    assert path.status is Status.RETURNED or path.parameter[-1] == 0.3
+    (fold,) = path.where(Mark.FOLD)
+    assert path.parameter[fold] == pytest.approx(1.0, abs=1e-7)
+    assert path.z[-1, 0] > 0.5
+
+
+def test_a_curve_goes_on_from_any_stage_to_the_same_points():
+    stages = []
+    whole = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, watch=stages.append)
+    for stage in stages[:: max(len(stages) // 5, 1)]:
+        again = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, stage=stage)
+        assert again.status is whole.status
+        np.testing.assert_array_equal(again.z, whole.z)
+        np.testing.assert_array_equal(again.mark, whole.mark)

@@ -409,7 +409,7 @@ sys.modules["fcm.motion.histories"].histories = stop
 
 AT = ("respond", "sweep.toml", "--method", "exact", "--at", "1.15:1.3:12", "-o", "a.nc")
 VISITED = """
-import fcm.simulate.visit as visit, time
+import fcm.response.visit as visit, time
 real = visit.Visitor._go
 def go(self, omega, sweep):
     with open("visits", "a") as file:

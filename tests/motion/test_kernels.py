@@ -12,10 +12,10 @@ from fcm.motion import simulate
 from fcm.motion.combination import made
 from fcm.motion.cycle import Cycle
 from fcm.motion.events import first_descent_of
-from fcm.motion.measure import least, measure
+from fcm.motion.measure import extremes, measure
 from fcm.motion.system import System
 
-from .cases import one_mode, two_contacts, yang
+from .cases import SCENES, one_mode, two_contacts, yang
 
 
 def polynomial(*roots, scale=1.0):
@@ -137,7 +137,7 @@ def test_the_least_of_a_row_is_where_it_is_said_to_be():
     assert isinstance(cycle, Cycle) and cycle.states == ("E",)
     row = np.zeros((1, cycle.system.size - 2))
     row[0, cycle.system.f] = -1.0
-    (found,) = least(cycle.system, cycle.segments, row)
+    (found,), (highest,) = extremes(cycle.system, cycle.segments, row)
     step = cycle.duration / cycle.segments.length[0]
     assert found.segment == 0 and len(cycle.segments) == 1
     at = found.position * step
@@ -145,6 +145,21 @@ def test_the_least_of_a_row_is_where_it_is_said_to_be():
     assert cycle.values(whole, np.array([at]))[0, 0] == pytest.approx(found.value, rel=1e-12)
     dense = cycle.values(whole, np.linspace(0.0, cycle.duration, 10_001))[:, 0]
     assert found.value == pytest.approx(dense.min(), rel=1e-6) and found.value <= dense.min()
+    assert highest.value == pytest.approx(dense.max(), rel=1e-6) and highest.value >= dense.max()
+
+
+@pytest.mark.parametrize("name", sorted(SCENES))
+def test_no_sample_is_beyond_the_extremes(name):
+    for cycle in simulate(SCENES[name], 1.3, 3).cycles:
+        found, system = measure(cycle), cycle.system
+        rows = np.zeros((system.scene.modal.shapes.shape[1], system.size))
+        rows[:, system.q] = system.scene.modal.shapes.T
+        dense = cycle.values(rows, np.linspace(0.0, cycle.duration, 20_001))
+        size = np.abs(dense).max()
+        assert np.all(found.greatest >= dense.max(axis=0) - 1e-12 * size)
+        assert np.all(found.least <= dense.min(axis=0) + 1e-12 * size)
+        assert found.greatest == pytest.approx(dense.max(axis=0), abs=1e-5 * size)
+        assert found.least == pytest.approx(dense.min(axis=0), abs=1e-5 * size)
 
 
 def test_flows_that_were_used_longest_ago_make_room(monkeypatch):

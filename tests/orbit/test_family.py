@@ -17,7 +17,7 @@ from fcm.orbit.family import chosen, family
 from fcm.orbit.periodic import converged
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
-from fcm.simulate import trace_exact
+from fcm.response.exact import trace_exact
 
 from ..motion.cases import yang
 

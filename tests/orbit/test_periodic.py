@@ -9,9 +9,8 @@ import pytest
 
 import fcm
 from fcm.motion import SimulationError, energy, simulate
-from fcm.orbit import harmonic_state, periodic
+from fcm.orbit import harmonic_state, periodic, trace_orbits
 from fcm.orbit.shooting import Shot
-from fcm.simulate import trace_orbits
 
 from ..motion.cases import SCENES, one_mode, two_contacts, yang
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fcm.motion import simulate
-from fcm.simulate import trace_exact
+from fcm.response.exact import trace_exact
 
 from ..motion.cases import one_mode, two_contacts, yang
 

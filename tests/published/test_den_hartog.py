@@ -17,8 +17,8 @@ import pytest
 from scipy.optimize import fsolve
 
 import fcm
+from fcm.orbit.start import solution_at
 from fcm.response import trace
-from fcm.simulate.explore import solution_at
 
 FRICTION = 0.5  # over the amplitude of the force
 

@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 OF_NO_USE = {  # with --compare, and why
     "method": "it runs every method",
     "at": "it compares whole curves",
+    "only": "it compares whole curves",
     "history_csv": "it simulates no schedule",
     "csv": "it has no curves to write; -o FILE.nc holds the errors",
     "jobs": "the methods are timed on one core",
     "cluster": "the methods are timed on one core",
     "peaks_only": "it has no curves to write; -o FILE.nc holds the errors",
+    "time_limit": "each of its exact curves has one of its own",
     "resume": "it is not kept in between",
     "keep_all": "it runs every method with and without what is left out",
 }

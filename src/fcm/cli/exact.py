@@ -16,8 +16,6 @@ MOST_FREQUENCIES = 100_000
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 OF_NO_USE = {  # with --method exact, and why
     "table": "it needs no coefficients",
-    "tolerance": "it leaves nothing out",
-    "keep_all": "it leaves nothing out anyway",
     "peaks_only": "its points say which of them are not unique",
 }
 
@@ -50,8 +48,10 @@ def _values(text: str) -> list[float]:
     return ends if len(parts) == 1 else [float(value) for value in np.linspace(ends[0], ends[1], count)]
 
 
-def check_options(method: str, at: tuple[float, ...] | None, level: object = None) -> None:
+def check_options(method: str, at: tuple[float, ...] | None, only: str | None, level: object = None) -> None:
     """A usage error if an option was given that has no meaning with the method."""
+    if only is not None and (method != "exact" or at is not None):
+        raise click.UsageError("--only needs --method exact, and curves: no frequencies by --at.")
     if method != "exact":
         if at is not None and level is None:
             raise click.UsageError(
@@ -70,8 +70,8 @@ def traced(
     messages: Messages, scene: Scene, at: tuple[float, ...] | None, options: dict[str, Any]
 ) -> Response:
     """The exact curves of a scene, or its steady motions at frequencies."""
+    from fcm.response.exact import trace_exact
     from fcm.run.progress import part
-    from fcm.simulate import trace_exact
 
     shown = part(messages.progress, 0.0, 0.5 if scene.schedule else 1.0)
     response = trace_exact(scene, at, shown, **options)

@@ -17,6 +17,7 @@ from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
 from fcm.cli.report import all_lost_to_defects, cost_and_error, incomplete, short_of_accuracy
+from fcm.cli.time_limit import TimeLimit, seconds
 
 if TYPE_CHECKING:
     from fcm.response import Response
@@ -78,6 +79,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 )  # fmt: skip
 @tracking.track_options
 @click.option(
+    "--only", type=click.Choice(["peaks"]),
+    help="Peaks, folds and jumps alone, near those of the balance. With --method exact.",
+)  # fmt: skip
+@click.option(
     "--table", type=click.Path(), metavar="FILE", help="A table of your own.  [default: the shipped one]"
 )
 @click.option(
@@ -91,6 +96,10 @@ def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -
 @click.option(
     "--cluster", metavar="ADDRESS",
     help="Instead, the workers of the dask.distributed scheduler there, as in tcp://127.0.0.1:8786.",
+)  # fmt: skip
+@click.option(
+    "--time-limit", type=float, metavar="SECONDS", callback=seconds,
+    help="Stop after so long, and keep what is finished, as Ctrl-C does; --resume goes on.",
 )  # fmt: skip
 @click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE.")
 @click.option(
@@ -131,10 +140,12 @@ def respond(
     over: str | None,
     low: float | None,
     high: float | None,
+    only: str | None,
     table: str | None,
     max_step: float | None,
     jobs: int,
     cluster: str | None,
+    time_limit: float | None,
     resume: bool,
     tolerance: float,
     peaks_only: bool,
@@ -161,7 +172,7 @@ def respond(
     cluster_option.check_options(cluster, level)
     nonlinear_mode.check_options(mode, level, at, force_levels)
     tracking.check_options(track, over, low, high, method)
-    exact.check_options(method, at, level)
+    exact.check_options(method, at, only, level)
     balance.check_level(level, at, accuracy, method, mode)
     balance.check_peaks_only(peaks_only, level, csv)
     balance.check_options(harmonics, accuracy, method, table)
@@ -187,26 +198,33 @@ def respond(
     outputs = Outputs(messages, output, csv, history_csv)
     with outputs.kept(resume) as checkpoint, cluster_option.place_of(cluster) as place:
         options: dict[str, Any] = {"jobs": jobs, "place": place, "keep": checkpoint}
-        if track is not None and over is not None and low is not None and high is not None:
-            response = tracking.tracked(messages, loaded, track, over, (low, high), harmonics, accuracy)
-        elif mode is not None and level is not None:
-            chosen = {"harmonics": harmonics, "accuracy": accuracy, "force_levels": force_levels or (1.0,)}
-            response = nonlinear_mode.traced(loaded, mode, level, chosen)
-        elif loaded.optimum is not None:
-            kept = {**options, **balanced, "table": _opened(table)}
-            response = tracking.optimised(messages, loaded, method, kept)
-        elif method == "exact" and (loaded.has_range or at):
-            response = exact.traced(messages, loaded, at, options)
-        elif level is not None and at is not None:
-            response = _levels(loaded, at, level, harmonics)
-        elif loaded.has_range:
-            response = _traced(messages, loaded, method, table, {**options, **balanced})
-        else:
-            response = _without_curves(loaded)
-        if sensitivity:
-            of_peaks.added(messages, response, loaded)
-        if loaded.schedule and level is None and track is None:
-            response.histories = schedule.simulated(messages, loaded, response)
+        with TimeLimit(messages, time_limit):
+            if track is not None and over is not None and low is not None and high is not None:
+                response = tracking.tracked(messages, loaded, track, over, (low, high), harmonics, accuracy)
+            elif mode is not None and level is not None:
+                chosen = {
+                    "harmonics": harmonics,
+                    "accuracy": accuracy,
+                    "force_levels": force_levels or (1.0,),
+                }
+                response = nonlinear_mode.traced(loaded, mode, level, chosen)
+            elif loaded.optimum is not None:
+                kept = {**options, **balanced, "table": _opened(table)}
+                response = tracking.optimised(messages, loaded, method, kept)
+            elif method == "exact" and (loaded.has_range or at):
+                response = exact.traced(
+                    messages, loaded, at, {**options, "tolerance": balanced["tolerance"], "only": only}
+                )
+            elif level is not None and at is not None:
+                response = _levels(loaded, at, level, harmonics)
+            elif loaded.has_range:
+                response = _traced(messages, loaded, method, table, {**options, **balanced})
+            else:
+                response = _without_curves(loaded)
+            if sensitivity:
+                of_peaks.added(messages, response, loaded)
+            if loaded.schedule and level is None and track is None:
+                response.histories = schedule.simulated(messages, loaded, response)
         response = visible(response, loaded)
         response.notes, response.units = list(loaded.notes), loaded.units
         response.drawn = loaded.drawn

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +10,11 @@ from scipy.optimize import minimize_scalar
 from fcm.compare.lines import Line, line_of
 from fcm.motion import SimulationError, State
 from fcm.orbit import harmonic_state, periodic
+from fcm.response.exact import trace_exact
 from fcm.response.result import Curve
 from fcm.run import Progress
+from fcm.run.progress import part
 from fcm.scene.model import Scene
-from fcm.simulate import trace_exact
 
 LIMIT = 60.0  # [s] of processor time for a curve
 CLOSE = 1e-8  # to which the frequency of a peak is located, relative
@@ -25,30 +25,12 @@ def exact_lines(scene: Scene, progress: Progress | None = None) -> list[Line]:
     """The exact curves of a scene; those that cannot be followed to their end, in time, are not complete."""
     scenes, lines = scene.each_curve(), []
     for number, one in enumerate(scenes):
-        limit = _Limit(progress, number / len(scenes), 1.0 / len(scenes))
-        (curve,) = trace_exact(replace(one, curves=()), None, limit).curves
-        if limit.reached:
-            where = curve.reason.removeprefix("interrupted ")
-            curve = replace(curve, reason=f"not finished in {LIMIT:g} s of processor time, {where}")
-        elif curve.reason.startswith("interrupted"):
+        shown = part(progress, number / len(scenes), (number + 1) / len(scenes))
+        response = trace_exact(replace(one, curves=()), None, shown, limit=LIMIT, tolerance=None)
+        if response.interrupted:
             raise KeyboardInterrupt
-        lines.append(_line(one, curve))
+        lines.append(_line(one, response.curves[0]))
     return lines
-
-
-class _Limit:
-    """Progress of one of several curves, and the end of its time."""
-
-    def __init__(self, progress: Progress | None, begin: float, share: float) -> None:
-        self.progress, self.begin, self.share = progress, begin, share
-        self.end, self.reached = time.process_time() + LIMIT, False
-
-    def __call__(self, fraction: float, text: str) -> None:
-        if self.progress is not None:
-            self.progress(self.begin + self.share * fraction, text)
-        if time.process_time() > self.end:
-            self.reached = True
-            raise KeyboardInterrupt  # as one who waits would; what there is of the curve is returned
 
 
 def _line(scene: Scene, curve: Curve) -> Line:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 REPEATS = 2
 TIMEOUT = 60.0  # [s]
-_IMPORTS = {"exact": "import fcm.scene, fcm.simulate"}
+_IMPORTS = {"exact": "import fcm.scene, fcm.response.exact"}
 _PROGRAM = """
 import time
 {imports}

@@ -5,5 +5,6 @@ from fcm.continuation.branches import Branches, all_branches
 from fcm.continuation.follow import follow
 from fcm.continuation.path import Mark, Path, Status
 from fcm.continuation.problem import Problem
+from fcm.continuation.stage import Stage
 
-__all__ = ["Between", "Branches", "Mark", "Path", "Problem", "Status", "all_branches", "follow"]
+__all__ = ["Between", "Branches", "Mark", "Path", "Problem", "Stage", "Status", "all_branches", "follow"]

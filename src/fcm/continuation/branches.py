@@ -11,6 +11,7 @@ from fcm.continuation.follow import Progress, follow
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.problem import Problem
 
+Follow = Callable[..., Path]  # as `follow`
 SAME = 1e-5  # solutions closer than this, in the problem's scale, are one
 
 
@@ -35,6 +36,7 @@ def all_branches(
     span: tuple[float, float],
     max_step: float,
     progress: Progress | None = None,
+    along: Follow = follow,
 ) -> Branches:
     """Follow every solution that no branch followed before contains.
 
@@ -45,6 +47,8 @@ def all_branches(
     solutions : sequence of (n + 1,)
         In the order in which they are to be followed; those at an end of the span lead inwards, those inside
         it both ways.
+    along : callable
+        Follows a path, as `follow` does.
     """
     stations = sorted({float(z[-1]) for z in solutions})
     paths: list[Path] = []
@@ -53,7 +57,7 @@ def all_branches(
     for z in solutions:
         if any(contains(path, z, problem) for path in paths):
             continue
-        path = _through(new_problem, z, span, max_step, stations, progress)
+        path = _through(new_problem, z, span, max_step, stations, progress, along)
         if path.z.shape[0]:
             paths.append(path)
         else:
@@ -78,15 +82,16 @@ def _through(
     max_step: float,
     stations: Sequence[float],
     progress: Progress | None,
+    along: Follow,
 ) -> Path:
     """The whole branch through a solution, from its lower end where it has one."""
     if z[-1] == span[0] or z[-1] == span[1]:
-        path = follow(new_problem(), z, span, z[-1] == span[0], max_step, stations, progress)
+        path = along(new_problem(), z, span, z[-1] == span[0], max_step, stations, progress)
         return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path
-    path = follow(new_problem(), z, span, True, max_step, stations, progress)
+    path = along(new_problem(), z, span, True, max_step, stations, progress)
     if path.status is Status.CLOSED or path.z.shape[0] == 0:
         return path
-    other = follow(new_problem(), z, span, False, max_step, stations, progress)
+    other = along(new_problem(), z, span, False, max_step, stations, progress)
     if other.z.shape[0] == 0:
         return path
     if other.status not in (Status.COMPLETE, Status.RETURNED):

@@ -13,6 +13,7 @@ from fcm.continuation.path import FloatArray, Mark
 
 LOOKS = 40  # places looked at to find a root
 FINE = 1e-11  # of a step: a root is known to this
+HIGH = 1e-11  # of an output, to which a peak is known where looking is dear
 RISE = cython.declare(
     cython.double, 1e-7
 )  # growth of an output over its size, along a unit of arc, that is not rounding
@@ -127,6 +128,7 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     after: cython.double = value(front, front.there, kind, k)
     at: cython.double
     now: cython.double
+    bend: cython.double
     last: cython.int = 0
     count: cython.int
     for count in range(LOOKS):  # noqa: B007
@@ -138,6 +140,10 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
         now = value(front, front.between, kind, k)
         if now == 0.0:
             return at
+        if kind == PEAK and front.problem.soft:
+            bend = abs(after - before) / (high - low)
+            if now * now < 2.0 * HIGH * bend * front.between.output[k]:
+                return at
         if now * before > 0.0:
             after = 0.5 * after if last == 1 else after
             low, before, last = at, now, 1

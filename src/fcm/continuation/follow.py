@@ -25,6 +25,8 @@ from fcm.continuation import events
 from fcm.continuation.front import Front, Place
 from fcm.continuation.path import FloatArray, Mark, Path, Status
 from fcm.continuation.problem import Problem
+from fcm.continuation.soft import Soft
+from fcm.continuation.stage import Stage, put_back, state_of
 from fcm.continuation.trail import Trail
 
 if cython.compiled:
@@ -55,6 +57,7 @@ END = cython.declare(cython.long, int(Mark.END))
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
+Watch = Callable[[Stage], None]
 
 
 def follow(
@@ -65,6 +68,8 @@ def follow(
     max_step: float = 0.05,
     stations: Sequence[float] = (),
     progress: Progress | None = None,
+    stage: Stage | None = None,
+    watch: Watch | None = None,
 ) -> Path:
     """Follow the curve through start until the parameter leaves the span, or the curve closes.
 
@@ -84,13 +89,22 @@ def follow(
         Values of the parameter at which the curve has points, marked.
     progress : callable, optional
         Called now and then.
+    stage : Stage, optional
+        Of the same curve of a soft problem, to which it had come when it was interrupted.
+    watch : callable, optional
+        Is given the stage before every step of a soft problem.
 
     Returns
     -------
     Path
         With status STALLED and without points where there is no curve at the start.
     """
-    return _Follower(problem, span, max_step, stations, progress).run(start, forward)
+    follower = _Follower(problem, span, max_step, stations, progress)
+    if stage is not None:
+        follower.resume(stage)
+    elif not follower.begin(start, forward):
+        return follower.path(Status.STALLED)
+    return follower.run(watch)
 
 
 @cython.cclass
@@ -111,6 +125,7 @@ class _Follower:
     first: cython.double[::1]  # point,
     head: cython.double[::1]  # and its tangent
     interior: cython.bint
+    soft: Soft | None
     progress: Progress | None
 
     def __init__(
@@ -129,21 +144,46 @@ class _Follower:
         self.trail = Trail(problem.unknowns + 1)
         self.greatest = np.zeros(problem.outputs)
         self.most = self.greatest
+        self.soft = Soft(self.front, self.trail) if problem.soft else None
 
-    def run(self, start: FloatArray, forward: bool) -> Path:
+    def begin(self, start: FloatArray, forward: bool) -> bool:
+        """Go to the curve at the start; whether there is one."""
         here: Place = self.front.here
-        count: cython.int
         row = np.zeros(self.n + 1)
         row[-1] = 1.0 if forward else -1.0
         if not self.front.begin(np.array(start, dtype=np.float64), row):
-            return self.path(Status.STALLED)
+            return False
         here.z[self.n] = start[-1]
         self.interior = self.low < start[-1] < self.high
         self.first, self.head = np.array(here.z), np.array(here.tangent)
         self.size = self.front.extent()
         self.trail.add(here, self.front.newton.scale, 0 if self.interior else END, self.front.there.shift)
         self.step = min(FIRST, self.max_step)
+        return True
+
+    def resume(self, stage: Stage) -> None:
+        """Go where the curve had come to."""
+        put_back(self.front, stage)
+        self.trail.restore(stage.kept)
+        self.step, self.size, self.interior = stage.step, stage.size, stage.interior
+        self.greatest[:] = stage.greatest
+        self.first, self.head = stage.start.copy(), stage.heading.copy()
+
+    def stage(self) -> Stage:
+        """Where it is."""
+        return Stage(
+            kept=self.trail.state(), step=self.step, greatest=self.greatest.copy(), size=self.size,
+            start=np.array(self.first), heading=np.array(self.head), interior=bool(self.interior),
+            **state_of(self.front),
+        )  # fmt: skip
+
+    def run(self, watch: Watch | None) -> Path:
+        """Step by step to where the curve ends."""
+        here: Place = self.front.here
+        count: cython.int
         for count in range(LONGEST):
+            if watch is not None and self.soft is not None and self.soft.repeated == 0:
+                watch(self.stage())
             status = self.advance()
             if status is not None:
                 return self.path(status)
@@ -158,6 +198,8 @@ class _Follower:
         step: cython.double = self.step
         reach: cython.double
         dip: cython.double
+        if self.soft is not None:
+            return self.soft.advance(self, step)
         while step > SHORTEST:
             reach = front.ahead(step)
             if reach < min(step, TOUCHED):
@@ -183,8 +225,8 @@ class _Follower:
             step = 0.25 * min(step, reach)
         return Status.STALLED
 
-    @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def good(self) -> cython.bint:
         """Whether the curve was where it was predicted, and went on as it did."""
         front: Front = self.front
@@ -193,13 +235,18 @@ class _Follower:
         same: cython.bint = front.there.orientation == front.here.orientation
         return same and front.missed < 0.5 and front.turn > COSINE and front.unforeseen() < 4.0 * UNEVEN
 
-    @cython.cfunc
+    @cython.ccall
     def smooth(self) -> object:
         """Go on to the place there."""
         front: Front = self.front
         growth: cython.double
+        count: cython.int = self.trail.count
         if self.keep(front.step):
             return self.end()
+        if self.soft is not None and not self.low <= front.there.z[self.n] <= self.high:
+            self.trail.cut(count)  # beyond an end that was not landed on
+            self.step = 0.25 * front.step
+            return Status.STALLED if self.step < AFTER else None
         if self.interior and self.closed():
             self.trail.close()
             return Status.CLOSED
@@ -235,13 +282,16 @@ class _Follower:
         front.accept(place, at)
         return self.turn(same, point)
 
-    @cython.cfunc
-    def turn(self, which: cython.int, point: events.Found) -> object:
+    @cython.ccall
+    def turn(self, which: cython.int, point: events.Found, past: cython.double = BEYOND) -> object:
         """Keep the corner that is here, and turn into the direction that the curve has beyond."""
         front: Front = self.front
         rise: cython.double = front.here.tangent[self.n]
         growth = np.array(front.here.growth)
-        front.cross(which, BEYOND)
+        if self.soft is None:
+            front.cross(which, past)
+        else:
+            front.cross_softly(past)
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
         if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
             mark |= Mark.PEAK
@@ -251,6 +301,10 @@ class _Follower:
         self.rise()
         self.step = AFTER
         return None
+
+    def aim(self, step: float, longer: bool) -> None:
+        """Choose the next step; whether it may be longer than it was to be."""
+        self.step = step if longer else min(self.step, step)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

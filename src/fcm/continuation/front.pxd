@@ -24,7 +24,7 @@ cdef class Front:
     cdef public double turn
     cdef double past
     cdef public int which
-    cdef double[::1] bend
+    cdef public double[::1] bend
     cdef double[::1] guess
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
     cpdef bint go(self, double step) except -1
@@ -33,6 +33,7 @@ cdef class Front:
     cpdef int accept(self, Place place, double length) except -1
     cpdef double ahead(self, double step) except -1
     cpdef bint cross(self, Py_ssize_t which, double past) except -1
+    cpdef bint cross_softly(self, double past) except -1
     cpdef bint crosses(self) except -1
     cpdef double dip(self) except -1
     cdef int incline(self, Place place) except -1
@@ -43,6 +44,8 @@ cdef class Front:
     cpdef double length(self, Place place) except -1e300
     cpdef double extent(self) except -1
     cpdef double unforeseen(self) except -1
+    cdef double softly(self, double step) except -1
+    cdef int bear(self, double sign) except -1
     cdef bint crossed(self, double step) except -1
     cdef double value(self, Py_ssize_t k) noexcept
     cdef double beyond(self, Py_ssize_t which, double past) except -1e300

@@ -26,6 +26,7 @@ AHEAD = cython.declare(cython.double, 1e-6)  # length over which margins have th
 PI = cython.declare(cython.double, 3.141592653589793)
 APART = cython.declare(cython.double, 1.0)  # [rad] margins this far from one another are not the same
 KNOWN = cython.declare(cython.double, 1e-4)  # of the length to there, to which it is found
+ROUGHLY = cython.declare(cython.double, 2e-3)  # and where a label changes
 
 
 @cython.cclass
@@ -84,6 +85,8 @@ class Front:
         high: cython.double = step
         width: cython.double = 2.0 * step
         aside: cython.double = KNOWN / 3.0  # of the root, to come to either side of it
+        if self.problem.soft:
+            return self.softly(step)
         if self.problem.margins == 0 or step <= low or not self.crossed(step):
             return step
         before, after = self.here.margin[self.which], self.value(self.which)
@@ -105,14 +108,36 @@ class Front:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
+    def softly(self, step: cython.double) -> cython.double:
+        """The step, or where on it a label of the prediction changes: a label has no root, but halves."""
+        count: cython.int
+        low: cython.double = 0.0
+        high: cython.double = step
+        if self.problem.margins == 0 or not self.crossed(step):
+            return step
+        for count in range(LOOKS):  # noqa: B007
+            if high - low < ROUGHLY * high:
+                break
+            if self.crossed(0.5 * (low + high)):
+                high = 0.5 * (low + high)
+            else:
+                low = 0.5 * (low + high)
+        return high
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
     def crossed(self, step: cython.double) -> cython.bint:
-        """Whether the prediction a step ahead has a margin of the other sign than here; which is then one
-        of those."""
+        """Whether the prediction a step ahead has a margin of the other sign than here, or a label of
+        another value; which is then one of those."""
         k: cython.Py_ssize_t
         self.predict(step)
         self.problem.bound(self.guess)
         for k in range(self.problem.margins):
-            if self.value(k) * self.here.margin[k] < 0.0:
+            if self.problem.soft:
+                changed: cython.bint = self.problem.margin[k] != self.here.margin[k]
+            else:
+                changed = self.value(k) * self.here.margin[k] < 0.0
+            if changed:
                 self.which = k
                 return True
         return False
@@ -297,16 +322,42 @@ class Front:
                 break
             # the two disagree: the curve may bend by much within that length
             sign, past = -sign, CLOSER * past
+        self.bear(sign)
+        self.adopt(which, before)
+        self.past = past
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def cross_softly(self, past: cython.double) -> cython.bint:
+        """Turn, where a label changes, into the direction that the curve has a length past it.
+
+        The orientation is the same on both sides. The labels are those beyond, even if no curve is found.
+        """
+        i: cython.Py_ssize_t
+        self.newton.row[:] = self.here.tangent
+        for i in range(self.here.z.shape[0]):
+            self.newton.z[i] = self.here.z[i] + past * self.newton.scale[i] * self.here.tangent[i]
+        self.problem.bound(self.newton.z)
+        self.here.margin[:] = self.problem.margin
+        if not self.newton.look():
+            return False
+        self.bear(1.0 if self.newton.orientation == self.here.orientation else -1.0)
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def bear(self, sign: cython.double) -> cython.int:
+        """Take the corrector's direction, with a sign, as that of here."""
+        i: cython.Py_ssize_t
         self.here.orientation = sign * self.newton.orientation
-        for i in range(size):
+        for i in range(self.here.z.shape[0]):
             self.here.tangent[i] = sign * self.newton.tangent[i]
             self.guess[i] = self.newton.scale[i] * self.here.tangent[i]
         if self.problem.outputs:
             self.problem.report(self.here.z, self.guess)
             self.here.growth[:] = self.problem.growth
-        self.adopt(which, before)
-        self.past = past
-        return True
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1e300, check=False)
@@ -339,7 +390,7 @@ class Front:
         """The slopes of a place's margins along its tangent, from differences."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        if self.problem.margins == 0:
+        if self.problem.margins == 0 or self.problem.soft:
             return 0
         for i in range(self.guess.shape[0]):
             self.guess[i] = place.z[i] + AHEAD * self.newton.scale[i] * place.tangent[i]

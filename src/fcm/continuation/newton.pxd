@@ -16,6 +16,7 @@ cdef class Newton:
     cdef double[::1] closing
     cpdef bint correct(self, double reach) except -1
     cpdef bint look(self) except -1
+    cdef bint settled(self, double step, double ratio, int count) except -1
     cdef bint factor(self) except -1
     cdef int solve(self) except -1
     cdef double step(self) except -1

@@ -17,6 +17,8 @@ from fcm.continuation.problem import Problem
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
 CLOSE = cython.declare(cython.double, 1e-13)  # error of a point, estimated from the convergence
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
+EXACT = cython.declare(cython.double, 1e-11)  # a step that is not worth another evaluation
+ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, though the way was long
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
 ROUNDINGS = cython.declare(
@@ -62,18 +64,31 @@ class Newton:
             if not self.factor():
                 return False
             step = self.step()
+            if self.problem.soft and step < before and self.settled(step, step / before, count):
+                return self.direct()
             if not step < FAR or (count > 2 and step > 2.0 * before):
                 return False
             for i in range(size):
                 self.z[i] += self.scale[i] * self.delta[i]
             ratio = step / before
-            # the first step says nothing of the convergence yet
+            # the first step says nothing of the convergence yet; that to a corner that is not seen never
+            if self.problem.soft:
+                before = step
+                continue
             if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
                 return self.direct()
             if count > 0 and ratio > 0.25 and step < COARSEST and step < ROUNDINGS * self.rounding():
                 return self.direct()
             before = step
         return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def settled(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
+        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be."""
+        if step < EXACT:
+            return True
+        return count > 0 and ratio > 0.25 and step < ROUGH
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

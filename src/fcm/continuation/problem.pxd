@@ -6,6 +6,7 @@ cdef class Problem:
     cdef public int outputs
     cdef public int rank
     cdef public bint coarse
+    cdef public bint soft
     cdef public double boundless
     cdef public double[::1] residual
     cdef public double[:, ::1] jacobian

@@ -25,13 +25,14 @@ class Problem:
     (n, 1), the derivative by the parameter alone; see `condense`.
     boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
+    soft: whether the margins are labels: the problem is smooth while they stay, and may be where they change.
     """
 
     def __init__(
         self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
-        self.coarse, self.boundless = False, BOUNDLESS
+        self.coarse, self.soft, self.boundless = False, False, BOUNDLESS
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

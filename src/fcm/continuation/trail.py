@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import cython
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation.front import Place
 from fcm.continuation.path import FloatArray, Path, Status
 
 ROOM = 64  # points for which there is room at first
+
+
+class Kept(NamedTuple):
+    """The points of a trail."""
+
+    z: FloatArray  # (point, unknown + 1)
+    direction: FloatArray
+    mark: npt.NDArray[np.int64]  # (point,)
+    rest: FloatArray  # (point, 2) orientation, shift
 
 
 @cython.cclass
@@ -70,6 +80,16 @@ class Trail:
         """The last point."""
         return np.array(self.z[self.count - 1])
 
+    def tail(self) -> tuple[FloatArray, FloatArray, int, float, float]:
+        """The last point, to be put again."""
+        k = self.count - 1
+        rest = float(self.rest[k, 0]), float(self.rest[k, 1])
+        return self.last(), np.array(self.direction[k]), int(self.mark[k]), *rest
+
+    def cut(self, count: int) -> None:
+        """Forget all but so many points."""
+        self.count = count
+
     def drop(self) -> int:
         """Forget the last point; its mark."""
         self.count -= 1
@@ -80,16 +100,29 @@ class Trail:
         first = np.array(self.z[0]), np.array(self.direction[0])
         self.put(*first, self.mark[0], self.rest[0, 0], self.rest[0, 1])
 
+    def state(self) -> Kept:
+        """A copy of the points."""
+        kept = slice(self.count)
+        z, direction = np.array(np.asarray(self.z)[kept]), np.array(np.asarray(self.direction)[kept])
+        return Kept(
+            z, direction, np.array(np.asarray(self.mark)[kept]), np.array(np.asarray(self.rest)[kept])
+        )
+
+    def restore(self, kept: Kept) -> None:
+        """Have these points and no others."""
+        self.count = 0
+        for z, direction, mark, rest in zip(*kept, strict=True):
+            self.put(np.array(z), np.array(direction), mark, rest[0], rest[1])
+
     def path(self, status: Status, evaluations: int) -> Path:
         """The points as they are."""
-        kept = slice(self.count)
-        rest = np.array(np.asarray(self.rest)[kept].T)
+        z, direction, mark, rest = self.state()
         return Path(
-            z=np.array(np.asarray(self.z)[kept]),
-            direction=np.array(np.asarray(self.direction)[kept]),
-            mark=np.array(np.asarray(self.mark)[kept]),
-            orientation=rest[0],
-            shift=rest[1],
+            z=z,
+            direction=direction,
+            mark=mark,
+            orientation=np.array(rest[:, 0]),
+            shift=np.array(rest[:, 1]),
             status=status,
             evaluations=evaluations,
         )

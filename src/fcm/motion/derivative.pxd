@@ -4,10 +4,12 @@ from fcm.motion.segments cimport Segments
 cdef class Derivative:
     cdef readonly Flows flows
     cdef readonly Py_ssize_t unknowns, at
+    cdef readonly double position
     cdef readonly double[:, ::1] columns
     cdef readonly double[::1] rate
     cdef double[:, ::1] _terms, _grades, _rates
     cdef double[:, ::1] _room
+    cdef void _stand(self, Segments segments) noexcept nogil
     cdef Py_ssize_t _go(self, Segments segments, Py_ssize_t last, double position) noexcept nogil
     cdef void _follow(self, Py_ssize_t slot, double position) noexcept nogil
     cdef void _whole(self, Py_ssize_t slot, Py_ssize_t j) noexcept nogil

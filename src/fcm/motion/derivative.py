@@ -40,15 +40,16 @@ _NEGATIVE = cython.declare(cython.int, 3)
 
 @cython.cclass
 class Derivative:
-    """Of a motion by x = (q, q', f) at its start and by the frequency.
+    """Of a motion by x = (q, q', f) at its start, or along directions of x, and by the frequency.
 
-    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
-    them that by the frequency, at a fixed time; the last row is the state vector itself; `rate` is A y there.
+    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x, or along
+    direction k; the row after them that by the frequency, at a fixed time; the last row is the state vector
+    itself; `rate` is A y there.
     """
 
-    def __init__(self, flows: Flows) -> None:
+    def __init__(self, flows: Flows, directions: int = 0) -> None:
         self.flows = flows
-        self.unknowns, self.at = 2 * flows.modes + flows.contacts, 0
+        self.unknowns, self.at, self.position = directions or 2 * flows.modes + flows.contacts, 0, 0.0
         self.columns = np.zeros((self.unknowns + 2, flows.size))
         self.rate = np.zeros(flows.size)
         self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
@@ -58,23 +59,48 @@ class Derivative:
         """Put the derivative at the start of the segments."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        i: cython.Py_ssize_t
         m: cython.Py_ssize_t = self.flows.modes
         n: cython.Py_ssize_t = 2 * m + self.flows.contacts
-        i: cython.Py_ssize_t
-        self.at = 0
         for k in range(self.unknowns + 1):
             for i in range(self.flows.size):
                 self.columns[k, i] = 1.0 if i == k and k < self.unknowns else 0.0
         for k in range(m):
             for j in range(self.flows.contacts):
                 self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
+        self._stand(segments)
+
+    def begins_along(self, segments: Segments, directions: cython.double[:, ::1]) -> None:
+        """Put the derivative along directions (direction, unknown) at the start of the segments."""
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        m: cython.Py_ssize_t = self.flows.modes
+        n: cython.Py_ssize_t = 2 * m + self.flows.contacts
+        self.columns[:] = 0.0
+        for k in range(self.unknowns):
+            for i in range(n):
+                self.columns[k, i] = directions[k, i]
+            for j in range(self.flows.contacts):
+                for i in range(m):
+                    self.columns[k, n + j] += self.flows.k_v[j] * self.flows.normal[j, i] * directions[k, i]
+        self._stand(segments)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _stand(self, segments: Segments) -> cython.void:
+        """At the start of the first segment, with the friction that its states want."""
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        self.at, self.position = 0, 0.0
         for k in range(self.unknowns):
             self._put_friction(self.columns, k, segments, 0, True)
         for i in range(self.flows.size):
             self.columns[self.unknowns + 1, i] = segments.y[0, i]
 
     def go(self, segments: Segments, last: int, position: float) -> int:
-        """To a position in a segment; the segment whose flow is missing, or -1 when it is there."""
+        """On to a position in a segment; the segment whose flow is missing, or -1 when it is there."""
         segment: cython.Py_ssize_t = last
         end: cython.double = position
         missing: cython.Py_ssize_t
@@ -95,7 +121,8 @@ class Derivative:
                 return self.at
             self.flows.refresh(slot)
             if self.at == last:
-                self._follow(slot, position)
+                self._follow(slot, position - self.position)
+                self.position = position
                 self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0, 1.0)
                 for i in range(self.flows.size):
                     self.rate[i] = self._rates[0, i]
@@ -103,9 +130,10 @@ class Derivative:
             new = self.flows.find(segments.states, self.at + 1)
             if new < 0:
                 return self.at + 1
-            self._follow(slot, segments.length[self.at])
+            self._follow(slot, segments.length[self.at] - self.position)
             self._across(segments, self.at, slot, new)
             self.at += 1
+            self.position = 0.0
 
     @cython.cfunc
     @cython.nogil

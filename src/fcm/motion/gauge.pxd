@@ -10,7 +10,12 @@ cdef class Gauge:
     cdef double[::1] _powers, _real, _imag, _weights, _nodes
     cdef double[:, ::1] _ends
     cdef Py_ssize_t _slot
+    cdef double[:, ::1] _here, _there, _old, _new
     cdef int _go(self) noexcept nogil
+    cdef int _scan(self) noexcept nogil
+    cdef void _scan_segment(self, Py_ssize_t slot) noexcept nogil
+    cdef void _look(self, Py_ssize_t slot, double[:, ::1] out) noexcept nogil
+    cdef bint _may_turn(self, Py_ssize_t r) noexcept nogil
     cdef void _moments(self) noexcept nogil
     cdef void _integrate(self) noexcept nogil
     cdef void _extremes(self, Py_ssize_t r) noexcept nogil

@@ -46,14 +46,105 @@ class Gauge:
         self.place, self._powers = np.zeros((count, 4)), np.zeros(ORDER + 1)
         self._real, self._imag, self._slot = np.zeros(ORDER + 1), np.zeros(ORDER + 1), -1
         self._ends = np.zeros((3, steps.flows.size))
+        self._here, self._there = np.zeros((3, steps.flows.size)), np.zeros((3, steps.flows.size))
+        self._old, self._new = np.zeros((3, count)), np.zeros((3, count))
         self._nodes, self._weights = _ON_ONE
 
     def go(self) -> int:
         """Measure all steps: 0 when done, -1 where a flow is missing."""
         stopped: cython.int
         with cython.nogil:
-            stopped = self._go()
+            stopped = self._go() if self._integrals else self._scan()
         return int(stopped)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _scan(self) -> cython.int:
+        """The extremes alone: only steps that may hold one are expanded."""
+        slot: cython.Py_ssize_t
+        while self.steps.at + 1 < self.steps.segments.count:
+            if self.steps.segments.length[self.steps.at + 1] > 0.0:
+                slot = self.steps.flows.find(self.steps.segments.states, self.steps.at + 1)
+                if slot < 0:
+                    return -1
+                self.steps.flows.refresh(slot)
+                self.steps.at += 1
+                self._scan_segment(slot)
+            else:
+                self.steps.at += 1
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _scan_segment(self, slot: cython.Py_ssize_t) -> cython.void:
+        left: cython.double = self.steps.segments.length[self.steps.at]
+        length: cython.double
+        i: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        expanded: cython.bint
+        self.steps.first = 0.0
+        for i in range(self.steps.flows.size):
+            self._here[0, i] = self._there[0, i] = self.steps.segments.y[self.steps.at, i]
+        self._look(slot, self._old)
+        for r in range(self.greatest.shape[0]):
+            self._note(r, 0.0, self._old[0, r])
+        while left > 0.0:
+            length = min(left, 1.0)
+            if length == 1.0:
+                self.steps.flows.advance(slot, 0, self._there, 0)
+            else:
+                self.steps.flows.part(slot, length, self._there, 0)
+            self._look(slot, self._new)
+            expanded = False
+            for r in range(self.greatest.shape[0]):
+                if self._may_turn(r):
+                    if not expanded:
+                        self.steps.length = length
+                        self.steps.flows.taylor(slot, self._here, 0, self.steps.terms)
+                        self._reach_end()
+                        expanded = True
+                    self._extremes(r)
+                self._note(r, length, self._new[0, r])
+                for i in range(3):
+                    self._old[i, r] = self._new[i, r]
+            for i in range(self.steps.flows.size):
+                self._here[0, i] = self._there[0, i]
+            left -= 1.0
+            self.steps.first += 1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _look(self, slot: cython.Py_ssize_t, out: cython.double[:, ::1]) -> cython.void:
+        """The rows at the place there, and their first two derivatives by the position."""
+        r: cython.Py_ssize_t
+        j: cython.int
+        h: cython.double = self.steps.flows.step[slot]
+        self.steps.flows.derive(slot, self._there, 0, self._there, 1, h)
+        self.steps.flows.derive(slot, self._there, 1, self._there, 2, h)
+        for r in range(self.greatest.shape[0]):
+            for j in range(3):
+                out[j, r] = self._dot(r, self._there, j)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _may_turn(self, r: cython.Py_ssize_t) -> cython.bint:
+        """Whether the step may hold an extreme beyond those so far, by the slopes at its ends.
+
+        A step is a part of the fastest motion in which no slope grows to more than twice those at its ends.
+        """
+        first: cython.double = self._old[1, r]
+        last: cython.double = self._new[1, r]
+        bend: cython.double = self._old[2, r]
+        reach: cython.double
+        if first * last >= 0.0 and (bend * first >= 0.0 or bend * self._new[2, r] >= 0.0):
+            return False
+        reach = 2.0 * max(fabs(first), fabs(last))
+        high: cython.bint = max(self._old[0, r], self._new[0, r]) + reach > self.greatest[r]
+        return high or min(self._old[0, r], self._new[0, r]) - reach < self.least[r]
 
     @cython.cfunc
     @cython.nogil
@@ -67,6 +158,8 @@ class Gauge:
                 return stopped
             if self._integrals:
                 self._integrate()
+            if self.greatest.shape[0] == 0:
+                continue
             self._reach_end()
             for r in range(self.greatest.shape[0]):
                 self._extremes(r)

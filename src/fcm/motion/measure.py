@@ -26,38 +26,50 @@ class Measure:
     least: FloatArray  # (dof,)
 
 
-def measure(cycle: Cycle) -> Measure:
-    """Measure the displacements over a cycle.
+def measure(cycle: Cycle, known: Extremes | None = None) -> Measure:
+    """Measure the displacements over a cycle, of which the extremes may be known.
 
     The integrals are exact to rounding; each extreme is a root of the velocity.
     """
     system, shapes = cycle.system, cycle.system.scene.modal.shapes
-    rows = np.zeros((shapes.shape[1], system.size - 2))
-    rows[:, system.q] = shapes.T
-    found = _gauged(system, cycle.segments, rows)
+    least, greatest = known or displaced(system, cycle.segments)
+    found = _gauged(system, cycle.segments, np.zeros((0, system.size - 2)))
     # x = a sin(theta + phase): its integral with sin(theta) + i cos(theta) is a exp(i phase) T / 2
     wave = 2.0 / cycle.duration * (np.asarray(found.sine) + 1j * np.asarray(found.cosine)) @ shapes
     mean = np.asarray(found.mean) @ shapes / cycle.duration
-    high, low = np.asarray(found.greatest), np.asarray(found.least)
+    high, low = (np.array([one.value for one in ends]) for ends in (greatest, least))
     return Measure(0.5 * (high - low), np.abs(wave), np.angle(wave), mean, high, low)
 
 
 class Extreme(NamedTuple):
-    """The least value of a row over segments, and where it is."""
+    """The least or greatest value of a row over segments, and where it is."""
 
     value: float
     segment: int
     position: float  # in steps
 
 
-def least(system: System, segments: Segments, rows: FloatArray) -> list[Extreme]:
-    """Of each of rows @ y, y without the angle of the forces: rows (row, d - 2)."""
+Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of several rows
+
+
+def displaced(system: System, segments: Segments) -> Extremes:
+    """The least and the greatest displacement of each degree of freedom."""
+    shapes = system.scene.modal.shapes
+    rows = np.zeros((shapes.shape[1], system.size - 2))
+    rows[:, system.q] = shapes.T
+    return extremes(system, segments, rows)
+
+
+def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
+    """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
     found = _gauged(system, segments, rows, integrals=False)
-    places = np.asarray(found.place)[:, 2:]
-    return [
-        Extreme(value, int(place[0]), place[1])
-        for value, place in zip(np.asarray(found.least).tolist(), places.tolist(), strict=True)
-    ]
+    places = np.asarray(found.place)
+    return _placed(found.least, places[:, 2:]), _placed(found.greatest, places[:, :2])
+
+
+def _placed(values: FloatArray, places: FloatArray) -> list[Extreme]:
+    pairs = zip(np.asarray(values).tolist(), places.tolist(), strict=True)
+    return [Extreme(value, int(place[0]), place[1]) for value, place in pairs]
 
 
 def _gauged(system: System, segments: Segments, rows: FloatArray, integrals: bool = True) -> Gauge:

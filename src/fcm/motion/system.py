@@ -56,6 +56,7 @@ class System:
         self.static: FloatArray = modal.shapes @ loads.static  # modal
         self.flows = self._flows()
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
+        self._along = Derivative(self.flows, 1)
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -88,6 +89,11 @@ class System:
         """The derivative of motions at this frequency; there is one for all frequencies."""
         self.tuned()
         return self._derivative
+
+    def derivative_along(self) -> Derivative:
+        """The derivative along one direction; there is one for all frequencies."""
+        self.tuned()
+        return self._along
 
     def make(self, states: Codes) -> int:
         """Put the flow of a combination of states into the pool; returns its place."""

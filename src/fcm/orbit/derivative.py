@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from fcm.motion.measure import Extreme
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
 from fcm.scene.model import FloatArray
@@ -36,3 +38,27 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
     there = derivative_at(system, segments, last, segments.length[last])
     by_frequency = there.columns[u, :u] - duration / system.omega * there.rate[:u]
     return there.columns[:u, :u].T, by_frequency
+
+
+def along(
+    system: System, segments: Segments, places: Sequence[Extreme], way: FloatArray, rate: float
+) -> FloatArray:
+    """The derivative of the state vector along a way of x and the frequency, at places: (place, d).
+
+    Parameters
+    ----------
+    way : (unknown,)
+        Change of x = (q, q', f) at the start of the segments.
+    rate : float
+        Change of the frequency.
+    """
+    kernel = system.derivative_along()
+    kernel.begins_along(segments, way[None])
+    out = np.empty((len(places), system.size))
+    for k in sorted(range(len(places)), key=lambda k: places[k][1:]):
+        _, segment, position = places[k]
+        while (missing := kernel.go(segments, segment, position)) >= 0:
+            system.make(np.asarray(segments.states)[missing])
+        columns = np.asarray(kernel.columns)
+        out[k] = columns[0] + rate * columns[1]
+    return out

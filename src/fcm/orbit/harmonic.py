@@ -1,17 +1,20 @@
-"""A state to start from, from a point of single-harmonic balance."""
+"""A state to start from, from a point of harmonic balance."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact import hysteresis_loop
+from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
 from fcm.harmonic.single import OPENS, SLIPS, SingleHarmonic
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.scene.model import Contact, FloatArray, Scene
+
+FEW, MANY = (1, 2, 3), 5  # harmonics of a guess; contacts from which on it has one
+FURTHER = 3  # times the highest of them, to which the forces of a guess reach
 
 
 def harmonic_state(
@@ -70,20 +73,44 @@ def harmonic_state(
     return _modal(system, wave, steady, friction)
 
 
-def balanced_state(scene: Scene, frequency: float) -> State | None:
-    """A guess from the scene's own harmonic balance at a frequency [rad/s]; None if it has none there."""
-    if not scene.modal.frequency.all():
-        return None
-    from fcm.harmonic.record import amplitudes_at
+def balanced_states(scene: Scene, frequency: float) -> list[State]:
+    """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there."""
+    if not (scene.modal.frequency.all() and scene.contacts):
+        return []
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
-    balanced = Balanced(scene)
+    few = FEW if len(scene.contacts) < MANY else (1,)
+    balanced = Balanced(scene, few)
     found = solutions(balanced, frequency).solutions
-    if not found:
-        return None
-    X, mean = amplitudes_at(balanced, found[0][None])
-    return harmonic_state(scene, frequency, np.abs(X[0, 0]), np.angle(1j * X[0, 0]), mean[0])
+    return [state_of(scene, balanced.harmonics, z) for z in found]
+
+
+def state_of(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:
+    """The state at the forces' angle 0 of a point z of the balance (`fcm.harmonic.balance`).
+
+    The contacts' forces on the balanced motion have more harmonics than that, and move the modes by them.
+    """
+    system, highest = System(scene, float(z[-1])), FURTHER * max(harmonics)
+    width = 2 + 4 * len(harmonics)
+    wave = np.zeros((highest + 1, system.modes), dtype=np.complex128)  # modal forces
+    wave[0], wave[1] = system.static, -1j * system.wave
+    friction = np.zeros(len(scene.contacts))
+    for j, contact in enumerate(scene.contacts):
+        u, v = np.zeros((2, highest + 1), dtype=np.complex128)
+        x = z[j * width : (j + 1) * width]
+        u[0], v[0] = x[:2]
+        u[list(harmonics)], v[list(harmonics)] = x[2::4] + 1j * x[3::4], x[4::4] + 1j * x[5::4]
+        mu = contact.mu if has_friction(contact) else 0.0
+        f, n = periodic_forces(u, v, mu, contact.k_u, contact.k_v, contact.n_0)
+        n[0] -= max(contact.n_0, 0.0)
+        wave -= np.outer(f, system.tangential[j]) + np.outer(n, system.normal[j])
+        friction[j] = f.real.sum()
+    modal, rates = scene.modal, system.omega * np.arange(highest + 1)[:, None]
+    dynamic = modal.frequency**2 - rates**2 + 2j * modal.damping * modal.frequency * rates
+    # a mode without damping whose own frequency a harmonic has exactly: the forces do not say what it does
+    q = np.divide(wave, modal.mass * dynamic, out=np.zeros_like(wave), where=dynamic != 0.0)
+    return State(q.real.sum(axis=0), (1j * rates * q).real.sum(axis=0), friction)
 
 
 def _modal(

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.measure import Extreme, least
+from fcm.motion.measure import Extreme, extremes
 from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
@@ -137,7 +137,7 @@ def _limit(system: System, j: int, sign: float) -> FloatArray:
 def rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
     """Of each contact the least of mu n - f and of mu n + f over the segments."""
     rows = [_limit(system, j, sign) for j in contacts for sign in (1.0, -1.0)]
-    found = least(system, segments, np.array(rows))
+    found, _ = extremes(system, segments, np.array(rows))
     return {j: (found[2 * i], found[2 * i + 1]) for i, j in enumerate(contacts)}
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.cycle import Cycle
+from fcm.motion.measure import Extremes, displaced
 from fcm.motion.run import march
 from fcm.motion.state import State, entry
 from fcm.motion.system import System, has_friction
@@ -73,7 +74,8 @@ class Shot:
     @cached_property
     def by_state(self) -> FloatArray:
         """Derivative of the gap by x: (unknown, unknown)."""
-        matrix: FloatArray = self.derivative - np.eye(self.x.size)
+        matrix = self.derivative.copy()
+        matrix.reshape(-1)[:: self.x.size + 1] -= 1.0
         for choice in self.chosen:
             matrix[2 * self.system.modes + choice.contact] = choice.row
         return matrix
@@ -85,6 +87,11 @@ class Shot:
         for choice in self.chosen:
             rate[2 * self.system.modes + choice.contact] = choice.rate
         return rate
+
+    @cached_property
+    def extremes(self) -> Extremes:
+        """The least and the greatest displacement of each degree of freedom."""
+        return displaced(self.system, self.segments)
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:

@@ -125,7 +125,7 @@ def _curves(
     if method == "exact":
         if harmonics is not None or accuracy is not None:
             raise ResponseError("harmonics and accuracy are of no use with the method 'exact'")
-        from fcm.simulate import trace_exact
+        from fcm.response.exact import trace_exact
 
         return trace_exact(scene, at, place=place)
     return trace(scene, method, harmonics=harmonics, accuracy=accuracy, place=place)

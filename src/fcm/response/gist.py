@@ -22,7 +22,9 @@ class Gist:
     """Numbers of a curve for which all its points are needed."""
 
     points: int
-    ends: tuple[float, float]  # [rad/s] lowest and highest frequency; of a single point, and of none, NaN
+    ends: tuple[
+        float, float
+    ]  # [rad/s] lowest and highest frequency sought; of a single point, and of none, NaN
     stable: bool | None  # whether all of the curve is; None where that is not known
     jumps: list[Jump]  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
@@ -39,7 +41,7 @@ def gist_of(curve: Curve) -> Gist:
     known = curve.frequency[np.isfinite(curve.frequency)]
     return Gist(
         points=known.size,
-        ends=(float(known.min()), float(known.max())) if known.size > 1 else NO_ENDS,
+        ends=_ends(curve, known),
         stable=_stable(curve),
         jumps=curve.jumps(),
         table_error=worst(curve.table_error),
@@ -61,6 +63,12 @@ def worst(errors: FloatArray) -> float | None:
     """The largest error that is known."""
     known = errors[np.isfinite(errors)]
     return float(known.max()) if known.size else None
+
+
+def _ends(curve: Curve, known: FloatArray) -> tuple[float, float]:
+    if curve.orbits is not None and curve.orbits.span is not None:
+        return curve.orbits.span
+    return (float(known.min()), float(known.max())) if known.size > 1 else NO_ENDS
 
 
 def _stable(curve: Curve) -> bool | None:

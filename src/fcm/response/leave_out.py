@@ -50,14 +50,27 @@ def leave_out(curves: tuple[Scene, ...], tolerance: float = TOLERANCE, highest: 
     """
     needed = tuple(i for i in range(len(curves[0].contacts)) if any(_carries(s, i) for s in curves))
     lighter = tuple(_with_contacts(s, needed) for s in curves)
-    sentences = _idle_contacts(curves[0], needed)
-    moved = np.logical_or.reduce([_moved(s) for s in _different(lighter)])
-    if moved.any() and not moved.all():
-        lighter = _with_modals(lighter, {id(s.modal): _some_modes(s.modal, moved) for s in lighter})
-        what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
-        sentences.append(f"{what}: neither a force nor a contact moves them (no effect)")
-    found = _static(Lighter(curves, lighter, lighter, needed, tuple(sentences)), tolerance, highest)
+    lighter, said = _without_still_modes(lighter)
+    sentences = (*_idle_contacts(curves[0], needed), *said)
+    found = _static(Lighter(curves, lighter, lighter, needed, sentences), tolerance, highest)
     return replace(found, sentences=(*found.sentences, *_parts_of_contacts(found)))
+
+
+def leave_out_modes(curves: tuple[Scene, ...], tolerance: float, highest: int) -> Lighter:
+    """The same with all contacts: only modes are left out."""
+    lighter, said = _without_still_modes(curves)
+    every = tuple(range(len(curves[0].contacts)))
+    return _static(Lighter(curves, lighter, lighter, every, tuple(said)), tolerance, highest)
+
+
+def _without_still_modes(curves: tuple[Scene, ...]) -> tuple[tuple[Scene, ...], list[str]]:
+    """The scenes without modes that stay at rest, and what is said of them."""
+    moved = np.logical_or.reduce([_moved(s) for s in _different(curves)])
+    if not moved.any() or moved.all():
+        return curves, []
+    lighter = _with_modals(curves, {id(s.modal): _some_modes(s.modal, moved) for s in curves})
+    what = f"{counted(int((~moved).sum()), 'mode')} of {moved.size}"
+    return lighter, [f"{what}: neither a force nor a contact moves them (no effect)"]
 
 
 def _static(lighter: Lighter, tolerance: float, highest: int) -> Lighter:

@@ -36,7 +36,7 @@ class Peak(NamedTuple):
 
 @dataclass
 class Orbits:
-    """What only the points of an exact curve have; see `fcm.simulate.trace_exact`."""
+    """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
 
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
@@ -47,6 +47,7 @@ class Orbits:
     family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
     jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
+    span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought
 
 
 class Resonance(NamedTuple):
@@ -230,6 +231,7 @@ class Curve:
             "closure_error": worst(orbits.closure_error),
             "repeats": sorted({int(x) for x in orbits.repeats[here]}),
             "not_unique": int(known.sum()),
+            **({} if orbits.span is None else {"only": "peaks"}),
             **({"peak_range": families} if families else {}),
         }
 

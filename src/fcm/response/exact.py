@@ -11,20 +11,27 @@ from pathlib import Path
 import numpy as np
 
 from fcm.motion.errors import SimulationError
+from fcm.orbit.branch import explore, incomplete, shown
+from fcm.orbit.problem import OrbitProblem
 from fcm.response.around import refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
+from fcm.response.leave_out import TOLERANCE, leave_out_modes
+from fcm.response.legs import LEGS, Legs, TimeOver
+from fcm.response.mode_effect import effect, foreseen
+from fcm.response.only_peaks import peaks_alone
+from fcm.response.orbit_curve import traced_curve, visited_curve
 from fcm.response.result import INTERRUPTED, Curve, Response
+from fcm.response.sentences import on_modes
 from fcm.response.trace import ResponseError
+from fcm.response.visit import STATES, Visitor
 from fcm.run import Checkpoint, Factory, Interrupted, Progress, Report, fingerprint
 from fcm.scene.model import Scene
-from fcm.simulate.branch import shown
-from fcm.simulate.explore import Explorer
-from fcm.simulate.orbit_curve import traced_curve, visited_curve
-from fcm.simulate.visit import STATES, Visitor
 from fcm.units import UNIT
 
 METHOD = "exact"
+ONLY = "of the exact curves all points but their peaks, folds and jumps, sought near those of the balance"
+HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 
 
@@ -37,6 +44,9 @@ def trace_exact(
     place: Factory | None = None,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
+    limit: float | None = None,
+    tolerance: float | None = TOLERANCE,
+    only: str | None = None,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
@@ -55,6 +65,13 @@ def trace_exact(
         Called now and then with the finished fraction and a text.
     jobs, place, keep, resume
         As in `fcm.response.trace`.
+    limit : float, optional
+        Processor time for each curve that is followed [s]; what there is of it then, is the result.
+    tolerance : float, optional
+        Greatest relative change of the amplitudes by modes that are left out; 0 leaves out only those that
+        have no effect, None nothing.
+    only : {"peaks"}, optional
+        Of the curves the peaks, folds and jumps alone, sought near those of the harmonic balance.
 
     Raises
     ------
@@ -69,18 +86,48 @@ def trace_exact(
     [1.239829, 1.193559]
     """
     refuse_ring(scene, "the exact motion")
-    begin, scenes, frequencies = time.perf_counter(), scene.each_curve(), _checked(scene, at)
+    begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        sweep = CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place)
-        mark = fingerprint(METHOD, frequencies)
-        curves = sweep.curves(ExactWork(frequencies), [(one,) for one in scenes], mark, progress, STATES)
-        contacts = tuple(contact.name for contact in scenes[0].contacts)
-        response = Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
+        work = ExactWork(frequencies, limit, only is not None)
+        run = _Run(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
+        response = run.response(scene, tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
-    response.defects = sweep.defects
+    response.defects = run.sweep.defects
     response.seconds = time.perf_counter() - begin
     return response
+
+
+@dataclass(frozen=True)
+class _Run:
+    """One after the other the sweeps of a run, the second with all modes where they turn out to be needed."""
+
+    work: ExactWork
+    sweep: CurveSweep
+
+    def response(self, scene: Scene, tolerance: float | None, progress: Progress | None) -> Response:
+        """The curves without the modes that they do not need."""
+        scenes = scene.each_curve()
+        if tolerance is None:
+            return self._swept(scene, scenes, progress)  # the comparison's, which leaves out by itself
+        lighter = leave_out_modes(scenes, tolerance, HIGHEST)
+        if lighter.above is not None and 2.0 * foreseen(lighter) > tolerance:
+            lighter = leave_out_modes(scenes, 0.0, HIGHEST)
+        response, said = self._swept(scene, lighter.curves, progress), list(lighter.sentences)
+        if lighter.above is not None and not response.interrupted:
+            change = effect(response, lighter)
+            if 2.0 * change <= tolerance:
+                said.append(on_modes(lighter, change))
+            else:
+                response = self._swept(scene, lighter.exact, progress)
+        response.left_out = [*said, *([ONLY] if self.work.only_peaks else [])]
+        return response
+
+    def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
+        mark, batches = fingerprint(METHOD, self.work), [(one,) for one in scenes]
+        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, *LEGS))
+        contacts = tuple(contact.name for contact in scenes[0].contacts)
+        return Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
 
 
 def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | None:
@@ -102,6 +149,8 @@ class ExactWork:
     """How each curve is made: traced, or visited at frequencies."""
 
     at: tuple[float, ...] | None  # [rad/s]
+    limit: float | None = None  # [s] of processor time for a curve
+    only_peaks: bool = False
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -109,7 +158,7 @@ class ExactWork:
     def _curve(self, scene: Scene, report: Report) -> Curve:
         begin = time.perf_counter()
         try:
-            curve = _traced(scene, report) if self.at is None else _visited(scene, self.at, report)
+            curve = self._made(scene, report)
         except SimulationError as error:  # there is no rest to begin with
             curve = lost_curve(scene, str(error))
         curve = replace(curve, seconds=time.perf_counter() - begin)
@@ -117,17 +166,28 @@ class ExactWork:
             raise Interrupted([curve])
         return curve
 
+    def _made(self, scene: Scene, report: Report) -> Curve:
+        if self.only_peaks:
+            return peaks_alone(scene, report)
+        if self.at is None:
+            return _traced(scene, report, self.limit)
+        return _visited(scene, self.at, report)
 
-def _traced(scene: Scene, progress: Progress | None) -> Curve:
-    explorer, stopped = Explorer(scene, progress), ""
+
+def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
+    problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
     try:
-        explorer.run()
-    except KeyboardInterrupt:
-        stopped = STOPPED + (shown(scene, explorer.at) if explorer.branches else "the start")
-    curve = traced_curve(scene, explorer.branches, stopped or explorer.reason)
-    if curve.orbits is not None:
-        curve.orbits.periods = explorer.equations.periods
-    return curve
+        paths, without = explore(problem, legs)
+        reason = incomplete(scene, paths, without)
+    except (KeyboardInterrupt, TimeOver) as stop:
+        legs.keep()
+        paths = legs.paths()
+        where = shown(scene, paths[-1].parameter[-1]) if paths else "the start"
+        over = (
+            f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
+        )
+        reason = over + where
+    return traced_curve(problem, paths, reason)
 
 
 def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:

@@ -14,19 +14,20 @@ from typing import Any
 
 import numpy as np
 
+from fcm.continuation.newton import Newton
 from fcm.motion.errors import CycleError, SimulationError
 from fcm.motion.measure import Measure
 from fcm.motion.state import State
 from fcm.motion.system import System
+from fcm.orbit.branch import shown
 from fcm.orbit.periodic import shoot
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample, sampled, settled
+from fcm.orbit.start import first_point, held, solution_at
 from fcm.orbit.steady import FREE_CYCLES, steady
 from fcm.response.jumps import Jump
 from fcm.run import Report
-from fcm.scene.model import Scene
-from fcm.simulate.arc import Equations, Point, level, rescaled
-from fcm.simulate.branch import first_point, shown
-from fcm.simulate.explore import solution_at
-from fcm.simulate.sample import Sample, sampled, settled
+from fcm.scene.model import FloatArray, Scene
 
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
 ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
@@ -57,13 +58,14 @@ class Visitor:
     """Sweeps of one scene; what they have found is there whenever they are interrupted."""
 
     def __init__(self, scene: Scene) -> None:
-        self.scene, self.equations = scene, Equations(scene)
+        self.scene, self.problem = scene, OrbitProblem(scene)
+        self.newton = Newton(self.problem)
         self.points: list[Sample] = []
         self.sweep: list[str] = []
         self.jumps: list[Jump] = []
         self.restless: dict[str, None] = {}  # frequencies without steady motion, in order
         self.refused: dict[str, str] = {}  # frequencies at which no cycle can be computed, and why
-        self._here: Point | None = None  # the periodic solution that is continued
+        self._here: Sample | None = None  # the periodic solution that is continued
         self._state = State.rest(scene)  # the motion, where there is none
         self._sample: Sample | None = None  # what is steady now
 
@@ -98,11 +100,8 @@ class Visitor:
             self.jumps += visit.jumps
             self.restless, self.refused = dict.fromkeys(visit.restless), dict(visit.refused)
             self._note(sweep)
-        if made and made[-1].went_on and self._sample is not None:
-            here = self._sample
-            shot = self.equations.shot(here.z)
-            assert shot is not None  # for there was one, by the same numbers
-            self._here = Point(here.z, here.scale, here.tangent, here.orientation, shot)
+        if made and made[-1].went_on:
+            self._here = self._sample
         return len(made)
 
     @property
@@ -121,7 +120,7 @@ class Visitor:
         """Bring the motion to a frequency."""
         while self._here is not None and not self._continue(omega):
             lost, before = float(self._here.z[-1]), self._sample
-            self._settle(self._here.shot.state, lost + BEYOND * (omega - lost))
+            self._settle(self._here.state, lost + BEYOND * (omega - lost))
             after = self._sample
             if self._here is None:
                 self._settle(self._state, omega)
@@ -142,14 +141,17 @@ class Visitor:
             return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
-        if not (orbit.stable and self._take(first_point(self.equations, orbit))):
+        if not (orbit.stable and self._take(first_point(self.problem, orbit))):
             self._settle(State.rest(self.scene), omega)
 
-    def _take(self, point: Point) -> bool:
-        """Continue with a periodic solution, if it is stable."""
-        sample = sampled(point)
+    def _take(self, z: FloatArray) -> bool:
+        """Continue with a periodic solution near z at its frequency, if it is stable."""
+        if not held(self.newton, z):
+            return False
+        direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
+        sample = sampled(self.problem, np.array(self.newton.z), direction)
         if sample.stable:
-            self._here, self._sample, self._state = point, sample, point.shot.state
+            self._here, self._sample, self._state = sample, sample, sample.state
         return sample.stable
 
     def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
@@ -176,15 +178,19 @@ class Visitor:
         """Go to the stable periodic solution of the same branch at a frequency nearby, if there is one."""
         here = self._here
         assert here is not None
-        length = abs(omega - here.z[-1]) / max(abs(here.tangent[-1]) * here.scale[-1], 1e-300)  # of arc
-        if length > FAR:
+        self.problem.measure(here.z)
+        scale = np.array(self.problem.scale)
+        rate = here.direction[-1]
+        way = here.direction * ((omega - here.z[-1]) / rate) if rate else np.full(here.z.size, np.inf)
+        length = float(np.linalg.norm(way / scale))  # of arc
+        if not length <= FAR:
             return False
-        guess = here.z + here.tangent * here.scale * (
-            length * np.sign((omega - here.z[-1]) * here.tangent[-1])
-        )
+        guess = here.z + way
         guess[-1] = omega
-        found = self.equations.correct(guess, here.scale, level(guess.size), max(ASTRAY * length, CLOSE))
-        return found is not None and self._take(rescaled(self.equations, found))
+        if not held(self.newton, guess, length):
+            return False
+        astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
+        return astray <= max(ASTRAY * length, CLOSE) and self._take(np.array(self.newton.z))
 
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
@@ -199,4 +205,4 @@ class Visitor:
             return
         orbit = shoot(system, found.state)
         if orbit is not None:
-            self._take(first_point(self.equations, orbit))
+            self._take(first_point(self.problem, orbit))

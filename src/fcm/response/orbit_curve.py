@@ -9,27 +9,38 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
 from fcm.motion.system import has_friction
 from fcm.orbit.family import family
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample, samples
 from fcm.response.groups import lost_curve
 from fcm.response.result import Curve, Orbits, Peak
+from fcm.response.visit import Visitor
 from fcm.scene.model import Scene
-from fcm.simulate.branch import Branch
-from fcm.simulate.sample import Sample
-from fcm.simulate.visit import Visitor
 
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def traced_curve(scene: Scene, branches: Sequence[Branch], reason: str) -> Curve:
-    """The points of branches, with a point of NaN between one and the next; complete without a reason."""
-    points: list[Sample | None] = []
-    for branch in branches:
-        points += [None, *branch.orbits] if points else branch.orbits
-    folds = [fold.frequency for branch in branches for fold in branch.folds]
-    return replace(_curve(scene, points, reason, everywhere=False), folds=folds)
+def traced_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
+    """The points of paths, with a point of NaN between one and the next; complete without a reason."""
+    points, folds = list[Sample | None](), list[float]()
+    for path in paths:
+        found = samples(problem, path)
+        folds += [point.frequency for point in found if point.mark & Mark.FOLD]
+        points += [None, *found] if points else found
+    curve = replace(_curve(problem.scene, points, reason, everywhere=False), folds=folds)
+    if curve.orbits is not None:
+        curve.orbits.periods = problem.periods
+    return curve
+
+
+def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str) -> Curve:
+    """Points that no curve joins: one of NaN between each and the next."""
+    apart = [one for point in points for one in (None, point)]
+    return _curve(scene, apart[1:], reason, everywhere=False)
 
 
 def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:

@@ -1,0 +1,142 @@
+"""Steps along a curve whose problem is soft: margins are labels, which tell no distance to their change.
+
+A step that is good has no corner in it, whatever its labels are. Else the change of label is approached until
+it is met, and the curve is left in the direction that the equations have beyond it.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from fcm.continuation import events
+from fcm.continuation.front import Front
+from fcm.continuation.path import FloatArray, Mark, Status
+from fcm.continuation.trail import Trail
+
+SHORTEST = 1e-9  # a step that is still too long then leads nowhere
+SHARP = 1e-4  # a step this short may turn by any angle below a right angle
+STRAIGHT = 0.999  # cosine beyond which a change of orientation is a branch point and not a way back
+SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends before it
+BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
+TOUCHED = 1e-8  # a change of label this near is met: less than BEYOND
+MET = 1e-6  # and this near, where no curve is found up to there
+TURNS = 5  # looks beyond one place, each ten times as far
+AROUND = 16  # directions in which a way out of a corner is sought at last,
+REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
+BACK = -0.99  # cosine below which a curve goes back on the way that it came
+AFTER = 1e-5  # the first step beyond a corner, and the least
+
+
+class Follower(Protocol):
+    """What a step needs of the one that follows the curve."""
+
+    def good(self) -> bool:
+        """Whether the curve was where it was predicted, and went on as it did."""
+
+    def smooth(self) -> object:
+        """Go on to the place there; a status where the curve ends."""
+
+    def turn(self, which: int, point: events.Found, past: float) -> object:
+        """Keep the corner that is here, and turn into the direction that the curve has beyond."""
+
+    def aim(self, step: float, longer: bool) -> None:
+        """Choose the next step; whether it may be longer than it was to be."""
+
+
+class Soft:
+    """The steps, and how often a corner has been tried that is not left yet."""
+
+    def __init__(self, front: Front, trail: Trail) -> None:
+        self.front, self.trail = front, trail
+        self.repeated = 0  # corners at one point
+        self.came: FloatArray = np.zeros(0)  # direction in which the curve came there
+
+    def advance(self, follower: Follower, step: float) -> object:
+        """One step; a status where the curve ends. Close to a change there may be no curve to be found."""
+        front = self.front
+        step = max(step, AFTER)  # what led to a corner may have been shorter
+        while step > SHORTEST:
+            if front.go(step) and self.good(follower):
+                return self.smooth(follower)
+            reach = front.ahead(step)
+            if reach < min(step, TOUCHED):
+                return self.turn(follower, reach)
+            if reach < step and front.go(reach * (1.0 - SHORT_OF)) and self.good(follower):
+                status = self.smooth(follower)
+                follower.aim(SHARP, False)
+                return status
+            step = 0.25 * min(step, reach)
+        reach = front.ahead(MET)
+        return self.turn(follower, reach) if reach < MET or self.repeated else Status.STALLED
+
+    def good(self, follower: Follower) -> bool:
+        """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
+        front = self.front
+        same = front.there.orientation == front.here.orientation
+        return follower.good() and (front.step > SHARP or same or front.turn > STRAIGHT)
+
+    def smooth(self, follower: Follower) -> object:
+        """Go on to the place there."""
+        count = self.trail.count
+        status = follower.smooth()
+        if self.trail.count > count:
+            self.repeated = 0
+        return status
+
+    def turn(self, follower: Follower, reach: float) -> object:
+        """Turn at a change of label that is this near; if nothing new leads on, look further beyond it."""
+        front = self.front
+        if self.repeated > TURNS:
+            return Status.STALLED
+        if self.repeated == 0:
+            self.came = np.array(front.here.tangent)
+            self.came_so = self.trail.tail()
+        while self.repeated < TURNS:
+            np.asarray(front.here.tangent)[:] = self.came
+            np.asarray(front.bend)[:] = 0.0
+            self.trail.drop()
+            self.trail.put(*self.came_so)
+            past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
+            self.repeated += 1
+            follower.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here), past)
+            if np.asarray(front.here.tangent) @ self.came > BACK:
+                return None
+        return None if self.sought(follower) else Status.STALLED
+
+    def sought(self, follower: Follower) -> bool:
+        """Whether the curve leaves a corner into any of the pieces around it: then it is turned there."""
+        front = self.front
+        if self.repeated > TURNS:
+            return False
+        self.repeated += 1
+        directions = np.random.default_rng(0).normal(size=(AROUND, self.came.size))
+        for reach in REACHES:
+            for way in directions / np.linalg.norm(directions, axis=1, keepdims=True):
+                if self.leaves(reach, way):
+                    np.asarray(front.here.tangent)[:] = front.newton.row
+                    np.asarray(front.here.margin)[:] = front.problem.margin
+                    np.asarray(front.bend)[:] = 0.0
+                    follower.aim(reach, True)
+                    return True
+        return False
+
+    def leaves(self, reach: float, way: FloatArray) -> bool:
+        """Whether there is a next point in the direction that the equations have beside the corner."""
+        newton, here = self.front.newton, np.asarray(self.front.here.z)
+        scale, orientation = np.asarray(newton.scale), self.front.here.orientation
+        np.asarray(newton.row)[:] = way
+        np.asarray(newton.z)[:] = here + reach * scale * way
+        if not newton.look():
+            return False
+        sense = 1.0 if newton.orientation == orientation else -1.0
+        along = sense * np.array(newton.tangent)
+        np.asarray(newton.row)[:] = along
+        np.asarray(newton.z)[:] = here + reach * scale * along
+        if not newton.correct(2.0 * reach) or newton.orientation != orientation:
+            return False
+        step = (np.asarray(newton.z) - here) / scale
+        length = np.linalg.norm(step)
+        self.front.problem.bound(newton.z)
+        return bool(np.asarray(newton.tangent) @ step > 0.5 * length and self.came @ step > BACK * length)

@@ -1,0 +1,113 @@
+"""The curves of periodic solutions of a scene over its frequencies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from fcm.continuation import Mark, Path, Status, all_branches, follow
+from fcm.continuation.branches import Follow
+from fcm.motion.errors import SimulationError
+from fcm.orbit.periodic import Orbit, periodic
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample, samples
+from fcm.orbit.start import first_point, starts
+from fcm.scene.modal import UNITS
+from fcm.scene.model import Scene
+
+Progress = Callable[[float, str], None]
+ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+
+
+@dataclass
+class Branch:
+    """Periodic solutions along one curve."""
+
+    orbits: list[Sample] = field(default_factory=list)  # in the order along the curve
+    status: Status = Status.COMPLETE
+    periods: int = 0  # of the motion that were computed
+
+    @property
+    def folds(self) -> list[Sample]:
+        """Those of the solutions at which the curve turns back in frequency."""
+        return [orbit for orbit in self.orbits if orbit.mark & Mark.FOLD]
+
+    @property
+    def complete(self) -> bool:
+        """Whether it goes from one end of the range to the other."""
+        return self.status is Status.COMPLETE
+
+
+def trace_orbits(
+    scene: Scene,
+    max_step: float | None = None,
+    start: Orbit | None = None,
+    progress: Progress | None = None,
+) -> Branch:
+    """Follow the periodic solutions of a scene over its frequency range, stable or not.
+
+    Pseudo-arclength continuation of the exact motion: the same points as `periodic` finds, in order, through
+    folds and through the corners at which regimes begin.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its `frequency_range` is traced.
+    max_step : float, optional
+        Longest step along the curve, relative to the range and to the size of the motion; by default the
+        scene's.
+    start : Orbit, optional
+        Where to start, at an end of the range; at its lower end, from rest, by default.
+    progress : optional
+        Called now and then with the fraction of the range that is covered and a text.
+
+    Raises
+    ------
+    SimulationError
+        If no periodic solution is found to start from.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.1, 1.3))
+    >>> [round(fold.frequency, 4) for fold in trace_orbits(scene).folds]
+    [1.2398, 1.1936]
+    """
+    longest = scene.max_step if max_step is None else max_step
+    if not longest > 0.0:
+        raise SimulationError(f"max_step is {longest:g}; it must be positive")
+    problem, span = OrbitProblem(scene), scene.frequency_range
+    begin = periodic(scene, span[0]) if start is None else start
+    z = first_point(problem, begin)
+    said = None if progress is None else lambda fraction: progress(fraction, "")
+    forward = z[-1] - span[0] <= span[1] - z[-1]
+    return branch_of(problem, follow(problem, z, span, forward, longest, (), said))
+
+
+def explore(problem: OrbitProblem, along: Follow = follow) -> tuple[list[Path], str]:
+    """All branches of a scene as paths, and why there is no solution to start from, else ''."""
+    scene = problem.scene
+    found, reason = starts(problem)
+    branches = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along)
+    return list(branches.paths), "" if branches.paths else reason
+
+
+def branch_of(problem: OrbitProblem, path: Path) -> Branch:
+    """The solutions of a path."""
+    orbits = samples(problem, path)
+    return Branch(orbits, path.status, problem.periods)
+
+
+def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
+    """Why the curve of these paths is not complete, else ''."""
+    broken = [path for path in paths if path.status not in ENDED]
+    reasons = dict.fromkeys(
+        f"stopped at {shown(scene, path.parameter[-1])}: {path.status.value}" for path in broken
+    )
+    return "; ".join(reasons) or ("" if paths else problem or "no solution was found to start from")
+
+
+def shown(scene: Scene, omega: float) -> str:
+    """A frequency [rad/s] in the scene's unit."""
+    return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"

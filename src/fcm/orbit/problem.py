@@ -1,0 +1,153 @@
+"""Periodic motions as a problem of the continuation: one period of the exact motion closes."""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import numpy as np
+
+from fcm.continuation.problem import Problem
+from fcm.motion.errors import SimulationError
+from fcm.motion.measure import Extreme
+from fcm.motion.state import State
+from fcm.orbit.derivative import along
+from fcm.orbit.shooting import Shooting, Shot
+from fcm.scene.model import FloatArray, Scene
+
+KEPT = 15_000_000  # numbers of periods that are remembered: a place is asked for more than once
+INSTANT = 1e-9  # of a period: what lasts less is no state of its own
+STILL = 1e-9  # of the greatest amplitude: what moves less is not reported
+
+
+class OrbitProblem(Problem):
+    """The closure of one period, z = (q, q', f, omega) at the forces' angle 0, without f that are always 0.
+
+    The residual is that of `Shooting`: continuous, and smooth while the sequence of states over the period
+    stays, which is the label of a point. Most changes of the sequence hardly show in the curve; where a slip
+    is new it may have a corner.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its `frequency_range` is the unit of frequencies.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.orbit import periodic
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> problem, orbit = OrbitProblem(scene), periodic(scene, 1.3)
+    >>> problem.evaluate(problem.z(orbit.state, 1.3))
+    0
+    >>> bool(abs(problem.residual).max() < 1e-9), problem.jacobian.shape
+    (True, (5, 6))
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.shooting = scene, Shooting(scene)
+        self.free = self.shooting.free
+        super().__init__(self.free.size, 1, len(scene.modal.dofs))
+        self.soft = True
+        self.span = scene.frequency_range[1] - scene.frequency_range[0]
+        self.periods = 0  # that have been computed
+        self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size
+        self._shots: dict[bytes, Shot | None] = {}
+        self._numbers = 0  # in them
+        self._rates = scene.modal.frequency
+
+    def z(self, state: State, omega: float) -> FloatArray:
+        """The unknowns of a state at the forces' angle 0, and the frequency [rad/s]."""
+        return np.append(self.shooting.unknowns(state), omega)
+
+    def shot(self, z: FloatArray) -> Shot | None:
+        """The period from z; None where there is none."""
+        z = np.asarray(z)
+        key = z.tobytes()
+        if key not in self._shots:
+            shot = self._made(z)
+            self._numbers += 0 if shot is None else shot.segments.y.size + 3 * shot.x.size**2
+            if self._numbers > KEPT:
+                self._shots.clear()
+                self._numbers = 0
+            self._shots[key] = shot
+        return self._shots[key]
+
+    def _made(self, z: FloatArray) -> Shot | None:
+        if not (np.isfinite(z).all() and z[-1] > 0.0):
+            return None
+        self.periods += 1
+        try:
+            return self.shooting.residual(z[:-1], float(z[-1]))
+        except SimulationError:
+            return None
+
+    def evaluate(self, z: FloatArray) -> int:
+        """See `Problem`; not a number where there is no motion, so that no solution is sought there."""
+        shot = self.shot(z)
+        jacobian, residual = np.asarray(self.jacobian), np.asarray(self.residual)
+        if shot is None:
+            jacobian[:] = residual[:] = np.nan
+            return 0
+        residual[:] = shot.gap[self.free]
+        jacobian[:, :-1] = shot.by_state if self._all else shot.by_state[self._block]
+        jacobian[:, -1] = shot.by_frequency[self.free]
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        """The size of the motion; velocities are displacements times the modes' own frequencies.
+
+        So the higher harmonics count by their displacements.
+        """
+        shot = self.shot(z)
+        if shot is None:
+            return 0
+        system, scale = shot.system, shot.scale.copy()
+        y = shot.segments.largest()
+        rates = np.maximum(self._rates, system.omega)
+        length = max(y[system.q].max(), (y[system.p] / rates).max(), 1e-300)
+        scale[system.q], scale[system.p] = length, length * rates
+        out = np.asarray(self.scale)
+        out[:-1], out[-1] = scale[self.free] * np.sqrt(self.free.size), self.span
+        return 0
+
+    def bound(self, z: FloatArray) -> int:
+        """See the class; as they were where there is no motion."""
+        shot = self.shot(z)
+        if shot is not None:
+            self.margin[0] = _label(shot)
+        return 0
+
+    def report(self, z: FloatArray, direction: FloatArray) -> int:
+        """Half the peak-to-peak of the degrees of freedom: an extreme grows as the motion at its instant."""
+        shot = self.shot(z)
+        output, growth = np.asarray(self.output), np.asarray(self.growth)
+        output[:] = growth[:] = 0.0
+        if shot is None:
+            return 0
+        shapes = self.scene.modal.shapes
+        least, greatest = shot.extremes
+        amplitude = np.array([0.5 * (b.value - a.value) for a, b in zip(least, greatest, strict=True)])
+        moves = amplitude > STILL * amplitude.max(initial=0.0)
+        way = np.zeros(self.shooting.size)
+        way[self.free] = np.asarray(direction)[:-1]
+        rates = self._rates_at(shot, [*least, *greatest], way, float(direction[-1]))
+        half = len(least)
+        change = np.array([0.5 * (rates[half + d] - rates[d]) @ shapes[:, d] for d in range(half)])
+        output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change.reshape(half), 0.0)
+        return 0
+
+    @staticmethod
+    def _rates_at(shot: Shot, places: list[Extreme], way: FloatArray, rate: float) -> FloatArray:
+        """The derivative of the modal displacements along a way at places: (place, mode)."""
+        return along(shot.system, shot.segments, places, way, rate)[:, shot.system.q]
+
+
+def _label(shot: Shot) -> float:
+    """A number for the states over the period, from its start, and for the contacts that are at a limit.
+
+    A transition that passes the start is a corner of the friction force there, though of nothing else.
+    """
+    lasts = np.diff(np.asarray(shot.segments.start), append=shot.duration)
+    states = np.asarray(shot.segments.states)[lasts > INSTANT * shot.duration]
+    limited = bytes(choice.contact for choice in shot.chosen if choice.limited)
+    return float(crc32(states.tobytes() + limited))

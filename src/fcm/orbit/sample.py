@@ -1,0 +1,101 @@
+"""What is kept of a periodic solution on a curve: everything that is reported, without its motion in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Between, Mark, Path
+from fcm.motion.errors import SimulationError
+from fcm.motion.measure import Measure, measure
+from fcm.motion.state import State
+from fcm.orbit.periodic import within_unit_circle
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.steady import Steady
+from fcm.scene.model import FloatArray
+
+CROSSINGS = 40  # halvings of a step to where stability changes
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A periodic solution, and where on its curve it is."""
+
+    frequency: float  # [rad/s]
+    state: State  # at the forces' angle 0
+    states: tuple[str, ...]  # of each contact over the period
+    measure: Measure
+    multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
+    residual: float  # by which the period fails to close, relative to the motion
+    stable: bool  # whether small disturbances die out, or at least do not grow
+    z: FloatArray  # (unknown + 1,), the frequency last
+    direction: FloatArray  # (unknown + 1,) of the curve, in the units of z
+    mark: int = 0  # of `Mark`, joined
+    steady: Steady | None = None  # how it repeats or ranges, where it does not after every period
+
+    @property
+    def repeats(self) -> int:
+        """Periods of the force after which the motion repeats, 0 if it does not."""
+        return 1 if self.steady is None else self.steady.periods
+
+
+def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> Sample:
+    """What is kept of a point."""
+    shot = problem.shot(z)
+    if shot is None:
+        raise SimulationError(f"the period at {z[-1]:g} rad/s cannot be computed")
+    multipliers = shot.multipliers
+    return Sample(
+        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), multipliers,
+        shot.residual, within_unit_circle(multipliers), z, direction, mark,
+    )  # fmt: skip
+
+
+def settled(omega: float, motion: Steady) -> Sample:
+    """What is kept of a motion that a simulation has come to."""
+    none = np.zeros(0)
+    return Sample(
+        omega, motion.state, motion.states, motion.measure, motion.multipliers, motion.error, True,
+        none, none, steady=motion,
+    )  # fmt: skip
+
+
+def samples(problem: OrbitProblem, path: Path) -> list[Sample]:
+    """The points of a path, with those added at which stability changes between folds.
+
+    A fold belongs to the stable side, and so does a point at which stability changes.
+    """
+    points = [
+        sampled(problem, path.z[k], path.direction[k], int(path.mark[k])) for k in range(path.z.shape[0])
+    ]
+    turns = [k for k in range(1, len(points) - 1) if points[k].mark & Mark.FOLD]
+    for k in turns:
+        points[k] = replace(points[k], stable=points[k - 1].stable or points[k + 1].stable)
+    return _with_crossings(problem, path, points)
+
+
+def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:
+    out = list(points[:1])
+    for k, point in enumerate(points[1:]):
+        before = points[k]
+        if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
+            crossing = _crossing(problem, path, k, before.stable)
+            out += [] if crossing is None else [crossing]
+        out.append(point)
+    return out
+
+
+def _crossing(problem: OrbitProblem, path: Path, first: int, stable: bool) -> Sample | None:
+    """The last place of the stable side between two points; None if the curve is not found."""
+    between, low, high, found = Between(problem, path, first), 0.0, 1.0, None
+    for _ in range(CROSSINGS):
+        middle = 0.5 * (low + high)
+        if not low < middle < high or not between.put(middle):
+            break
+        here = sampled(problem, between.z, between.direction, int(Mark.CROSSING))
+        found = here if here.stable else found
+        low, high = (middle, high) if here.stable == stable else (low, middle)
+    return found

@@ -1,0 +1,122 @@
+"""Periodic motions from which the curves of a scene are followed: near its harmonic balance, or from rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fcm.continuation.newton import Newton
+from fcm.motion.errors import SimulationError
+from fcm.motion.system import System
+from fcm.orbit.family import chosen
+from fcm.orbit.harmonic import balanced_states
+from fcm.orbit.periodic import Orbit, periodic, shoot
+from fcm.orbit.problem import OrbitProblem
+from fcm.scene.model import FloatArray, Scene
+
+DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
+
+
+def starts(problem: OrbitProblem) -> tuple[list[FloatArray], str]:
+    """Points z from which all branches are followed, and why there is none at an end of the range.
+
+    At both ends, and at the resonances inside, near every solution of the balance; where that leads to no
+    stable motion at an end, also the one that a motion from rest comes to.
+    """
+    scene, found, reason = problem.scene, list[FloatArray](), ""
+    inside = inner_resonances(scene)
+    for omega in (*scene.frequency_range, *inside):
+        try:
+            orbits = list(near_balance(scene, omega))
+            if omega not in inside and not any(orbit.stable for orbit in orbits):
+                orbits += _from_rest(scene, omega, bool(orbits))
+            for orbit in orbits:
+                _add(problem, found, first_point(problem, orbit))
+        except SimulationError as error:
+            reason = str(error) if omega not in inside else reason
+    return found, reason
+
+
+def solution_at(scene: Scene, omega: float) -> Orbit:
+    """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
+
+    Raises
+    ------
+    SimulationError
+        If there is none.
+    """
+    near = list(near_balance(scene, omega))
+    stable = [orbit for orbit in near if orbit.stable]
+    return (stable or _from_rest(scene, omega, bool(near)) or near)[0]
+
+
+def near_balance(scene: Scene, omega: float) -> Iterator[Orbit]:
+    """The motions that shooting finds from the solutions of the balance."""
+    for guess in balanced_states(scene, omega):
+        try:
+            orbit = shoot(System(scene, omega), guess)
+        except SimulationError:
+            continue
+        if orbit is not None:
+            yield orbit
+
+
+def _from_rest(scene: Scene, omega: float, others: bool) -> list[Orbit]:
+    """The motion that one from rest comes to; none if there are others and this cannot be had."""
+    try:
+        return [periodic(scene, omega)]
+    except SimulationError:
+        if others:
+            return []
+        raise
+
+
+def inner_resonances(scene: Scene) -> list[float]:
+    """Natural frequencies inside the range, contacts all stuck and all open; none without a balance."""
+    from fcm.harmonic.start import resonances
+    from fcm.harmonic.system import System as Balanced
+
+    return resonances(Balanced(scene)) if scene.modal.frequency.all() and scene.contacts else []
+
+
+def _add(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
+    problem.measure(z)
+    scale = np.asarray(problem.scale)
+    if all(np.linalg.norm((z - other) / scale) > DISTINCT for other in found):
+        found.append(z)
+
+
+def first_point(problem: OrbitProblem, orbit: Orbit) -> FloatArray:
+    """The point z of a solution, its stuck contacts as little stressed as can be, or as the scene starts.
+
+    Raises
+    ------
+    SimulationError
+        If it is not determined.
+    """
+    z = problem.z(orbit.state, orbit.frequency)
+    near = problem.shot(z)
+    member = None if near is None else chosen(near, problem.shooting.resting)
+    if member is not None:
+        z = np.append(member.x[problem.free], orbit.frequency)
+    newton = Newton(problem)
+    if not held(newton, z):
+        raise SimulationError(
+            f"the solution at {orbit.frequency:g} rad/s to start from is not determined: a mode is free to "
+            "drift, or resonates without damping; add damping, or try another range"
+        )
+    return np.array(newton.z)
+
+
+def held(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
+    """Whether Newton's method comes to the curve from near z, with the frequency held."""
+    newton.problem.measure(z)
+    np.asarray(newton.scale)[:] = newton.problem.scale
+    np.asarray(newton.z)[:] = z
+    row = np.asarray(newton.row)
+    row[:-1], row[-1] = 0.0, 1.0
+    if not newton.correct(reach):
+        return False
+    newton.z[-1] = z[-1]
+    return True

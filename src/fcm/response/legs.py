@@ -1,0 +1,104 @@
+"""The curves of a scene as they are followed: what is finished of them is kept, and need not be again."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+from fcm.continuation import Mark, Path, Stage, Status, follow
+from fcm.continuation.trail import Kept
+from fcm.orbit.problem import OrbitProblem
+from fcm.run import Report
+from fcm.scene.model import FloatArray
+
+OFTEN = 0.5  # [s] between two savings of a curve that is being followed
+SHARE = 0.05  # of the time, that saving may take
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A curve from one start in one direction: whole, or as far as it has come."""
+
+    number: int  # in the order in which they are followed
+    path: Path | None
+    stage: Stage | None
+
+
+LEGS = (Leg, Path, Stage, Status, Kept, Mark)  # what is saved consists of these
+
+
+class TimeOver(Exception):  # noqa: N818
+    """A curve has taken as long as it may."""
+
+
+class Legs:
+    """Follows curves as `fcm.continuation.follow` does, one after the other.
+
+    The same curves in the same order after an interruption: those that were finished are not followed again,
+    and the one that was begun goes on from its last point.
+
+    limit : processor time [s] after which `TimeOver` is raised, from the beginning.
+    """
+
+    def __init__(self, span: tuple[float, float], report: Report, limit: float | None = None) -> None:
+        self.report, self.low, self.high = report, *span
+        self.end = None if limit is None else time.process_time() + limit
+        self.finished: list[Path] = []
+        self._last: Stage | None = None
+        self._seen, self._took = time.monotonic(), 0.0
+        self._saved: dict[int, Leg] = {}
+        for leg in report.saved:
+            if isinstance(leg, Leg):
+                self._saved[leg.number] = leg  # the latest of each
+
+    def __call__(
+        self,
+        problem: OrbitProblem,
+        start: FloatArray,
+        span: tuple[float, float],
+        forward: bool,
+        max_step: float,
+        stations: Sequence[float],
+        _progress: object = None,
+    ) -> Path:
+        """See `follow`."""
+        saved = self._saved.get(len(self.finished))
+        if saved is not None and saved.path is not None:
+            path = saved.path
+        else:
+            stage = None if saved is None else saved.stage
+            begin = float(start[-1])
+            path = follow(
+                problem, start, span, forward, max_step, stations, None, stage, partial(self._watch, begin)
+            )
+        self._last = None
+        self.finished.append(path)
+        if saved is None or saved.path is None:
+            self.report.save(Leg(len(self.finished) - 1, path, None))
+        return path
+
+    def _watch(self, begin: float, stage: Stage) -> None:
+        self._last = stage
+        covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
+        if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
+            self.keep()
+        self.report(covered, f"{len(stage.kept.z)} points")
+        if self.end is not None and time.process_time() > self.end:
+            raise TimeOver
+
+    def keep(self) -> None:
+        """Save the curve that is being followed as far as it is there."""
+        if self._last is None:
+            return
+        begin = time.monotonic()
+        self.report.save(Leg(len(self.finished), None, self._last))
+        self._seen = time.monotonic()
+        self._took = self._seen - begin
+
+    def paths(self) -> list[Path]:
+        """What there is: whole curves, and the one that was interrupted."""
+        begun = [] if self._last is None else [self._last.path(Status.INTERRUPTED)]
+        found = [path for path in (*self.finished, *begun) if path.z.shape[0]]
+        return [replace(path, status=Status.INTERRUPTED) for path in found]

@@ -1,0 +1,58 @@
+"""What modes that were left out of exact curves change: points are solved once more with all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.motion.errors import SimulationError
+from fcm.orbit import harmonic_state, periodic
+from fcm.orbit.start import inner_resonances, near_balance
+from fcm.response.leave_out import Lighter
+from fcm.response.result import Curve, Response
+from fcm.scene.model import Scene
+
+MOST_CURVES = 8  # of a sweep, of which points are looked at
+MOST_POINTS = 4  # of a curve, those of its peaks first
+
+
+def effect(response: Response, lighter: Lighter) -> float:
+    """Greatest change of an amplitude, relative to the greatest of the point; inf where it cannot be told."""
+    numbers = np.unique(np.linspace(0, len(response.curves) - 1, MOST_CURVES).astype(int))
+    each = (_of_curve(response.curves[k], lighter.exact[k]) for k in numbers)
+    return max(each, default=0.0)
+
+
+def foreseen(lighter: Lighter) -> float:
+    """The same at the motions that the balance leads to, before any curve is followed."""
+    numbers = np.unique(np.linspace(0, len(lighter.full) - 1, MOST_CURVES).astype(int))
+    return max((_of_starts(lighter.curves[k], lighter.exact[k]) for k in numbers), default=0.0)
+
+
+def _of_starts(light: Scene, scene: Scene) -> float:
+    changes = [0.0]
+    for omega in (*scene.frequency_range, *inner_resonances(scene)):
+        pairs = zip(near_balance(light, omega), near_balance(scene, omega), strict=False)
+        for one, other in pairs:
+            amplitude = other.measure.amplitude
+            changes.append(float(np.abs(one.measure.amplitude - amplitude).max() / amplitude.max()))
+    return max(changes)
+
+
+def _of_curve(curve: Curve, scene: Scene) -> float:
+    there = np.flatnonzero(np.isfinite(curve.frequency) & (curve.stable == 1.0))
+    if there.size == 0:
+        return 0.0
+    peaks = np.unique(there[curve.amplitude[there].argmax(axis=0)])
+    spread = there[np.linspace(0, there.size - 1, MOST_POINTS).astype(int)]
+    points = dict.fromkeys([*peaks.tolist(), *spread.tolist()])
+    return max(_of_point(curve, scene, k) for k in list(points)[:MOST_POINTS])
+
+
+def _of_point(curve: Curve, scene: Scene, k: int) -> float:
+    motion = curve.fundamental[k], curve.phase[k], curve.mean[k]
+    try:
+        guess = harmonic_state(scene, float(curve.frequency[k]), *motion)
+        amplitude = periodic(scene, float(curve.frequency[k]), guess).measure.amplitude
+    except SimulationError:
+        return float("inf")
+    return float(np.abs(amplitude - curve.amplitude[k]).max() / np.abs(amplitude).max())

@@ -1,0 +1,174 @@
+"""The orbit as a problem of the continuation, the branches found by it, and what can be asked of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+import fcm
+from fcm.motion import simulate
+from fcm.orbit import OrbitProblem, harmonic_state, periodic
+from fcm.response.exact import trace_exact
+from fcm.scene import Force, Modal, scene_from_dict
+
+from ..motion.cases import one_mode, two_contacts, yang
+
+
+def between(scene, low, high, **changes):
+    return replace(scene, frequency_range=(low, high), **changes)
+
+
+def curve_of(scene, **options):
+    (curve,) = trace_exact(scene, **options).curves
+    return curve
+
+
+@pytest.mark.parametrize(("scene", "omega"), [(yang(), 1.3), (two_contacts(), 1.7)], ids=["yang", "two"])
+def test_the_derivatives_are_those_of_differences(scene, omega):
+    """Of the closure away from a solution, and of the amplitudes along any direction."""
+    problem, rng = OrbitProblem(scene), np.random.default_rng(1)
+    z = problem.z(periodic(scene, omega).state, omega)
+    z[: scene.modal.mass.size] *= 1.01
+    way, h = rng.normal(size=z.size) * np.abs(z), 1e-6
+
+    def at(z):
+        problem.evaluate(z)
+        problem.report(z, way)
+        return np.array(problem.residual), np.array(problem.output)
+
+    at(z)
+    jacobian, growth = np.array(problem.jacobian), np.array(problem.growth)
+    (residual, output), (before, less) = at(z + h * way), at(z - h * way)
+    difference = (residual - before) / (2.0 * h)
+    assert jacobian @ way == pytest.approx(difference, rel=1e-5, abs=1e-6 * np.abs(difference).max())
+    assert growth == pytest.approx((output - less) / (2.0 * h), rel=1e-5)
+
+
+def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
+    """Simulated from its own points, the motion stays on it: far above the one from rest."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/isolated.toml")
+    curve = curve_of(scene)
+    assert curve.complete and curve.branch.max() == 1
+    high = np.flatnonzero((curve.branch == 1) & (curve.stable == 1.0) & (curve.amplitude[:, 1] > 12.0))
+    k = int(high[len(high) // 2])
+    omega = curve.frequency[k]
+    guess = harmonic_state(scene, omega, curve.fundamental[k], curve.phase[k], curve.mean[k])
+    last = simulate(scene, omega, 400, guess).measures(last=1)[0]
+    assert last.amplitude == pytest.approx(curve.amplitude[k], rel=1e-6)
+    rest = simulate(scene, omega, 400).measures(last=1)[0]
+    assert rest.amplitude[1] < 0.5 * last.amplitude[1]
+
+
+class Interrupt:
+    """A progress that interrupts after some calls."""
+
+    def __init__(self, after):
+        self.left = after
+
+    def __call__(self, fraction, text):
+        self.left -= 1
+        if self.left < 0:
+            raise KeyboardInterrupt
+
+
+def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):
+    scene, keep = between(yang(), 1.15, 1.27), tmp_path / "kept"
+    whole = curve_of(scene)
+    first = curve_of(scene, keep=keep, progress=Interrupt(20))
+    again = curve_of(scene, keep=keep, progress=Interrupt(20), resume=True)
+    done = curve_of(scene, keep=keep, resume=True)
+    assert 15 < first.points < again.points < whole.points
+    assert again.reason.startswith("interrupted at ")
+    np.testing.assert_array_equal(done.amplitude, whole.amplitude)
+    assert done.folds == whole.folds and done.complete and not keep.exists()
+    assert done.orbits.periods < 0.8 * whole.orbits.periods
+
+
+def test_a_limit_of_time_is_said():
+    curve = curve_of(between(yang(), 1.15, 1.27), limit=1e-9)
+    assert not curve.complete and curve.reason.startswith("not finished in 1e-09 s of processor time, at ")
+
+
+@pytest.mark.parametrize("n_0", [5.0, -5.0, 50.0])
+def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
+    whole, alone = curve_of(yang(n_0)), curve_of(yang(n_0), only="peaks")
+    assert alone.complete and alone.points < 8
+    assert sorted(alone.folds) == pytest.approx(sorted(whole.folds), rel=1e-8)
+    for dof, (amplitude, omega, _) in whole.peaks.items():
+        assert alone.peaks[dof][0] == pytest.approx(amplitude, rel=1e-8)
+        assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
+    assert [jump.sweep for jump in alone.jumps()] == [jump.sweep for jump in whole.jumps()]
+    for jump in alone.jumps():
+        beyond = jump.frequency * (1.0 + 1e-4 * (1.0 if jump.sweep == "up" else -1.0))
+        last = simulate(yang(n_0), beyond, 300).measures(last=1)[0]
+        if jump.sweep == "down":  # the lower motion is the one from rest
+            assert last.amplitude == pytest.approx(jump.after, rel=1e-2)
+
+
+@pytest.mark.parametrize("loads", [[], [{"dof": "y", "force": 0.4}]], ids=["none", "static"])
+def test_a_peak_that_the_balance_has_exactly_is_that_of_its_own_dof(loads):
+    """There the contact sticks, and the guess is the peak; close to it is one of the other dof."""
+    modes = {"mass": [1, 1], "frequency": [1, 1.7], "damping": [0.02, 0.02], "shapes": [[1, 0.2], [0.1, 1]]}
+    joint = {"name": "c", "tangential": "x", "normal": "y", "mu": 0.4, "k_u": 1, "k_v": 0.5, "n_0": 1}
+    scene = scene_from_dict(
+        {
+            "modal": {"dofs": ["x", "y"], **modes},
+            "contact": [joint],
+            "force": [{"dof": "x", "amplitude": 0.3}],
+            "load": loads,
+            "response": {"frequency": [0.7, 2]},
+        }
+    )
+    shapes, own = np.array(modes["shapes"]), np.diag(np.square(modes["frequency"]))
+    stiff, damper = own + shapes @ np.diag([1.0, 0.5]) @ shapes.T, np.diag([0.04, 0.068])
+
+    def height(omega):
+        dynamic = stiff - omega**2 * np.eye(2) + 1j * omega * damper
+        return -abs(shapes[:, 1] @ np.linalg.solve(dynamic, 0.3 * shapes[:, 0]))
+
+    best = minimize_scalar(height, bounds=(1.84, 1.86), method="bounded", options={"xatol": 1e-9})
+    alone = curve_of(scene, only="peaks")
+    assert alone.complete
+    assert alone.peaks["y"][:2] == pytest.approx((-best.fun, best.x), rel=1e-6)
+
+
+def many(high):
+    """The oscillator with thirty more modes from a frequency on."""
+    scene, rng = yang(), np.random.default_rng(2)
+    modal, more = scene.modal, 30
+    shapes = np.concatenate((modal.shapes, rng.normal(size=(more, 2))))
+    frequency = np.concatenate((modal.frequency, high * (1.0 + np.arange(more))))
+    wider = Modal(
+        modal.dofs, np.ones(more + 2), frequency, np.concatenate((modal.damping, np.full(more, 0.01))), shapes
+    )
+    return between(replace(scene, modal=wider), 1.05, 1.12, max_step=0.2)
+
+
+def test_modes_that_follow_without_delay_are_left_out_with_a_bound():
+    scene = many(5.0)
+    light, full = trace_exact(scene, tolerance=1e-5), curve_of(scene, tolerance=None)
+    (said,) = light.left_out
+    assert "30 modes of 32" in said and "changes the response by less than" in said
+    for dof in full.peaks:
+        assert light.curves[0].peaks[dof][0] == pytest.approx(full.peaks[dof][0], rel=1e-5)
+
+
+def test_modes_that_nothing_moves_are_left_out():
+    scene = between(one_mode(), 0.9, 1.1, max_step=0.2)
+    modal = scene.modal
+    still = Modal(
+        modal.dofs, np.ones(2), np.array([1.0, 3.0]), np.full(2, 0.02), np.vstack((modal.shapes, np.zeros(2)))
+    )
+    response = trace_exact(replace(scene, modal=still))
+    assert response.left_out == ["1 mode of 2: neither a force nor a contact moves them (no effect)"]
+    np.testing.assert_array_equal(response.curves[0].amplitude, curve_of(scene).amplitude)
+
+
+def test_a_force_elsewhere_has_no_range_to_be_without():
+    """Without a force there is no motion, and its peaks are none."""
+    curve = curve_of(replace(yang(), forces=(Force(np.array([1.0, 0.0]), 0.0, 0.0),)), only="peaks")
+    assert not curve.amplitude[np.isfinite(curve.frequency)].any()
