@@ -1,4 +1,4 @@
-"""Response curves by single-harmonic balance with the mean (section 4.3): solve, follow, correct, write."""
+"""Response curves of a scene as results: traced or exact, swept, with what is left out, written to files."""
 
 from __future__ import annotations
 
