@@ -33,13 +33,14 @@ class OrbitProblem(Problem):
 
     Examples
     --------
+    >>> import numpy as np
     >>> import fcm
     >>> from fcm.orbit import periodic
     >>> scene = fcm.load_scene("yang1998-n5")
     >>> problem, orbit = OrbitProblem(scene), periodic(scene, 1.3)
     >>> problem.evaluate(problem.z(orbit.state, 1.3))
     0
-    >>> bool(abs(problem.residual).max() < 1e-9), problem.jacobian.shape
+    >>> bool(abs(np.asarray(problem.residual)).max() < 1e-9), problem.jacobian.shape
     (True, (5, 6))
     """
 
