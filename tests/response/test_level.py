@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.harmonic.start import highest, level_curve, resonances
+from fcm.harmonic.system import System
 from fcm.response import trace
 from fcm.response.level import trace_levels
 from fcm.response.output import to_dataset, write_csv
@@ -47,3 +49,16 @@ def test_the_level_is_a_column_of_csv(tmp_path):
     head, first, *_ = (line.split(",") for line in (tmp_path / "a.csv").read_text().splitlines())
     assert len(head) == len(first)
     assert float(first[head.index("level")]) == response.curves[0].level[0]
+
+
+def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_all():
+    """Then a solution beyond may be missing: the curve says where."""
+    scene = load_scene("extreme/stiff-and-soft")
+    (curve,) = trace(scene).curves
+    system = System(scene)
+    for frequency in (*scene.frequency_range, *resonances(system)):
+        end = highest(system, frequency)
+        reached = level_curve(system, frequency, (0.0, end)).parameter[-1] == pytest.approx(end)
+        assert (frequency in curve.unsure) != reached
+    assert curve.unsure and curve.summary()["branches_unsure_at"] == curve.unsure
+    assert not trace(load_scene("yang1998-n5")).curves[0].unsure

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.plot.band import bands_of, greatest_at
 from fcm.plot.read import DrawnCurve, read_response
+from fcm.response.bands import bands_of, greatest_at
 from fcm.response.output import summary, write_netcdf
 from fcm.response.sweep import trace
 from fcm.scene import scene_from_dict
@@ -89,7 +89,7 @@ def test_nothing_is_said_where_nothing_is_drawn():
 
 def test_a_band_holds_its_share_of_the_curves(path, response):
     drawn = read_response(path)
-    bands = bands_of(drawn, 0, (10.0, 90.0))
+    bands = bands_of(drawn.curves, drawn.drawn, 0, (10.0, 90.0))
     assert [band.parameters for band in bands] == [{"contact.c.mu": 0.4}, {"contact.c.mu": 0.3}]
     band = bands[0]
     assert (band.low <= band.median).all() and (band.median <= band.high).all()

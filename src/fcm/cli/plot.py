@@ -87,11 +87,19 @@ def _bands(
     file: Path, dof: str | None, log: bool | None, points: Path | None, band: tuple[float, float]
 ) -> Figure:
     """The figure of --band."""
+    import numpy as np
+
     from fcm.plot import read_response
-    from fcm.plot.band import draw_bands
+    from fcm.plot.band import column_of, draw_bands
+    from fcm.plot.read import wide
+    from fcm.response.bands import bands_of
 
     if not band[0] < band[1]:
         raise click.UsageError(f"--band {band[0]:g} {band[1]:g}: the percentages must rise, as in 5 95.")
     if points is not None:
         raise click.UsageError("--points are marked over curves; --band draws none.")
-    return draw_bands(read_response(file), dof, band, log)
+    read = read_response(file)
+    column = column_of(read, dof)
+    curves = [curve for curve in read.curves if np.isfinite(curve.amplitude[:, column]).any()]
+    bands = bands_of(curves, read.drawn, column, band, wide(curves))
+    return draw_bands(read, column, bands, band, log)

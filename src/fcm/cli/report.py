@@ -162,6 +162,19 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     return f"{which} not the accuracy that was asked for: {short[0]}"
 
 
+def branches_unsure(summary: Mapping[str, Any]) -> str:
+    """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
+    unsure = [curve["branches_unsure_at"] for curve in summary["curves"] if curve.get("branches_unsure_at")]
+    if not unsure:
+        return ""
+    count = len(summary["curves"])
+    which = "" if count == 1 else f"of {len(unsure)} of {count} curves "
+    at = f"{unsure[0][0]:.5g} {summary['frequency_unit']}"
+    return (
+        f"other branches {which}may be missing: at {at} the level of the forces was not followed to its end"
+    )
+
+
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early; empty if none."""
     curves = summary["curves"]

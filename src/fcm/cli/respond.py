@@ -16,7 +16,13 @@ from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
-from fcm.cli.report import all_lost_to_defects, cost_and_error, incomplete, short_of_accuracy
+from fcm.cli.report import (
+    all_lost_to_defects,
+    branches_unsure,
+    cost_and_error,
+    incomplete,
+    short_of_accuracy,
+)
 from fcm.cli.time_limit import TimeLimit, seconds
 
 if TYPE_CHECKING:
@@ -313,6 +319,8 @@ def _close(messages: Messages, result: dict[str, Any], defects: list[str]) -> No
         messages.info(f"{len(result['tracked']['curves'])} tracked curves in {result['seconds']:.2f} s")
     if short := short_of_accuracy(result):
         messages.warning(short)
+    if unsure := branches_unsure(result):
+        messages.warning(unsure)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, symbols
+from fcm.plot.labels import frequency_label
+from fcm.plot.place import name_at_side
 from fcm.plot.read import FloatArray, floats, opened, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
-_MOST_NAMES = 20  # of more modes than this, only the first and the last are named
 _PERCENT = 100.0
 
 
@@ -74,7 +74,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         lower.set_ylim(bottom=0.0)
         lower.margins(x=0.0)
         lower.set_ylim(top=1.12 * lower.get_ylim()[1])
-        _name(figure, upper, modes)
+        name_at_side(figure, upper.get_lines(), [one.parameters for one in modes])
     return figure
 
 
@@ -88,17 +88,3 @@ def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     if unit:
         text = f"{y:.3g} % at {mode.frequency[top]:.4g} {unit}"
         axes.annotate(text, (x, y), xytext=(8, 4), textcoords="offset points", fontsize=8)
-
-
-def _name(figure: Figure, axes: Axes, modes: tuple[DrawnMode, ...]) -> None:
-    keys = list(modes[0].parameters)
-    if not keys:
-        return
-    lines = axes.get_lines()
-    shown = range(len(modes)) if len(modes) <= _MOST_NAMES else (0, len(modes) - 1)
-    figure.legend(
-        [lines[i] for i in shown],
-        [curve_label(modes[i].parameters, False) for i in shown],
-        title=",\n".join(symbols(keys)),
-        loc="outside right upper",
-    )

@@ -1,21 +1,25 @@
-"""Names written at the peaks of curves, where they touch neither each other nor a line."""
+"""Names of curves: at their peaks, where they touch neither each other nor a line, or beside the axes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.labels import curve_label, symbols
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
     from matplotlib.text import Annotation
     from matplotlib.transforms import Bbox
 
 FloatArray = npt.NDArray[np.float64]
 
+_MOST_NAMES = 20  # of more lines than this, only the first and the last are named
 _OFFSETS = (  # [point] from the peak, with the alignment of the text, best first
     (0, 3, "center", "bottom"),
     (4, 2, "left", "bottom"),
@@ -89,3 +93,16 @@ def _dense(x: FloatArray, y: FloatArray) -> FloatArray:
     at = np.linspace(0, len(x) - 1, _FINE * (len(x) - 1) + 1)
     nodes = np.arange(len(x))
     return np.column_stack([np.interp(at, nodes, x), np.interp(at, nodes, y)])
+
+
+def name_at_side(figure: Figure, lines: Sequence[Line2D], parameters: Sequence[Mapping[str, float]]) -> None:
+    """Name lines by what was swept, in a legend beside the axes; of very many the first and the last."""
+    if not parameters[0]:
+        return
+    shown = range(len(parameters)) if len(parameters) <= _MOST_NAMES else (0, len(parameters) - 1)
+    figure.legend(
+        [lines[i] for i in shown],
+        [curve_label(parameters[i], False) for i in shown],
+        title=",\n".join(symbols(parameters[0])),
+        loc="outside right upper",
+    )

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.harmonic.sensitivity import Sensitivities
 from fcm.response.gist import Gist, gist_of, worst
 from fcm.response.jumps import Jump, jumps
 from fcm.response.tracked import Tracking
@@ -19,6 +18,7 @@ from fcm.scene.model import Scene
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
+    from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
@@ -125,6 +125,7 @@ class Curve:
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
+    unsure: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
     evaluations: int = 0  # of the equations, to follow it
     level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
     level_folds: list[float] = field(default_factory=list)  # levels at which that curve turns back
@@ -185,6 +186,7 @@ class Curve:
             **({} if self.complete else {"reason": self.reason}),
             **({"harmonics": list(self.harmonics)} if self.harmonics else {}),
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
+            **({"branches_unsure_at": in_unit(self.unsure, unit).tolist()} if self.unsure else {}),
             "peak": {d: self._peak(peak, gist, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
             **({} if self.sensitivity is None else {"sensitivity": self._of_numbers(self.sensitivity, unit)}),

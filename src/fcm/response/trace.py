@@ -133,6 +133,7 @@ def _curve(found: Accurate) -> Curve:
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
+        unsure=[one.omega for one in found.traced.looked if not one.complete],
     )
 
 

@@ -1,0 +1,100 @@
+"""Bands of the response over random draws: percentiles of the amplitude at each frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.model import FloatArray
+
+PLACES = 600  # frequencies at which percentiles are taken
+
+
+class ReadCurve(Protocol):
+    """A curve as a file holds it.
+
+    What was swept; frequency (point,), amplitude (point, dof); which points are stable, if that is known.
+    """
+
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def frequency(self) -> FloatArray: ...
+    @property
+    def amplitude(self) -> FloatArray: ...
+    @property
+    def stable(self) -> npt.NDArray[np.bool_] | None: ...
+
+
+@dataclass(frozen=True)
+class Band:
+    """Of the curves that differ in drawn numbers alone; NaN where none of them reaches."""
+
+    parameters: dict[str, float]  # the swept values that are not drawn
+    frequency: FloatArray  # (place,)
+    low: FloatArray
+    median: FloatArray
+    high: FloatArray
+
+
+def bands_of(
+    curves: Sequence[ReadCurve],
+    drawn: Collection[str],
+    column: int,
+    span: tuple[float, float],
+    wide: bool = False,
+) -> list[Band]:
+    """A band for each combination of the swept values that are not drawn.
+
+    Parameters
+    ----------
+    curves : sequence
+        Each with a point at least.
+    drawn : collection of str
+        The swept keys whose values are random.
+    column : int
+        Of the degree of freedom.
+    span : (low, high)
+        The percentages of the band.
+    wide : bool
+        Whether the frequencies of the band are in geometric progression.
+    """
+    frequencies = np.concatenate([curve.frequency for curve in curves])
+    ends = float(np.nanmin(frequencies)), float(np.nanmax(frequencies))
+    places = (np.geomspace if wide else np.linspace)(*ends, PLACES)
+    groups: dict[tuple[tuple[str, float], ...], list[FloatArray]] = {}
+    for curve in curves:
+        key = tuple((k, v) for k, v in curve.parameters.items() if k not in drawn)
+        groups.setdefault(key, []).append(greatest_at(curve, column, places))
+    return [_band(dict(key), places, values, span) for key, values in groups.items()]
+
+
+def greatest_at(curve: ReadCurve, column: int, places: FloatArray) -> FloatArray:
+    """The greatest stable amplitude at frequencies, by interpolation; NaN where there is none."""
+    x, y = curve.frequency, curve.amplitude[:, column]
+    stable = np.ones(x.size, bool) if curve.stable is None else curve.stable
+    if x.size == 1:
+        return np.where(places == x[0], y[0], np.nan)
+    out = np.full(places.size, np.nan)
+    for k in np.flatnonzero(np.isfinite(np.diff(x)) & stable[:-1] & stable[1:]):
+        one, other = (k, k + 1) if x[k] <= x[k + 1] else (k + 1, k)
+        at = slice(*np.searchsorted(places, (x[one], x[other]), side="left") + np.array([0, 1]))
+        inside = places[at][places[at] <= x[other]]
+        if inside.size:
+            value = np.interp(inside, x[[one, other]], y[[one, other]])
+            out[at.start : at.start + inside.size] = np.fmax(out[at.start : at.start + inside.size], value)
+    return out
+
+
+def _band(
+    parameters: dict[str, float], places: FloatArray, values: Sequence[FloatArray], span: tuple[float, float]
+) -> Band:
+    stack = np.array(values)
+    known = np.isfinite(stack).any(axis=0)
+    found = np.full((3, places.size), np.nan)
+    found[:, known] = np.nanpercentile(stack[:, known], (span[0], 50.0, span[1]), axis=0)
+    return Band(parameters, places, *found)
