@@ -32,7 +32,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others report demo picture paper figures test check tables \
+.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others report convergence demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -141,6 +141,11 @@ $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.
 		$(wildcard build/extremes.json $(OTHERS)/table.txt)
 	$(BIN)/python -m fcm.report accuracy $(REPORT) $(COMPARED:%=--scene %) \
 		--extremes build/extremes.json --others $(OTHERS)/table.txt
+
+convergence: $(VENV)/installed  ## error against run time with 1 to 15 harmonics, as the picture of README.md
+	@mkdir -p build
+	$(BIN)/python -m fcm.report convergence build/convergence.json --picture .github/convergence.png > build/convergence.txt
+	@cat build/convergence.txt
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 WIDTH = 5.5  # [inch] 140 mm, one and a half columns
 HEIGHT = 3.7  # [inch]
+DPI = 300
 COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 
 STYLE: dict[Any, Any] = {
@@ -30,7 +31,7 @@ STYLE: dict[Any, Any] = {
     "lines.solid_capstyle": "round",
     "mathtext.fontset": "stix",
     "pdf.fonttype": 42,
-    "savefig.dpi": 300,
+    "savefig.dpi": DPI,
     "svg.fonttype": "path",
     "svg.hashsalt": "fcm",
     "xtick.direction": "in",
@@ -92,8 +93,8 @@ def logarithmic_axis(axes: Axes) -> None:
     axes.yaxis.set_minor_formatter(NullFormatter())
 
 
-def save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: Path, dpi: int = DPI) -> None:
     """Write the picture in the format of its ending: the same bytes for the same figure."""
     ending = path.suffix.lower()
     with house_style():
-        figure.savefig(path, format=ending[1:], metadata=_UNDATED[ending])
+        figure.savefig(path, dpi=dpi, format=ending[1:], metadata=_UNDATED[ending])

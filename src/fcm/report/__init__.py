@@ -1,1 +1,1 @@
-"""Pages that show results beside what was expected of them, made from result files by ``make``."""
+"""Pages that show results beside what was expected of them, from result files by ``make``; a measurement."""

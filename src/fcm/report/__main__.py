@@ -1,4 +1,4 @@
-"""``python -m fcm.report WHAT FOLDER``: the page of a folder of results."""
+"""``python -m fcm.report WHAT``: the page of a folder of results, or a picture with its numbers."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from fcm.cli.lazy import LazyGroup
 PAGES = {
     "paper": ("fcm.report.paper:paper", "The figures of the paper, and its numbers beside those obtained."),
     "accuracy": ("fcm.report.accuracy:accuracy", "Error against run time of some scenes."),
+    "convergence": ("fcm.report.convergence:convergence", "Error against run time with more harmonics."),
 }
 
 
 @click.group(cls=LazyGroup, lazy=PAGES)
 def main() -> None:
-    """Write index.html into a folder that `make` has filled with pictures and results."""
+    """Write index.html into a folder that `make` has filled, or measure what a picture of README.md shows."""
 
 
 if __name__ == "__main__":
