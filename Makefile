@@ -15,7 +15,7 @@ KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.to
 ALL        := src/fcm/signals.py src/fcm/units.py src/fcm/files.py
 CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
-	$(wildcard $(foreach part,scene table structure continuation harmonic run response,src/fcm/$(part)/*.py))
+	$(wildcard $(foreach part,scene table structure continuation harmonic results reduction run response,src/fcm/$(part)/*.py))
 SIMULATION := $(SOLVER) $(wildcard src/fcm/motion/*.py src/fcm/orbit/*.py)
 LOOK       := $(ALL) src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py

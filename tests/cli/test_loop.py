@@ -9,7 +9,7 @@ import pytest
 
 from fcm import load_scene, periodic_forces, periodic_loop
 from fcm.response import trace
-from fcm.response.output import write_netcdf
+from fcm.results.output import write_netcdf
 
 CONTACT = ("--mu", 0.4, "--k-u", 1, "--k-v", 1, "--n0", 0.8, "--a", 1, "--b", 1)
 

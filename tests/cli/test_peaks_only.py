@@ -6,7 +6,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from fcm.response import padded
+from fcm.results import padded
 
 SWEEP = 'max_step = 0.3\nharmonics = 1\n[sweep]\n"contact.shroud.n_0" = [-5.0, 3.0, 8.0]\n'
 STIFF = """

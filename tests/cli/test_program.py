@@ -39,7 +39,7 @@ def test_help_imports_no_numerics(args):
 
 def test_what_only_few_commands_need_is_imported_by_them():
     """Of scipy, the optimisers and sparse matrices alone take as long as ten curves."""
-    code = "import sys, fcm.cli.respond, fcm.response.output, fcm.response.sweep; print(*sys.modules)"
+    code = "import sys, fcm.cli.respond, fcm.results.output, fcm.response.sweep; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     heavy = {"scipy.optimize", "scipy.linalg", "scipy.sparse", "scipy.stats", "xarray", "distributed"}
     assert "fcm.response.sweep" in done.stdout.split()

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fcm import response
-from fcm.response.result import Peak
+from fcm.results.result import Peak
 
 
 def files(folder):
@@ -220,7 +220,7 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeyp
     def full(*_args):
         raise OSError(28, "No space left on device", "a.nc")
 
-    monkeypatch.setattr("fcm.response.output.write_netcdf", full)
+    monkeypatch.setattr("fcm.results.output.write_netcdf", full)
     done = fcm("respond", scene, "-o", "a.nc")
     assert done.code == 3 and "peak u" in done.out
     kept, error = done.err.splitlines()

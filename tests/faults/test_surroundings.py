@@ -184,7 +184,7 @@ def test_a_full_disk_is_named(program):
 mkdir small; mount -t tmpfs -o size=500k none small; cd small; cp ../*.toml .
 {sys.executable} -m fcm.cli tabulate --preset fast --points 10000 -o t.nc; echo $?
 cat > fill.py <<END
-import fcm.response.output as output
+import fcm.results.output as output
 real = output.write_netcdf
 def full(*args):
     with open("fill", "wb", buffering=0) as file:

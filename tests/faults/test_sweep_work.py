@@ -126,7 +126,7 @@ def test_killed_while_it_writes_nothing_is_computed_again(program):
     deadly = (
         FEW
         + """
-import fcm.response.output as output, os
+import fcm.results.output as output, os
 output.write_netcdf = lambda *_: os.kill(os.getpid(), 9)
 """
     )
@@ -143,7 +143,7 @@ def test_ctrl_c_while_it_writes_keeps_all_and_says_so(program):
     stopped = (
         FEW
         + """
-import fcm.response.output as output, os, signal, time
+import fcm.results.output as output, os, signal, time
 output.write_netcdf = lambda *_: (os.kill(os.getpid(), signal.SIGINT), time.sleep(9))
 """
     )

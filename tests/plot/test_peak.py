@@ -6,7 +6,7 @@ import pytest
 from fcm.plot.errors import PlotError
 from fcm.plot.peak import Peaks, draw_peak, read_peaks
 from fcm.response import trace
-from fcm.response.output import write_netcdf
+from fcm.results.output import write_netcdf
 from fcm.scene import load_scene
 
 N_0, MU = "contact.shroud.n_0", "contact.shroud.mu"

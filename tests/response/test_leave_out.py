@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.response import leave_out, trace
-from fcm.response.static_modes import condensed
+from fcm.reduction import leave_out
+from fcm.reduction.static_modes import condensed
+from fcm.response import trace
 from fcm.scene import scene_from_dict
 
 
@@ -82,7 +83,7 @@ def test_the_error_falls_with_the_fourth_power_of_the_frequency():
 def test_a_wrong_estimate_is_found_and_everything_kept(monkeypatch):
     scene = structure(120, 2, 20, 100.0)
     reference = trace(scene, tolerance=None)
-    monkeypatch.setattr("fcm.response.static_modes._linear_error", lambda *_: 0.0)  # as if there were none
+    monkeypatch.setattr("fcm.reduction.static_modes._linear_error", lambda *_: 0.0)  # as if there were none
     response = trace(scene, tolerance=1e-9)
     assert not any("far above" in sentence for sentence in response.left_out)
     for dof, peak in reference.curves[0].peaks.items():

@@ -11,7 +11,7 @@ from fcm.harmonic.start import highest, level_curve, resonances
 from fcm.harmonic.system import System
 from fcm.response import trace
 from fcm.response.level import trace_levels
-from fcm.response.output import to_dataset, write_csv
+from fcm.results.output import to_dataset, write_csv
 from fcm.scene import load_scene
 
 

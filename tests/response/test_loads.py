@@ -15,9 +15,9 @@ from fcm.harmonic.system import System
 from fcm.motion import State, simulate
 from fcm.motion.energy import energy
 from fcm.orbit.shooting import Shooting
+from fcm.reduction.linear import linear_response
 from fcm.response import ResponseError, trace
 from fcm.response.level import trace_levels
-from fcm.response.linear import linear_response
 from fcm.scene import load_scene, scene_from_dict
 from fcm.scene.model import Force, Load
 

@@ -7,9 +7,9 @@ import pytest
 
 import fcm
 from fcm.plot.read import DrawnCurve, read_response
-from fcm.response.bands import bands_of, greatest_at
-from fcm.response.output import summary, write_netcdf
 from fcm.response.sweep import trace
+from fcm.results.bands import bands_of, greatest_at
+from fcm.results.output import summary, write_netcdf
 from fcm.scene import scene_from_dict
 
 COUNT = 12
@@ -73,7 +73,7 @@ def test_percentiles_are_over_the_draws_of_each_given_value(scene, response):
 
 
 def test_the_dataset_holds_them(response):
-    from fcm.response.output import to_dataset
+    from fcm.results.output import to_dataset
 
     data = to_dataset(response)
     assert data.peak_percentile.dims == ("scatter", "percent", "dof")

@@ -13,8 +13,8 @@ import pytest
 
 import fcm
 from fcm.response import groups, sweep
-from fcm.response.result import NOT_BEGUN
 from fcm.response.sweep import trace
+from fcm.results.result import NOT_BEGUN
 
 PRELOADS = np.linspace(-20.0, 60.0, 6)
 

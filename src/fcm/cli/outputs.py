@@ -50,7 +50,7 @@ class Outputs:
 
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
         """Write all files and print the summary; the curves are then no longer kept."""
-        from fcm.response.output import summary
+        from fcm.results.output import summary
 
         result = summary(response)
         try:
@@ -66,7 +66,7 @@ class Outputs:
         return result
 
     def _files(self, response: Response) -> list[tuple[Path, Callable[[Response, Path], None]]]:
-        from fcm.response import output
+        from fcm.results import output
 
         table = output.write_csv if response.curves else schedule.write_csv
         if response.tracking is not None and not response.curves:

@@ -92,7 +92,7 @@ def _bands(
     from fcm.plot import read_response
     from fcm.plot.band import column_of, draw_bands
     from fcm.plot.read import wide
-    from fcm.response.bands import bands_of
+    from fcm.results.bands import bands_of
 
     if not band[0] < band[1]:
         raise click.UsageError(f"--band {band[0]:g} {band[1]:g}: the percentages must rise, as in 5 95.")

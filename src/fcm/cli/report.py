@@ -184,7 +184,7 @@ def incomplete(summary: Mapping[str, Any]) -> str:
 
 def all_lost_to_defects(summary: Mapping[str, Any]) -> bool:
     """Whether no curve came out, each for a defect of fcm: the program failed, and not the calculation."""
-    from fcm.response.result import DEFECT
+    from fcm.results.result import DEFECT
 
     curves = summary["curves"]
     return bool(curves) and all(curve.get("reason", "").startswith(DEFECT) for curve in curves)

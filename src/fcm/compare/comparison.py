@@ -10,8 +10,8 @@ from pathlib import Path
 from fcm.compare.errors import Errors, Reference, Shown, reference, worst
 from fcm.compare.methods import CLOSED_FORM, EXACT, Method, Run, run, solve, with_step
 from fcm.compare.startup import Startup, startup
+from fcm.reduction.leave_out import TOLERANCE
 from fcm.response.around import refuse_ring
-from fcm.response.leave_out import TOLERANCE
 from fcm.response.sweep import trace
 from fcm.scene.model import Scene
 from fcm.table import open_table

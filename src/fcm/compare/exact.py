@@ -11,7 +11,7 @@ from fcm.compare.lines import Line, line_of
 from fcm.motion import SimulationError, State
 from fcm.orbit import harmonic_state, periodic
 from fcm.response.exact import trace_exact
-from fcm.response.result import Curve
+from fcm.results.result import Curve
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.model import Scene

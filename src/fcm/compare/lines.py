@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from fcm.response.result import Curve
+from fcm.results.result import Curve
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from fcm.compare.exact import exact_lines
 from fcm.compare.lines import Line, line_of
-from fcm.response.leave_out import leave_out
+from fcm.reduction.leave_out import leave_out
 from fcm.response.sweep import trace
 from fcm.response.trace import Wanted, traced_curve
 from fcm.run import Progress

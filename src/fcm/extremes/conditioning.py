@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.system import System
+from fcm.reduction.put_back import unknowns
 from fcm.response import Curve
-from fcm.response.put_back import unknowns
 from fcm.scene.model import Scene
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from fcm.response.bands import Band
+    from fcm.results.bands import Band
 
 _FAINT = 0.28
 _DECADE = 10.0  # medians that span more are drawn on a logarithmic axis

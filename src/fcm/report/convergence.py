@@ -18,9 +18,9 @@ from fcm.compare.exact import exact_lines
 from fcm.files import replacing
 from fcm.plot.convergence import Balanced, Line, draw_convergence
 from fcm.plot.style import save
-from fcm.response.result import Curve
 from fcm.response.sweep import trace
 from fcm.response.trace import Wanted, traced_curve
+from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.scene.model import Scene
 from fcm.table import Table, open_table

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fcm.response.result import Curve, Response
 from fcm.response.sweep import trace
 from fcm.response.trace import METHODS, ResponseError
+from fcm.results.result import Curve, Response
 from fcm.run import Factory, place_of
 from fcm.scene.model import Scene
 from fcm.scene.rules import step_fault
@@ -78,8 +78,8 @@ def respond(
     [[1.2388, 1.1875]]
     """
     from fcm.response.around import check_no_ring
-    from fcm.response.output import to_dataset
     from fcm.response.visible import check_solvable, visible
+    from fcm.results.output import to_dataset
 
     scene = scene.in_use()
     check_solvable(scene)

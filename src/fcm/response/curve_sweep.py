@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from fcm.response.groups import KINDS, Group, anonymous, as_curve, fit
-from fcm.response.result import NOT_BEGUN, Curve
+from fcm.results.result import NOT_BEGUN, Curve
 from fcm.run import Checkpoint, Compute, Factory, Lost, Progress, Results, fingerprint, place_for, sweep
 
 

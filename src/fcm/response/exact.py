@@ -13,18 +13,18 @@ import numpy as np
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, shown
 from fcm.orbit.problem import OrbitProblem
+from fcm.reduction.leave_out import TOLERANCE, leave_out_modes
+from fcm.reduction.mode_effect import effect, foreseen
+from fcm.reduction.sentences import on_modes
 from fcm.response.around import refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
-from fcm.response.leave_out import TOLERANCE, leave_out_modes
 from fcm.response.legs import LEGS, Legs, TimeOver
-from fcm.response.mode_effect import effect, foreseen
 from fcm.response.only_peaks import peaks_alone
 from fcm.response.orbit_curve import traced_curve, visited_curve
-from fcm.response.result import INTERRUPTED, Curve, Response
-from fcm.response.sentences import on_modes
 from fcm.response.trace import ResponseError
 from fcm.response.visit import STATES, Visitor
+from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Checkpoint, Factory, Interrupted, Progress, Report, fingerprint
 from fcm.scene.model import Scene
 from fcm.units import UNIT

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from fcm.response.gist import Gist, without_points
-from fcm.response.jumps import Jump
-from fcm.response.result import DEFECT, Curve, NonlinearMode, Orbits, Peak, Resonance
 from fcm.response.trace import Wanted, traced_curve
+from fcm.results.gist import Gist, without_points
+from fcm.results.jumps import Jump
+from fcm.results.result import DEFECT, Curve, NonlinearMode, Orbits, Peak, Resonance
 from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 

@@ -18,8 +18,8 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.result import Curve, Peak, Response
 from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
+from fcm.results.result import Curve, Peak, Response
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
 

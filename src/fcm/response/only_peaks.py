@@ -14,11 +14,11 @@ from fcm.orbit.located import Guess, located
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
 from fcm.orbit.start import near_balance
-from fcm.response.jumps import Jump
+from fcm.reduction.put_back import unknowns
 from fcm.response.orbit_curve import curve_of_points
-from fcm.response.put_back import unknowns
-from fcm.response.result import Curve
 from fcm.response.trace import ACCURACY, Wanted, traced_curve
+from fcm.results.jumps import Jump
+from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.scene.model import Scene
 

@@ -12,11 +12,11 @@ import numpy as np
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
-from fcm.response.result import Response
 from fcm.response.sweep import trace
 from fcm.response.trace import ResponseError, wanted_of
 from fcm.response.track import as_curve
-from fcm.response.tracked import Optimal, TrackedCurve, Tracking
+from fcm.results.result import Response
+from fcm.results.tracked import Optimal, TrackedCurve, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number, number_of

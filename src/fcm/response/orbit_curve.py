@@ -16,8 +16,8 @@ from fcm.orbit.family import family
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.response.groups import lost_curve
-from fcm.response.result import Curve, Orbits, Peak
 from fcm.response.visit import Visitor
+from fcm.results.result import Curve, Orbits, Peak
 from fcm.scene.model import Scene
 
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same

@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.sensitivity import Kind, Sensitivities, sensitivities
+from fcm.reduction.put_back import unknowns
 from fcm.response.around import check_no_ring
-from fcm.response.put_back import unknowns
-from fcm.response.result import Curve, Response
+from fcm.results.result import Curve, Response
 from fcm.run import Progress
 from fcm.scene.model import FloatArray, Scene
 

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from fcm.response import sentences
+from fcm.reduction import sentences
+from fcm.reduction.leave_out import TOLERANCE, Lighter, keep_all, leave_out
+from fcm.reduction.put_back import EACH_CHECKED, checked, restored
 from fcm.response.around import check_modes, unknown
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
-from fcm.response.leave_out import TOLERANCE, Lighter, keep_all, leave_out
-from fcm.response.put_back import EACH_CHECKED, checked, restored
-from fcm.response.result import Response
 from fcm.response.trace import METHODS, ResponseError, Wanted, wanted_of
+from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part
 from fcm.scene.model import Scene

@@ -18,7 +18,7 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.stability import stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
-from fcm.response.result import Curve, Peak
+from fcm.results.result import Curve, Peak
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table

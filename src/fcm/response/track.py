@@ -10,9 +10,9 @@ import numpy as np
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
-from fcm.response.result import Response
 from fcm.response.trace import ResponseError, Wanted, wanted_of
-from fcm.response.tracked import TrackedCurve, Tracking
+from fcm.results.result import Response
+from fcm.results.tracked import TrackedCurve, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number, number_of

@@ -25,7 +25,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled, settled
 from fcm.orbit.start import first_point, held, solution_at
 from fcm.orbit.steady import FREE_CYCLES, steady
-from fcm.response.jumps import Jump
+from fcm.results.jumps import Jump
 from fcm.run import Report
 from fcm.scene.model import FloatArray, Scene
 

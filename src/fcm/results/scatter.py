@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.response.gist import gist_of
-from fcm.response.result import Curve, Response
+from fcm.results.gist import gist_of
+from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray
 from fcm.units import in_unit
 

@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.response.gist import Gist, gist_of, worst
-from fcm.response.jumps import Jump, jumps
-from fcm.response.tracked import Tracking
+from fcm.results.gist import Gist, gist_of, worst
+from fcm.results.jumps import Jump, jumps
+from fcm.results.tracked import Tracking
 from fcm.scene.model import Scene
 from fcm.units import in_unit
 

@@ -7,8 +7,8 @@ import numpy as np
 from fcm.motion.errors import SimulationError
 from fcm.orbit import harmonic_state, periodic
 from fcm.orbit.start import inner_resonances, near_balance
-from fcm.response.leave_out import Lighter
-from fcm.response.result import Curve, Response
+from fcm.reduction.leave_out import Lighter
+from fcm.results.result import Curve, Response
 from fcm.scene.model import Scene
 
 MOST_CURVES = 8  # of a sweep, of which points are looked at

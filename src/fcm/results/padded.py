@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.response.result import Curve
+from fcm.results.result import Curve
 
 CHUNK = 1 << 20  # bytes that are made at a time, about
 

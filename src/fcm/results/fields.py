@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.response.gist import gist_of
-from fcm.response.padded import Padded, by_fold, by_point
-from fcm.response.result import Curve, Response
-from fcm.response.scatter import PERCENTS, SWEEPS, Scatter, scatter
+from fcm.results.gist import gist_of
+from fcm.results.padded import Padded, by_fold, by_point
+from fcm.results.result import Curve, Response
+from fcm.results.scatter import PERCENTS, SWEEPS, Scatter, scatter
 from fcm.units import in_unit
 
 ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
@@ -121,7 +121,7 @@ def fields_of(response: Response) -> dict[str, Field]:
         if found := scatter(response):
             out |= _scatter_fields(found, response.frequency_unit)
     if response.tracking is not None:
-        from fcm.response.tracked_fields import tracked_fields
+        from fcm.results.tracked_fields import tracked_fields
 
         out |= {name: Field(*parts) for name, parts in tracked_fields(response, response.tracking).items()}
     if response.histories is not None:

@@ -8,8 +8,8 @@ import numpy.typing as npt
 from fcm.continuation.newton import Newton
 from fcm.harmonic.record import amplitudes_at, cycles, loops, states
 from fcm.harmonic.system import System
-from fcm.response.leave_out import Lighter
-from fcm.response.result import Curve, Response
+from fcm.reduction.leave_out import Lighter
+from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray, Scene
 
 IntArray = npt.NDArray[np.intp]

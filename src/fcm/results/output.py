@@ -12,10 +12,10 @@ import numpy as np
 
 import fcm
 from fcm.files import replacing
-from fcm.response.fields import ORBIT_KINDS, Field, fields_of
-from fcm.response.padded import CHUNK, Padded
-from fcm.response.result import Orbits, Response
-from fcm.response.scatter import scatter, summary_of
+from fcm.results.fields import ORBIT_KINDS, Field, fields_of
+from fcm.results.padded import CHUNK, Padded
+from fcm.results.result import Orbits, Response
+from fcm.results.scatter import scatter, summary_of
 from fcm.units import in_unit
 
 if TYPE_CHECKING:

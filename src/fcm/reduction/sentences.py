@@ -11,7 +11,7 @@ from fcm.scene.model import Contact
 from fcm.units import UNIT
 
 if TYPE_CHECKING:
-    from fcm.response.leave_out import Lighter
+    from fcm.reduction.leave_out import Lighter
 
 MOST_NAMES = 6  # of contacts in one sentence
 

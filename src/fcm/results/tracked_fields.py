@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.response.result import Response
-from fcm.response.tracked import Tracking
+from fcm.results.result import Response
+from fcm.results.tracked import Tracking
 from fcm.units import in_unit
 
 Parts = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]

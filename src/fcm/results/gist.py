@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.response.jumps import Jump
+from fcm.results.jumps import Jump
 
 if TYPE_CHECKING:
-    from fcm.response.result import Curve
+    from fcm.results.result import Curve
 
 NO_ENDS = (np.nan, np.nan)
 

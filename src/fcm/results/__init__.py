@@ -1,0 +1,1 @@
+"""Curves, histories and tracked points as data: summaries, datasets, netCDF, CSV and JSON."""
