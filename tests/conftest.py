@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from .program import Program, called
+
 ROOT = Path(__file__).parents[1]
 
 
@@ -32,6 +34,21 @@ def compiled() -> bool:
 def _older(file: Path, kernel: str) -> bool:
     sources = [file.with_name(f"{kernel}{suffix}") for suffix in (".py", ".pxd")]
     return file.stat().st_mtime < max(source.stat().st_mtime for source in sources if source.exists())
+
+
+@pytest.fixture
+def fcm(tmp_path, monkeypatch):
+    """``fcm("respond", ...)``, called here in a folder of its own: exit code, standard output and error."""
+    monkeypatch.chdir(tmp_path)
+    return called
+
+
+@pytest.fixture
+def program(tmp_path):
+    """Processes of the program in a folder of its own."""
+    one = Program(tmp_path)
+    yield one
+    one.close()
 
 
 def pytest_configure(config):

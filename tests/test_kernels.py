@@ -1,7 +1,5 @@
 """The kernels: which modules they are, what a run says when they are not compiled, threads."""
 
-import subprocess
-import sys
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from importlib import import_module
@@ -12,13 +10,17 @@ import pytest
 
 import fcm
 
+from .program import AS_A_MODULE, python
+
 SOURCES = Path(__file__).parents[1] / "src"
 LISTED = tomllib.loads((SOURCES.parent / "pyproject.toml").read_text())["tool"]["setuptools"]["ext-modules"]
 
 
-def run(*arguments):
-    done = subprocess.run([sys.executable, *arguments], capture_output=True, text=True, check=True)
-    return done.stderr.count("the kernels of fcm run as Python")
+def warnings(*arguments):
+    """How often a run says that kernels are not compiled."""
+    done = python(*arguments)
+    assert done.code == 0, done.err
+    return done.err.count("the kernels of fcm run as Python")
 
 
 def test_every_kernel_is_listed_to_be_compiled():
@@ -31,9 +33,9 @@ def test_every_kernel_is_listed_to_be_compiled():
 def test_a_run_says_once_that_kernels_are_not_compiled(tmp_path):
     compiled = not import_module("fcm.contact.law").__file__.endswith(".py")
     expected = 0 if compiled else 1
-    assert run("-c", "import fcm.table, fcm.contact.cycle, fcm.contact.loop") == expected
-    assert run("-m", "fcm.cli", "respond", "yang1998", "-o", str(tmp_path / "curves.nc")) == expected
-    assert run("-m", "fcm.cli", "--help") == run("-c", "import fcm") == 0
+    assert warnings("-c", "import fcm.table, fcm.contact.cycle, fcm.contact.loop") == expected
+    assert warnings(*AS_A_MODULE, "respond", "yang1998", "-o", tmp_path / "curves.nc") == expected
+    assert warnings(*AS_A_MODULE, "--help") == warnings("-c", "import fcm") == 0
 
 
 def test_threads_have_motions_of_their_own():

@@ -4,11 +4,8 @@ import re
 import shlex
 import shutil
 import subprocess
-import sys
-from contextlib import redirect_stdout
 from dataclasses import replace
 from html import escape
-from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +13,13 @@ import pytest
 import xarray
 
 import fcm
-from fcm.cli import main
 from fcm.orbit import periodic
 from fcm.report import contact_figures, response_figures
 from fcm.report.page import Page, Section, Table, render
 from fcm.report.paper import FIGURES, commands, paper
 from fcm.report.rows import near
+
+from .program import AS_A_MODULE, called, python
 
 ROOT = Path(__file__).parents[1]
 # what every run of the program imports, or has no part in a result
@@ -62,11 +60,10 @@ def _run(args, output):
     if made.name in SLOW:
         made.write_bytes(b"\x89PNG" + bytes(20))
         return
-    with redirect_stdout(StringIO()) as printed, pytest.raises(SystemExit) as end:
-        main(args, prog_name="fcm")
-    assert not end.value.code
+    done = called(*args)
+    assert done.code == 0, done.err
     if output:
-        Path(output).write_text(printed.getvalue())
+        Path(output).write_text(done.out)
 
 
 @pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: str(figure.number))
@@ -162,11 +159,9 @@ def test_a_figure_is_made_again_when_what_it_uses_changes(folder, name):
     database = subprocess.run(make, cwd=ROOT, capture_output=True, text=True, check=False).stdout
     (prerequisites,) = re.findall(rf"^build/paper/{name}: (.*)$", database, re.M)
     (line,) = (one for one in planned("figures") if re.match(rf"none/bin/fcm .*-o build/paper/{name}\b", one))
-    done = subprocess.run(
-        [sys.executable, "-X", "importtime", "-m", "fcm.cli", *arguments(line)[0]],
-        cwd=folder, capture_output=True, text=True, check=True,
-    )  # fmt: skip
-    imported = re.findall(r"^import time:.*\| +(fcm[\w.]*)$", done.stderr, re.M)
+    done = python("-X", "importtime", *AS_A_MODULE, *arguments(line)[0], cwd=folder)
+    assert done.code == 0
+    imported = re.findall(r"^import time:.*\| +(fcm[\w.]*)$", done.err, re.M)
     needed = {f"src/{module.replace('.', '/')}.py" for module in imported} - PLOT
     needed -= {path for path in needed if name.endswith(".nc") and path.startswith("src/fcm/plot/")}
     modules = {path for path in needed if (ROOT / path).is_file() and not FRAME.match(path)}

@@ -1,10 +1,6 @@
-"""The program called as from a shell, and a scene small enough to be traced in every test."""
-
-from typing import NamedTuple
+"""A scene small enough to be traced in every test."""
 
 import pytest
-
-from fcm.cli import main
 
 SCENE = """
 title = "one curve"
@@ -27,25 +23,6 @@ amplitude = 1.0
 [response]
 frequency = [0.8, 1.6]
 """
-
-
-class Run(NamedTuple):
-    code: int
-    out: str
-    err: str
-
-
-@pytest.fixture
-def fcm(capsys, tmp_path, monkeypatch):
-    """``fcm("respond", ...)`` in a folder of its own: exit code, standard output, standard error."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*args):
-        with pytest.raises(SystemExit) as end:
-            main([str(arg) for arg in args], prog_name="fcm")
-        return Run(end.value.code or 0, *capsys.readouterr())
-
-    return run
 
 
 @pytest.fixture

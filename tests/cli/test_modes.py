@@ -6,9 +6,8 @@ import json
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
-from fcm.cli import main
+from ..program import called
 
 SCENE = """
 frequency_unit = "Hz"
@@ -38,13 +37,13 @@ frequency = [2, 4.5]
 def listed(tmp_path):
     def run(text, *options):
         (tmp_path / "scene.toml").write_text(text)
-        return CliRunner().invoke(main, ["plot", "modes", str(tmp_path / "scene.toml"), *options])
+        return called("plot", "modes", tmp_path / "scene.toml", *options)
 
     return run
 
 
 def test_participation_is_the_share_of_the_static_flexibility(listed):
-    found = json.loads(listed(SCENE, "--json").stdout)
+    found = json.loads(listed(SCENE, "--json").out)
     flexibility = np.array([0.25 / (2.0 * 1.0), 1.0 / (3.0 * 16.0), 1.0 / 25.0])  # along v, of each mode
     shares = [mode["participation"]["force.v"] for mode in found["modes"]]
     assert shares == pytest.approx(flexibility / flexibility.sum())
@@ -56,18 +55,18 @@ def test_participation_is_the_share_of_the_static_flexibility(listed):
 
 
 def test_what_is_amiss_is_said_before_anything_is_solved(listed):
-    warnings = json.loads(listed(SCENE, "--json").stdout)["warnings"]
+    warnings = json.loads(listed(SCENE, "--json").out)["warnings"]
     assert "contact.shroud.normal: no mode moves along it" in warnings
     assert "within the range, without damping: mode 2" in warnings
     assert any("the highest mode is at 5" in warning for warning in warnings)
 
 
 def test_a_line_for_each_mode(listed):
-    result = listed(SCENE.replace("frequency = [1.0,", "frequency = [0.0,"))
-    header, *lines = result.stdout.splitlines()
+    done = listed(SCENE.replace("frequency = [1.0,", "frequency = [0.0,"))
+    header, *lines = done.out.splitlines()
     assert header.split()[:4] == ["mode", "at", "Hz", "damping"] and len(lines) == 3
     assert lines[0].endswith("rigid body") and lines[0].split()[4] == "-"
-    assert "warning: contact.shroud.normal: no mode moves along it" in result.stderr
+    assert "warning: contact.shroud.normal: no mode moves along it" in done.err
 
 
 def test_modes_that_stand_for_flexibility_are_marked(listed):
@@ -81,7 +80,7 @@ mass = {[1.0] * 40}
 damping = 0.01
 modes = 3
 """
-    found = json.loads(listed(SCENE.replace(modal, structure), "--json").stdout)
+    found = json.loads(listed(SCENE.replace(modal, structure), "--json").out)
     kinds = [mode["kind"] for mode in found["modes"]]
     assert kinds[:3] == ["mode"] * 3 and set(kinds[3:]) == {"flexibility"}
     for name in ("contact.shroud.tangential", "contact.shroud.normal", "force.v"):
@@ -90,5 +89,5 @@ modes = 3
 
 
 def test_a_scene_with_mistakes_is_refused(listed):
-    result = listed(SCENE.replace('dof = "v"', 'dof = "x"'))
-    assert result.exit_code == 2 and 'unknown degree of freedom "x"' in result.stderr
+    done = listed(SCENE.replace('dof = "v"', 'dof = "x"'))
+    assert done.code == 2 and 'unknown degree of freedom "x"' in done.err

@@ -14,6 +14,8 @@ from fcm.cli import COMMANDS
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 
+from ..program import AS_A_MODULE, python
+
 HEAVY = {"numpy", "scipy", "xarray", "netCDF4", "matplotlib", "pandas"}
 
 
@@ -26,8 +28,7 @@ def imported_by(*args):
         "except SystemExit: pass\n"
         "print(json.dumps(sorted({name.partition('.')[0] for name in sys.modules})))"
     )
-    done = subprocess.run([sys.executable, "-c", code, *args], capture_output=True, text=True, check=True)
-    return set(json.loads(done.stdout.splitlines()[-1]))
+    return set(json.loads(python("-c", code, *args).out.splitlines()[-1]))
 
 
 @pytest.mark.parametrize(
@@ -40,10 +41,9 @@ def test_help_imports_no_numerics(args):
 def test_what_only_few_commands_need_is_imported_by_them():
     """Of scipy, the optimisers and sparse matrices alone take as long as ten curves."""
     code = "import sys, fcm.cli.respond, fcm.results.output, fcm.response.sweep; print(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    imported = python("-c", code).out.split()
     heavy = {"scipy.optimize", "scipy.linalg", "scipy.sparse", "scipy.stats", "xarray", "distributed"}
-    assert "fcm.response.sweep" in done.stdout.split()
-    assert not set(done.stdout.split()) & heavy
+    assert "fcm.response.sweep" in imported and not set(imported) & heavy
 
 
 def test_drawing_and_xarray_are_not_imported_by_respond(scene):
@@ -57,7 +57,7 @@ def test_drawing_and_xarray_are_not_imported_by_respond(scene):
 def test_help_is_quick():
     def seconds():
         begin = time.perf_counter()
-        subprocess.run([sys.executable, "-m", "fcm.cli", "--help"], capture_output=True, check=True)
+        assert python(*AS_A_MODULE, "--help").code == 0
         return time.perf_counter() - begin
 
     assert min(seconds() for _ in range(3)) < 0.5  # a busy machine; alone it needs 0.05
@@ -143,13 +143,8 @@ def test_a_warning_is_one_line_on_standard_error(capsys):
 
 def test_names_that_the_terminal_cannot_show_are_escaped(scene):
     scene.write_text(scene.read_text().replace('"u"', '"ü位"'), encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "fcm.cli", "respond", scene],
-        env={**os.environ, "PYTHONIOENCODING": "latin-1"},
-        capture_output=True,
-        check=True,
-    )
-    assert b"peak \xfc\\u4f4d" in done.stdout
+    latin = {"env": {**os.environ, "PYTHONIOENCODING": "latin-1"}, "encoding": "latin-1"}
+    assert "peak ü\\u4f4d" in python(*AS_A_MODULE, "respond", scene, **latin).out
 
 
 def test_a_reader_that_leaves_is_no_error():

@@ -3,8 +3,6 @@
 import csv
 import dataclasses
 import json
-import subprocess
-import sys
 
 import netCDF4
 import numpy as np
@@ -233,16 +231,12 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeyp
     assert files(tmp_path) == ["a.nc", "scene.toml"]
 
 
-def test_an_interrupted_run_says_so_and_leaves_nothing(scene, tmp_path):
+def test_an_interrupted_run_says_so_and_leaves_nothing(program, scene, tmp_path):
     code = (
         "import os, signal, fcm.response\n"
         "fcm.response.trace = lambda *a, **k: os.kill(os.getpid(), signal.SIGINT) or signal.pause()\n"
-        "from fcm.cli import main\n"
-        "main(['respond', 'scene.toml', '-o', 'a.nc'], prog_name='fcm')"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
+    done = program("respond", "scene.toml", "-o", "a.nc", before=code)
     assert done.returncode == 3
-    assert done.stderr == "fcm: interrupted: the calculation was not completed\n"
+    assert done.err == "fcm: interrupted: the calculation was not completed\n"
     assert files(tmp_path) == ["scene.toml"]

@@ -2,8 +2,6 @@
 
 import csv
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import netCDF4
@@ -159,7 +157,7 @@ def test_without_force_there_is_no_motion(fcm, alone):
 
 @pytest.mark.parametrize(("kind", "left"), [("both", True), ("alone", False)])
 @pytest.mark.parametrize("finished", [0, 7])
-def test_an_interruption_keeps_what_is_finished(request, tmp_path, kind, left, finished):
+def test_an_interruption_keeps_what_is_finished(request, program, tmp_path, kind, left, finished):
     request.getfixturevalue(kind)
     code = f"""
 import os, signal, fcm.motion.record as record
@@ -170,17 +168,13 @@ def measure(*args):
         os.kill(os.getpid(), signal.SIGINT)
         signal.pause()
     return real(*args)
-record.measure = measure
-from fcm.cli import main
-main(['respond', 'scene.toml', '-o', 'a.nc', '--json'], prog_name='fcm')"""
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60
-    )
-    assert done.returncode == 3 and "Traceback" not in done.stderr
+record.measure = measure"""
+    done = program("respond", "scene.toml", "-o", "a.nc", "--json", before=code)
+    assert done.returncode == 3 and "Traceback" not in done.err
     if not (left or finished):
-        assert done.stderr == "fcm: interrupted: the calculation was not completed\n" and done.stdout == ""
+        assert done.err == "fcm: interrupted: the calculation was not completed\n" and done.out == ""
         return
-    (history,) = json.loads(done.stdout)["histories"]
+    (history,) = json.loads(done.out)["histories"]
     assert history["cycles"] == finished and "interrupted" in history["reason"]
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         assert np.isfinite(data["cycle_amplitude"][0, :, 0].filled(np.nan)).sum() == finished

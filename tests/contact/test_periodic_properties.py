@@ -1,8 +1,6 @@
 """What holds for every periodic motion: bounds, signs, symmetries; the loop and what it says of the cycle."""
 
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +9,7 @@ import pytest
 import fcm
 from fcm import fourier_coefficients, hysteresis_loop, periodic_forces, periodic_loop
 
+from ..program import python
 from .cases import points
 from .motions import BOUNDARIES, random_cases
 
@@ -190,8 +189,8 @@ def test_the_sources_run_as_python(tmp_path):
     numbers = {name: [getattr(c, name) for c in cases] for name in ("mu", "k_u", "k_v", "n_0")}
     given, made = tmp_path / "given.npz", tmp_path / "made.npy"
     np.savez(given, u=u, v=v, **numbers)
-    command = [sys.executable, "-c", AS_PYTHON, str(given), str(made)]
-    subprocess.run(command, check=True, env={"PYTHONPATH": str(tmp_path)}, timeout=300)
+    done = python("-c", AS_PYTHON, given, made, env={"PYTHONPATH": str(tmp_path)})
+    assert done.code == 0, done.err
     for row, case, x, y in zip(np.load(made), cases, u, v, strict=True):
         G = fcm.periodic_gradients(x, y, *case.arguments()[2:])
         loop = periodic_loop(x, y, *case.arguments()[2:])

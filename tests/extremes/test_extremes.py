@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +15,8 @@ from fcm.extremes.known import changes, read_known
 from fcm.extremes.residual import unbalanced
 from fcm.response import trace
 from fcm.scene import SceneError
+
+from ..program import python
 
 KNOWN = Path(__file__).with_name("passed.txt")
 SAMPLE = (
@@ -163,23 +163,20 @@ def test_changes_against_the_known_rows(rows):
     assert changes(found, {"force-1e-9", "equal-modes"}) == (["equal-modes"], ["slip-limit-met"])
 
 
-def run(*arguments):
-    return subprocess.run(
-        [sys.executable, "-m", "fcm.extremes", *arguments], capture_output=True, text=True, timeout=100
-    )
+EXTREMES = ("-m", "fcm.extremes")
 
 
 def test_the_command(tmp_path):
     known, output = tmp_path / "passed.txt", tmp_path / "rows.json"
     known.write_text("slip-limit-met  # exactly\n", encoding="utf-8")
-    done = run("slip-limit-met", "no-motion-at-all", "--known", str(known), "-o", str(output))
-    assert done.returncode == 0, done.stderr
-    assert "2 of 2 pass" in done.stdout and "pass and are not in" in done.stderr
+    done = python(*EXTREMES, "slip-limit-met", "no-motion-at-all", "--known", known, "-o", output)
+    assert done.code == 0, done.err
+    assert "2 of 2 pass" in done.out and "pass and are not in" in done.err
     (first, second) = json.loads(output.read_text(encoding="utf-8"))
     assert first["passes"] and second["name"] == "no-motion-at-all" and second["residual"] < 1e-12
 
 
 def test_a_name_that_does_not_exist():
-    done = run("slip-limit-mett")
-    assert done.returncode == 2 and 'did you mean "slip-limit-met"?' in done.stderr
-    assert "Traceback" not in done.stderr
+    done = python(*EXTREMES, "slip-limit-mett")
+    assert done.code == 2 and 'did you mean "slip-limit-met"?' in done.err
+    assert "Traceback" not in done.err

@@ -1,10 +1,7 @@
-"""The program as a process of its own, in a folder of its own, and what it leaves behind."""
+"""Scenes for the program as a process of its own, and what it leaves behind."""
 
 import os
 import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import netCDF4
@@ -49,62 +46,12 @@ FEW = (
 TIMED = {"seconds"}  # parts of a summary that differ from run to run
 
 
-class Program:
-    """``program(*args)`` runs it to its end; ``program.start(*args)`` lets it run."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder, self.running = folder, []
-
-    def start(self, *args, before="", env=None, **more):
-        """Begin a run, in a session of its own; before: Python that is executed first in its process."""
-        code = f"{before}\nfrom fcm.cli.__main__ import run\nrun()"
-        command = [sys.executable, "-c", code] if before else [sys.executable, "-m", "fcm.cli"]
-        more = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | more
-        run = subprocess.Popen(
-            [*command, *map(str, args)], cwd=self.folder, start_new_session=True,
-            env={**os.environ, **(env or {})}, **more,
-        )  # fmt: skip
-        self.running.append(run)
-        return run
-
-    def __call__(self, *args, **more):
-        run = self.start(*args, **more)
-        run.out, run.err = run.communicate(timeout=120)
-        return run
-
-    def write(self, name, text):
-        (self.folder / name).write_text(text)
-
-    @property
-    def files(self):
-        return sorted(path.name for path in self.folder.iterdir())
-
-    def until(self, condition, seconds=60.0):
-        """Wait for something; the test fails if it does not come about."""
-        end = time.monotonic() + seconds
-        while not condition():
-            assert time.monotonic() < end, f"in vain; there is {self.files}"
-            time.sleep(0.005)
-
-    def kept(self, name="a.nc.unfinished", more_than=100):
-        """Whether finished work is on disk."""
-        path = self.folder / name
-        return path.is_file() and path.stat().st_size > more_than
-
-
 @pytest.fixture
-def program(tmp_path):
-    one = Program(tmp_path)
-    one.write("sweep.toml", SWEEP)
-    one.write("one.toml", ONE)
-    yield one
-    for run in one.running:
-        if run.poll() is None:
-            run.kill()
-            run.wait()
-        for stream in (run.stdout, run.stderr):
-            if stream is not None:
-                stream.close()
+def program(program):
+    """With two scenes in its folder."""
+    program.write("sweep.toml", SWEEP)
+    program.write("one.toml", ONE)
+    return program
 
 
 def session(leader):

@@ -2,7 +2,6 @@
 
 import re
 import subprocess
-import sys
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -48,17 +47,13 @@ MANY = SWEEP.replace("count = 12", "count = 20")
 class Cluster:
     """A scheduler and workers, each a process that says its address."""
 
-    def __init__(self):
-        self.running = []
+    def __init__(self, program):
+        self.program = program
         self.scheduler = self.begin(SCHEDULER)
         self.address = self.said_by(self.scheduler)
 
     def begin(self, code, *args):
-        run = subprocess.Popen(
-            [sys.executable, "-c", code, *args], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-        )
-        self.running.append(run)
-        return run
+        return self.program.python("-c", code, *args, stderr=subprocess.DEVNULL)
 
     def worker(self, before=SLOW):
         return self.begin(WORKER.format(before=before), self.address)
@@ -67,17 +62,10 @@ class Cluster:
     def said_by(run):
         return run.stdout.readline().strip()
 
-    def close(self):
-        for run in self.running:
-            run.kill()
-            run.communicate()
-
 
 @pytest.fixture
-def dask():
-    cluster = Cluster()
-    yield cluster
-    cluster.close()
+def dask(program):
+    return Cluster(program)
 
 
 def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(program, dask):

@@ -10,7 +10,8 @@ import time
 
 import pytest
 
-from .conftest import FEW, SIGNALS, session, variables
+from ..program import Program
+from .conftest import FEW, SIGNALS, SWEEP, session, variables
 
 KILLS = int(os.environ.get("FCM_KILLS", "10"))
 FORMER = b"the result of an earlier run, which nothing but a whole one may replace"
@@ -35,14 +36,13 @@ module.sweep = sweep
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """An uninterrupted run on one core: its variables, and how long one on two cores takes."""
-    from .conftest import SWEEP, Program
-
     program = Program(tmp_path_factory.mktemp("whole"))
     program.write("sweep.toml", SWEEP)
     assert program("respond", "sweep.toml", "-o", "a.nc", "--jobs", "1", before=FEW).returncode == 0
     begin = time.monotonic()
     assert program("respond", "sweep.toml", "-o", "b.nc", "--jobs", "2", before=FEW).returncode == 0
     first, second = (variables(program.folder / name) for name in ("a.nc", "b.nc"))
+    program.close()
     assert first == second
     return first, time.monotonic() - begin
 

@@ -16,6 +16,7 @@ import pytest
 
 from fcm.cli.terminal import plain
 
+from ..program import python
 from .conftest import HEAD, ONE
 
 # 8
@@ -272,10 +273,8 @@ from fcm.cli.__main__ import run
 assert "fcm.signals" not in sys.modules
 run()
 """
-    done = subprocess.run(
-        [sys.executable, "-c", early], capture_output=True, text=True, timeout=60, check=False
-    )
-    assert done.returncode == -signal.SIGINT and done.stderr == ""
+    done = python("-c", early)
+    assert done.code == -signal.SIGINT and done.err == ""
 
 
 def test_ctrl_c_at_random_instants_is_never_a_traceback(program):

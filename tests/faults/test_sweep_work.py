@@ -5,8 +5,6 @@ import os
 import pickle
 import re
 import signal
-import subprocess
-import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -303,11 +301,7 @@ def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
         "sweep(forever, [[1], [2]], place_for(2))\n",
     )
     for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
-        run = subprocess.Popen(
-            [sys.executable, "run.py"], cwd=program.folder, start_new_session=True,
-            stderr=subprocess.PIPE, text=True,
-        )  # fmt: skip
-        program.running.append(run)
+        run = program.python("run.py")
         program.until(lambda run=run: len(session(run.pid)) == 3)
         time.sleep(0.3)
         os.kill(run.pid, number)
@@ -331,7 +325,7 @@ def test_ctrl_c_while_workers_start_shows_no_traceback(program):
 
 
 def test_partial_files_of_the_dead_are_removed_and_of_the_living_not(program):
-    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone = program.python("-c", "")
     gone.wait()
     for name in (f".a.{gone.pid}.partial.nc", f".a.{gone.pid:08d}.partial.nc", f".a.{os.getpid()}.partial.nc",
                  f".b.{gone.pid}.partial.nc", ".a.partial.nc"):  # fmt: skip
@@ -504,13 +498,13 @@ def test_threads_hand_over_what_is_finished_when_they_are_interrupted():
     assert done.interrupted and done.results == {0: [0]}
 
 
-def test_the_lock_goes_with_the_process(tmp_path):
-    path = tmp_path / "kept"
+def test_the_lock_goes_with_the_process(program):
+    path = program.folder / "kept"
     code = (
         "import sys, time\nfrom pathlib import Path\nfrom fcm.run import Checkpoint\n"
         f"kept = Checkpoint(Path({str(path)!r}))\nprint('locked', flush=True)\ntime.sleep(60)\n"
     )
-    run = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    run = program.python("-c", code)
     assert run.stdout.readline() == "locked\n"
     with pytest.raises(CheckpointError, match=f"process {run.pid} on"):
         Checkpoint(path)

@@ -6,10 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import fcm
-from fcm.cli import main
 from fcm.harmonic.rest import RestError, rest_of
 from fcm.harmonic.system import System
 from fcm.motion import State, simulate
@@ -22,6 +20,7 @@ from fcm.scene import load_scene, scene_from_dict
 from fcm.scene.model import Force, Load
 
 from ..motion.reference import Law, integrate
+from ..program import called
 
 YANG = load_scene("yang1998-n5")
 U, V = np.eye(2)
@@ -214,8 +213,8 @@ def test_what_nothing_can_hold_is_refused_in_plain_words(tmp_path):
         "[response]\nfrequency = [0.3, 2]\n[[schedule]]\nfrequency = 1\ncycles = 3\n"
     )
     for options in ([], ["--method", "exact"], ["--method", "exact", "--at", "1"]):
-        result = CliRunner().invoke(main, ["respond", str(path), "-o", str(tmp_path / "a.nc"), *options])
-        assert result.exit_code == 3 and "no equilibrium" in result.output
+        done = called("respond", path, "-o", tmp_path / "a.nc", *options)
+        assert done.code == 3 and "no equilibrium" in done.out + done.err
 
 
 def test_a_moving_base_is_the_forces_of_inertia():

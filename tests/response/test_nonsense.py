@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 import fcm
-from fcm.cli import main
 from fcm.response import ResponseError, trace
+
+from ..program import called
 
 
 @pytest.mark.parametrize(
@@ -26,8 +26,8 @@ from fcm.response import ResponseError, trace
     ],
 )
 def test_options_that_are_nonsense_are_refused(options, words, tmp_path):
-    result = CliRunner().invoke(main, ["respond", "yang1998-n5", "-o", str(tmp_path / "a.nc"), *options])
-    assert result.exit_code == 2 and words in " ".join(result.output.split())
+    done = called("respond", "yang1998-n5", "-o", tmp_path / "a.nc", *options)
+    assert done.code == 2 and done.out == "" and words in " ".join(done.err.split())
     assert not list(tmp_path.iterdir())
 
 

@@ -3,8 +3,6 @@
 import os
 import signal
 import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import netCDF4
@@ -15,6 +13,8 @@ import fcm
 from fcm.response import groups, sweep
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
+
+from ..program import called, python
 
 PRELOADS = np.linspace(-20.0, 60.0, 6)
 
@@ -154,35 +154,23 @@ max_step = 0.2
 "contact.shroud.mu" = { normal = [0.4, 0.05], count = 90, seed = 1 }
 "contact.shroud.n_0" = { normal = [10, 3], count = 90, seed = 1 }
 """
-PROGRAM = """
-import sys
-import fcm.response.sweep as sweep
-sweep.BATCH = 5
-from fcm.cli import main
-if __name__ == "__main__":
-    main(sys.argv[1:], prog_name="fcm")
-"""
+GROUPS = "import fcm.response.sweep as sweep\nsweep.BATCH = 5"
 
 
-def test_ctrl_c_and_resume_give_the_same_file(tmp_path):
-    (tmp_path / "scene.toml").write_text(SCENE)
-    (tmp_path / "program.py").write_text(PROGRAM)
-    command = [sys.executable, "program.py", "respond", "scene.toml", "--jobs", "2"]
-    subprocess.run([*command, "-o", "whole.nc"], cwd=tmp_path, check=True, capture_output=True)
-    run = subprocess.Popen([*command, "-o", "a.nc"], cwd=tmp_path, stderr=subprocess.PIPE, text=True,
-                           stdout=subprocess.DEVNULL)  # fmt: skip
-    kept = tmp_path / "a.nc.unfinished"
-    deadline = time.monotonic() + 50.0
-    while time.monotonic() < deadline and not (kept.is_file() and kept.stat().st_size > 100):
-        time.sleep(0.01)
+def test_ctrl_c_and_resume_give_the_same_file(program, tmp_path):
+    program.write("scene.toml", SCENE)
+    command = ["respond", "scene.toml", "--jobs", "2", "-o"]
+    assert program(*command, "whole.nc", before=GROUPS).returncode == 0
+    run = program.start(*command, "a.nc", before=GROUPS, stdout=subprocess.DEVNULL)
+    program.until(program.kept)
     os.kill(run.pid, signal.SIGINT)
     _, said = run.communicate(timeout=50)
     assert run.returncode == 3 and "Traceback" not in said
     assert "a.nc.unfinished: continue with --resume" in said and "curves not complete" in said
     with netCDF4.Dataset(tmp_path / "a.nc") as part:
         assert 0 < part["complete"][:].sum() < part.dimensions["curve"].size
-    subprocess.run([*command, "-o", "a.nc", "--resume"], cwd=tmp_path, check=True, capture_output=True)
-    assert not kept.exists()
+    assert program(*command, "a.nc", "--resume", before=GROUPS).returncode == 0
+    assert not (tmp_path / "a.nc.unfinished").exists()
     with netCDF4.Dataset(tmp_path / "a.nc") as one, netCDF4.Dataset(tmp_path / "whole.nc") as two:
         assert set(one.variables) == set(two.variables)
         for name in one.variables:
@@ -221,16 +209,13 @@ def test_a_process_that_dies_loses_no_other_curve(tmp_path):
     """Nor does a script need a guard against being imported by the processes: they do not."""
     (tmp_path / "deadly.py").write_text(DEADLY)
     (tmp_path / "script.py").write_text(SCRIPT)
-    done = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.stdout == "[(True, ''), (False, 'its process ended unexpectedly,'), (True, '')]\n", (
-        done.stderr
-    )
+    done = python("script.py", cwd=tmp_path)
+    assert done.out == "[(True, ''), (False, 'its process ended unexpectedly,'), (True, '')]\n", done.err
 
 
-def test_resume_needs_a_file(tmp_path):
-    run = [sys.executable, "-m", "fcm.cli", "respond", "yang1998", "--resume"]
-    done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 2 and "--resume needs the -o FILE" in done.stderr
+def test_resume_needs_a_file():
+    done = called("respond", "yang1998", "--resume")
+    assert done.code == 2 and "--resume needs the -o FILE" in done.err
 
 
 def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, small_groups, tmp_path):

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.cli import main
 from fcm.plot.campbell import folded
 from fcm.response.trace import ResponseError
 from fcm.scene import SceneError, scene_from_dict
 
+from ..program import called
 from . import rings
 
 MODAL = {
@@ -93,13 +93,6 @@ def test_engine_orders_are_swept():
     assert abs(found.peak_frequency.values[0] / alone.peak_frequency.values[0] - 1.0).max() > 0.01
 
 
-def run(capsys, *arguments):
-    with pytest.raises(SystemExit) as stopped:
-        main(list(arguments))
-    out, err = capsys.readouterr()
-    return stopped.value.code, out, err
-
-
 @pytest.mark.parametrize(
     "options, what",
     [
@@ -108,8 +101,8 @@ def run(capsys, *arguments):
         (["--track", "peaks", "--over", "level", "--from", "1", "--to", "2"], "tracked points"),
     ],
 )
-def test_what_is_not_computed_of_a_ring_is_refused_at_once(capsys, tmp_path, options, what):
-    code, out, err = run(capsys, "respond", "bladed-disk", "-o", str(tmp_path / "a.nc"), *options)
+def test_what_is_not_computed_of_a_ring_is_refused_at_once(tmp_path, options, what):
+    code, out, err = called("respond", "bladed-disk", "-o", tmp_path / "a.nc", *options)
     assert code == 2 and not out and not list(tmp_path.iterdir())
     assert f"bladed-disk: cyclic: {what} of a ring of sectors are not computed" in err
 
@@ -126,8 +119,8 @@ def test_a_sector_keeps_its_own_degree_of_freedom_of_a_next_one_that_is_used():
         assert (again.ring.damping != curve.ring.damping).sum() == 1
 
 
-def test_campbell_in_numbers(capsys):
-    code, out, err = run(capsys, "plot", "campbell", "bladed-disk", "--json")
+def test_campbell_in_numbers():
+    code, out, err = called("plot", "campbell", "bladed-disk", "--json")
     found = json.loads(out)
     assert code == 0 and "stability is that of disturbances of the same travelling wave" in err
     (order,) = found["engine_orders"]
@@ -138,11 +131,11 @@ def test_campbell_in_numbers(capsys):
     assert order["resonances"]["stuck"] == found["diameters"][3]["stuck"][:1]
 
 
-def test_campbell_draws_and_refuses(capsys, tmp_path):
+def test_campbell_draws_and_refuses(tmp_path):
     picture = tmp_path / "disk.svg"
-    assert run(capsys, "plot", "campbell", "bladed-disk", "-o", str(picture))[0] == 0
+    assert called("plot", "campbell", "bladed-disk", "-o", picture).code == 0
     assert picture.stat().st_size > 10_000
-    code, _, err = run(capsys, "plot", "campbell", "yang1998")
+    code, _, err = called("plot", "campbell", "yang1998")
     assert code == 2 and "this diagram is of a ring of sectors" in err
 
 
@@ -155,8 +148,8 @@ def test_lines_of_engine_orders_run_up_and_down():
         assert seen.real == pytest.approx(np.cos(2.0 * np.pi * number * np.arange(7) / 7), abs=1e-9)
 
 
-def test_modes_are_listed_by_diameter(capsys):
-    code, out, _ = run(capsys, "plot", "modes", "bladed-disk", "--json")
+def test_modes_are_listed_by_diameter():
+    code, out, _ = called("plot", "modes", "bladed-disk", "--json")
     modes = json.loads(out)["modes"]
     assert code == 0 and len(modes) == 39
     assert [mode["nodal_diameter"] for mode in modes[:4]] == [0, 0, 0, 1]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import ast
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +12,8 @@ import scipy.sparse
 from scipy.io import mmwrite, savemat
 
 from fcm.scene import SceneError, apart, scene_from_dict
+
+from ..program import AS_A_MODULE, python
 
 HERE = Path(__file__).parent
 MODES = {
@@ -57,10 +57,9 @@ print(read, refused)
 
 
 def run(path, values, kind="modal"):
-    command = [sys.executable, "-c", DRIVER, str(path), ",".join(map(str, values)), kind]
-    found = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert found.returncode == 0, found.stderr
-    return [int(count) for count in found.stdout.split()]
+    done = python("-c", DRIVER, path, ",".join(map(str, values)), kind)
+    assert done.code == 0, done.err
+    return [int(count) for count in done.out.split()]
 
 
 def test_every_byte_of_an_archive(tmp_path):
@@ -117,9 +116,9 @@ print(ends)
 
 def ends_of_reader(path, values, how):
     """How often the reader ended with each exit code; those of signals are negative."""
-    command = [sys.executable, "-c", READER, str(path), ",".join(map(str, values)), how]
-    found = subprocess.run(command, capture_output=True, text=True, check=True)
-    return ast.literal_eval(found.stdout)
+    done = python("-c", READER, path, ",".join(map(str, values)), how)
+    assert done.code == 0, done.err
+    return ast.literal_eval(done.out)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
@@ -158,7 +157,6 @@ def test_the_program_says_one_sentence(tmp_path):
     (tmp_path / "m.mat").write_bytes(content)
     text = '[modal]\nfile = "m.mat"\n[[force]]\ndof = "1x"\namplitude = 1\n[response]\nfrequency = [1, 2]\n'
     (tmp_path / "m.toml").write_text(text)
-    command = [sys.executable, "-m", "fcm.cli", "respond", str(tmp_path / "m.toml")]
-    found = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert found.returncode == 2 and found.stdout == ""
-    assert len(found.stderr.splitlines()) == 1 and "m.mat" in found.stderr
+    done = python(*AS_A_MODULE, "respond", tmp_path / "m.toml")
+    assert done.code == 2 and done.out == ""
+    assert len(done.err.splitlines()) == 1 and "m.mat" in done.err

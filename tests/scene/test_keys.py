@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 import tomllib
 
 import pytest
-from click.testing import CliRunner
 
-from fcm.cli import main
 from fcm.scene import SceneError, scene_from_dict
 from fcm.scene.keys import TABLES, as_lines, names
 
+from ..program import called, python
+
 
 def printed(option):
-    result = CliRunner().invoke(main, ["respond", option])
-    assert result.exit_code == 0 and result.stderr == ""
-    return result.stdout
+    done = called("respond", option)
+    assert done.code == 0 and done.err == ""
+    return done.out
 
 
 def test_every_key_is_printed_with_its_rule():
@@ -79,5 +77,4 @@ def test_what_the_template_has_in_comments_is_right():
 def test_neither_needs_the_solver():
     code = "import sys; from fcm.cli import main; main(['respond', '--keys'], standalone_mode=False); "
     code += "print([m for m in ('scipy', 'netCDF4', 'xarray', 'fcm.response.sweep') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    assert python("-c", code).out.splitlines()[-1] == "[]"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import FrozenInstanceError
 from math import pi
 from pathlib import Path
@@ -13,6 +11,8 @@ import pytest
 
 import fcm
 from fcm.scene import SceneError, bundled_scenes, load_scene, scene_from_dict
+
+from ..program import python
 
 
 def refused(path: str | Path) -> str:
@@ -200,5 +200,4 @@ def test_a_file_too_large_is_not_read(tmp_path):
 def test_a_scene_imports_no_more_than_numpy():
     heavy = ("scipy", "click", "xarray", "matplotlib", "netCDF4", "pandas")
     code = f"import sys, fcm; fcm.load_scene('yang1998'); print([m for m in {heavy} if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert python("-c", code).out == "[]\n"

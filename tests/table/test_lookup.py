@@ -1,8 +1,6 @@
 """Look-up: shapes, special arguments, symmetry, continuity, derivatives of the interpolant."""
 
 import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -12,6 +10,8 @@ from hypothesis import strategies as st
 from fcm import fourier_coefficients
 from fcm.contact import fourier_gradients
 from fcm.table.measure import sample
+
+from ..program import python
 
 COUNT = int(
     20_000 * float(os.environ.get("FCM_TEST_SCALE", "1"))
@@ -206,5 +206,4 @@ def test_look_up_needs_numpy_alone():
         "import sys, fcm.table.lookup, fcm.table.store;"
         "print(sorted({'click', 'xarray', 'matplotlib', 'scipy', 'netCDF4'} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    assert python("-c", code).out == "[]\n"

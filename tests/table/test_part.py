@@ -7,10 +7,8 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
 
 import fcm
-from fcm.cli import main
 from fcm.response import trace
 from fcm.scene import load_scene
 from fcm.table import TableError, build_table, open_table, spline
@@ -38,19 +36,6 @@ def path(reach, tmp_path_factory):
 @pytest.fixture(scope="module")
 def table(path):
     return open_table(path)
-
-
-@pytest.fixture
-def run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def call(*args):
-        done = CliRunner().invoke(main, list(map(str, args)))
-        assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
-        assert "Traceback" not in done.output
-        return done
-
-    return call
 
 
 def random_points(count=20_000, seed=3):
@@ -192,18 +177,18 @@ def test_a_changed_part_is_refused(path, tmp_path):
         open_table(copy)
 
 
-def test_command_says_what_it_saved(run, tmp_path):
-    done = run("tabulate", "--preset", "fast", "--for", SCENE, "--points", 10_000, "-o", "t.nc", "--json")
-    assert done.exit_code == 0
+def test_command_says_what_it_saved(fcm, tmp_path):
+    done = fcm("tabulate", "--preset", "fast", "--for", SCENE, "--points", 10_000, "-o", "t.nc", "--json")
+    assert done.code == 0
     for words in ("of 36482 nodes", "MB instead of", "computed in", "opens in", "wrote t.nc"):
-        assert words in done.stderr
-    part = json.loads(done.stdout)["part"]
+        assert words in done.err
+    part = json.loads(done.out)["part"]
     assert part["nodes"] < part["nodes_of_all"] and (tmp_path / "t.nc").stat().st_size < part["bytes_of_all"]
-    assert run("tabulate", "--verify", "t.nc").exit_code == 0
-    done = run("respond", SCENE, "--table", "t.nc")
-    assert done.exit_code == 0 and "outside" not in done.stderr
-    done = run("respond", "yang1998", "--table", "t.nc")
-    assert done.exit_code == 0 and "look-ups outside the part it holds" in done.stderr
+    assert fcm("tabulate", "--verify", "t.nc").code == 0
+    done = fcm("respond", SCENE, "--table", "t.nc")
+    assert done.code == 0 and "outside" not in done.err
+    done = fcm("respond", "yang1998", "--table", "t.nc")
+    assert done.code == 0 and "look-ups outside the part it holds" in done.err
 
 
 STUCK = """
@@ -237,10 +222,10 @@ frequency = [0.7, 1.7]
         (("--verify", "t.nc", "--for", SCENE), "--for is of no use with --verify"),
     ],
 )
-def test_wrong_input_is_one_clear_message(run, tmp_path, options, message):
+def test_wrong_input_is_one_clear_message(fcm, tmp_path, options, message):
     (tmp_path / "stuck.toml").write_text(STUCK)
     (tmp_path / "bad.toml").write_text("[modal]\n")
-    done = run("tabulate", *options)
-    assert done.exit_code == 2, done.stderr
-    assert message in done.stderr
+    done = fcm("tabulate", *options)
+    assert done.code == 2, done.err
+    assert message in done.err
     assert not (tmp_path / "table.nc").exists()

@@ -3,62 +3,46 @@
 import json
 
 import pytest
-from click.testing import CliRunner
 
-from fcm.cli import main
 from fcm.table import build, open_table, store
 from fcm.table.arrays import encode
-
-
-@pytest.fixture
-def run(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-
-    def call(*args):
-        done = CliRunner().invoke(main, ["tabulate", *map(str, args)])
-        assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
-        assert "Traceback" not in done.output
-        return done
-
-    return call
-
 
 SMALL = ("--nodes", 7, 5, 9, 7, "--points", 10_000)
 
 
-def test_builds_a_table_and_says_what_it_cost_and_how_wrong_it_is(run, tmp_path):
-    done = run(*SMALL)
-    assert done.exit_code == 0
+def test_builds_a_table_and_says_what_it_cost_and_how_wrong_it_is(fcm, tmp_path):
+    done = fcm("tabulate", *SMALL)
+    assert done.code == 0
     assert open_table(tmp_path / "table.nc").resolution == (7, 5, 9, 7)
-    last = done.stderr.strip().splitlines()[-1]
+    last = done.err.strip().splitlines()[-1]
     assert all(word in last for word in ("wrote table.nc", "MB", " s;", "at most", "rms"))
-    assert "separation F_b" in done.stdout and "worst at" in done.stdout
+    assert "separation F_b" in done.out and "worst at" in done.out
     assert [path.name for path in tmp_path.iterdir()] == ["table.nc"]
 
 
-def test_json_is_the_same_that_the_file_records(run, tmp_path):
-    done = run(*SMALL, "-o", "mine.nc", "--json")
-    result = json.loads(done.stdout)
+def test_json_is_the_same_that_the_file_records(fcm, tmp_path):
+    done = fcm("tabulate", *SMALL, "-o", "mine.nc", "--json")
+    result = json.loads(done.out)
     assert result["resolution"] == [7, 5, 9, 7]
     assert result["bytes"] == (tmp_path / "mine.nc").stat().st_size
     assert result["error"] == open_table("mine.nc").error
 
 
-def test_verify_agrees(run):
-    run(*SMALL)
-    done = run("--verify", "table.nc", "--json")
-    assert done.exit_code == 0
-    assert json.loads(done.stdout)["true"] is True
-    assert "as recorded" in done.stderr
+def test_verify_agrees(fcm):
+    fcm("tabulate", *SMALL)
+    done = fcm("tabulate", "--verify", "table.nc", "--json")
+    assert done.code == 0
+    assert json.loads(done.out)["true"] is True
+    assert "as recorded" in done.err
 
 
-def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
+def test_verify_finds_an_error_that_is_not_true(fcm, tiny_file):
     separation, slip, error, _ = store.load(tiny_file)
     better = {**error, "max": 0.5 * error["max"]}
     store.write("lie.nc", encode(separation, slip), better, "test")
-    done = run("--verify", "lie.nc")
-    assert done.exit_code == 3
-    assert "the recorded error is not true: max" in done.stderr
+    done = fcm("tabulate", "--verify", "lie.nc")
+    assert done.code == 3
+    assert "the recorded error is not true: max" in done.err
 
 
 @pytest.mark.parametrize(
@@ -78,42 +62,42 @@ def test_verify_finds_an_error_that_is_not_true(run, tiny_file):
         (("--study", "study.txt"), "has to end in .csv"),
     ],
 )
-def test_wrong_input_is_one_clear_message(run, tmp_path, options, message):
-    done = run(*options)
-    assert done.exit_code == 2
-    assert message in done.stderr
+def test_wrong_input_is_one_clear_message(fcm, tmp_path, options, message):
+    done = fcm("tabulate", *options)
+    assert done.code == 2
+    assert message in done.err
     assert not list(tmp_path.iterdir())
 
 
-def test_damaged_file_is_not_verified(run, tmp_path):
+def test_damaged_file_is_not_verified(fcm, tmp_path):
     (tmp_path / "bad.nc").write_bytes(b"\x89HDF\r\n\x1a\n" + b"\0" * 100)
-    done = run("--verify", "bad.nc")
-    assert done.exit_code == 2
-    assert "damaged" in done.stderr
+    done = fcm("tabulate", "--verify", "bad.nc")
+    assert done.code == 2
+    assert "damaged" in done.err
 
 
-def test_interruption_leaves_the_old_file_and_says_what_remains(run, tmp_path, monkeypatch):
+def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path, monkeypatch):
     (tmp_path / "table.nc").write_bytes(b"old")
 
     def interrupt(*args, **kwargs):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(build, "measure", interrupt)
-    done = run(*SMALL)
-    assert done.exit_code == 3
-    assert "interrupted at" in done.stderr and "nothing was written, table.nc is as it was" in done.stderr
+    done = fcm("tabulate", *SMALL)
+    assert done.code == 3
+    assert "interrupted at" in done.err and "nothing was written, table.nc is as it was" in done.err
     assert (tmp_path / "table.nc").read_bytes() == b"old"
     assert len(list(tmp_path.iterdir())) == 1
 
 
-def test_study_compares_layouts(run, tmp_path, monkeypatch):
+def test_study_compares_layouts(fcm, tmp_path, monkeypatch):
     from fcm.table import study
 
     monkeypatch.setattr(study, "SHARES", (0.2, 0.3))
     monkeypatch.setattr(study, "POINTS", 3000)
-    done = run("--study", "study.csv", "--json")
-    assert done.exit_code == 0
-    rows = json.loads(done.stdout)
+    done = fcm("tabulate", "--study", "study.csv", "--json")
+    assert done.code == 0
+    rows = json.loads(done.out)
     assert len(rows) == 9
     assert len((tmp_path / "study.csv").read_text().splitlines()) == 10
     assert (tmp_path / "study.png").read_bytes().startswith(b"\x89PNG")
