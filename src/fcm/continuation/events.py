@@ -7,9 +7,16 @@ from typing import NamedTuple
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import sqrt
 
-from fcm.continuation.front import Front, Place
+from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Mark
+from fcm.continuation.place import Place
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.front import along
+else:
+    from fcm.continuation.front import along
 
 LOOKS = 40  # places looked at to find a root
 FINE = 1e-11  # of a step: a root is known to this
@@ -20,6 +27,7 @@ RISE = cython.declare(
 NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: a lower peak of an output is not looked for
+SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
 MARGIN, FOLD, PEAK = range(3)  # the functions along a step
 
 
@@ -44,7 +52,7 @@ def first_margin(front: Front) -> tuple[float, int]:
     """Where within the step a margin changes sign first, and which."""
     first, which = front.step, -1
     for k in range(front.problem.margins):
-        if front.here.margin[k] * front.margin(k, front.there) < 0.0:
+        if front.here.margin[k] * front.here.margin_at(k, front.there) < 0.0:
             at = root(front, MARGIN, k, front.step)
             if at <= first:
                 first, which = at, k
@@ -80,6 +88,27 @@ def turns(here: Place, there: Place, k: cython.Py_ssize_t, greatest: cython.doub
     return size >= NEARLY_GREATEST * greatest
 
 
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def closes(front: Front, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
+    """Whether the step passes the point where the curve began, in the direction that it had there."""
+    i: cython.Py_ssize_t
+    before: cython.double = 0.0
+    after: cython.double = 0.0
+    far: cython.double = 0.0
+    farther: cython.double = 0.0
+    for i in range(first.shape[0]):
+        one: cython.double = (front.here.z[i] - first[i]) / front.newton.scale[i]
+        other: cython.double = (front.there.z[i] - first[i]) / front.newton.scale[i]
+        far += one * one
+        farther += other * other
+        before += one * head[i]
+        after += other * head[i]
+    if sqrt(min(far, farther)) > front.step:
+        return False
+    return before < 0.0 <= after and along(front.here.tangent, head) > SAME_WAY
+
+
 def within(front: Front, limit: float, values: list[float], greatest: FloatArray) -> list[Found]:
     """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
     n: cython.Py_ssize_t = front.problem.unknowns
@@ -109,7 +138,9 @@ def located(front: Front, kind: int, k: int, limit: float, mark: int) -> list[Fo
 def value(front: Front, place: Place, kind: cython.int, k: cython.Py_ssize_t) -> cython.double:
     """A function along the step; a margin that there is not has not changed its sign."""
     if kind == MARGIN:
-        margin: cython.double = front.here.margin[k] if place is front.here else front.margin(k, place)
+        margin: cython.double = (
+            front.here.margin[k] if place is front.here else front.here.margin_at(k, place)
+        )
         return margin if margin != 0.0 else front.here.margin[k]
     return place.tangent[place.tangent.shape[0] - 1] if kind == FOLD else place.growth[k]
 

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from fcm.continuation import events
+from fcm.continuation.ahead import ahead
 from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.trail import Trail
@@ -60,7 +61,7 @@ class Soft:
         while step > SHORTEST:
             if front.go(step) and self.good(follower):
                 return self.smooth(follower)
-            reach = front.ahead(step)
+            reach = ahead(front, step)
             if reach < min(step, TOUCHED):
                 return self.turn(follower, reach)
             if reach < step and front.go(reach * (1.0 - SHORT_OF)) and self.good(follower):
@@ -68,7 +69,7 @@ class Soft:
                 follower.aim(SHARP, False)
                 return status
             step = 0.25 * min(step, reach)
-        reach = front.ahead(MET)
+        reach = ahead(front, MET)
         return self.turn(follower, reach) if reach < MET or self.repeated else Status.STALLED
 
     def good(self, follower: Follower) -> bool:

@@ -1,4 +1,4 @@
-from fcm.continuation.front cimport Place
+from fcm.continuation.place cimport Place
 
 cdef class Trail:
     cdef readonly int count

@@ -8,8 +8,8 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation.front import Place
 from fcm.continuation.path import FloatArray, Path, Status
+from fcm.continuation.place import Place
 
 ROOM = 64  # points for which there is room at first
 

@@ -1,0 +1,266 @@
+# cython: wraparound=True
+"""The one that follows a curve, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import cython
+import numpy as np
+
+from fcm.continuation import events
+from fcm.continuation.front import Front
+from fcm.continuation.path import FloatArray, Mark, Path, Status
+from fcm.continuation.place import Place
+from fcm.continuation.problem import Problem
+from fcm.continuation.soft import Soft
+from fcm.continuation.stage import Stage, put_back, state_of
+from fcm.continuation.trail import Trail
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.ahead import ahead
+    from cython.cimports.fcm.continuation.corner import come, cross, cross_softly
+    from cython.cimports.fcm.continuation.events import closes, quiet
+    from cython.cimports.fcm.continuation.margins import crosses, dip
+    from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
+else:
+    from fcm.continuation.ahead import ahead
+    from fcm.continuation.corner import come, cross, cross_softly
+    from fcm.continuation.events import closes, quiet
+    from fcm.continuation.margins import crosses, dip
+    from fcm.continuation.step_rule import clear, extent, good, next_step
+
+FIRST = cython.declare(cython.double, 1e-3)  # the first step
+SHORTEST = cython.declare(cython.double, 1e-9)  # a step that is still too long then leads nowhere
+PAST = cython.declare(cython.double, 1e-3)  # of a step that ends at a margin, by which it goes past
+BEFORE = cython.declare(cython.double, 1e-6)  # of the way to a corner: up to here the curve is smooth
+BEYOND = cython.declare(
+    cython.double, 1e-7
+)  # length past a corner at which the curve's new direction is looked for
+TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less than BEYOND
+NEAR = cython.declare(cython.double, 1e-4)
+NEARER = cython.declare(cython.double, 0.9)  # a corner further away is approached by this share of the way
+AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
+LONGEST = 20_000  # steps
+END = cython.declare(cython.long, int(Mark.END))
+BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
+
+Progress = Callable[[float], None]  # fraction of the range that has been covered
+Watch = Callable[[Stage], None]
+
+
+@cython.cclass
+class Follower:
+    """`begin` or `resume`, then `run`: steps, the points that they keep, and where the curve ends."""
+
+    problem: Problem
+    front: Front
+    n: cython.Py_ssize_t
+    low: cython.double
+    high: cython.double
+    step: cython.double
+    max_step: cython.double
+    size: cython.double
+    values: list[float]  # of the parameter, to be landed on: stations, then the ends of the range
+    stops: cython.double[::1]  # the same
+    trail: Trail
+    greatest: FloatArray
+    most: cython.double[::1]  # the same
+    first: cython.double[::1]  # point,
+    head: cython.double[::1]  # and its tangent
+    interior: cython.bint
+    soft: Soft | None
+    progress: Progress | None
+
+    def __init__(
+        self,
+        problem: Problem,
+        span: tuple[float, float],
+        max_step: float,
+        stations: Sequence[float],
+        progress: Progress | None,
+    ) -> None:
+        self.problem, self.front, self.n = problem, Front(problem), problem.unknowns
+        self.low, self.high = span
+        self.max_step, self.progress = max_step, progress
+        self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
+        self.stops = np.array(self.values)
+        self.trail = Trail(problem.unknowns + 1)
+        self.greatest = np.zeros(problem.outputs)
+        self.most = self.greatest
+        self.soft = Soft(self.front, self.trail) if problem.soft else None
+
+    def begin(self, start: FloatArray, forward: bool) -> bool:
+        """Go to the curve at the start; whether there is one."""
+        here: Place = self.front.here
+        row = np.zeros(self.n + 1)
+        row[-1] = 1.0 if forward else -1.0
+        if not self.front.begin(np.array(start, dtype=np.float64), row):
+            return False
+        here.z[self.n] = start[-1]
+        self.interior = self.low < start[-1] < self.high
+        self.first, self.head = np.array(here.z), np.array(here.tangent)
+        self.size = extent(self.front)
+        self.trail.add(here, self.front.newton.scale, 0 if self.interior else END, self.front.there.shift)
+        self.step = min(FIRST, self.max_step)
+        return True
+
+    def resume(self, stage: Stage) -> None:
+        """Go where the curve had come to."""
+        put_back(self.front, stage)
+        self.trail.restore(stage.kept)
+        self.step, self.size, self.interior = stage.step, stage.size, stage.interior
+        self.greatest[:] = stage.greatest
+        self.first, self.head = stage.start.copy(), stage.heading.copy()
+
+    def stage(self) -> Stage:
+        """Where it is."""
+        return Stage(
+            kept=self.trail.state(), step=self.step, greatest=self.greatest.copy(), size=self.size,
+            start=np.array(self.first), heading=np.array(self.head), interior=bool(self.interior),
+            **state_of(self.front),
+        )  # fmt: skip
+
+    def run(self, watch: Watch | None) -> Path:
+        """Step by step to where the curve ends."""
+        here: Place = self.front.here
+        count: cython.int
+        for count in range(LONGEST):
+            if watch is not None and self.soft is not None and self.soft.repeated == 0:
+                watch(self.stage())
+            status = self.advance()
+            if status is not None:
+                return self.path(status)
+            if self.progress is not None and count % 16 == 0:
+                self.progress(abs(here.z[self.n] - self.first[self.n]) / (self.high - self.low))
+        return self.path(Status.TOO_LONG)
+
+    @cython.cfunc
+    def advance(self) -> object:
+        """One step; a status where the curve ends."""
+        front: Front = self.front
+        step: cython.double = self.step
+        reach: cython.double
+        hidden: cython.double
+        if self.soft is not None:
+            return self.soft.advance(self, step)
+        while step > SHORTEST:
+            reach = ahead(front, step)
+            if reach < min(step, TOUCHED):
+                return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
+            # curves bend more and more towards a corner, and may hide a pair of folds there
+            if NEAR < reach < step and clear(front, NEARER * reach) and dip(front) == 0.0:
+                return self.smooth()
+            if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
+                if crosses(front):
+                    status = self.corner() if front.missed < 1.0 else Status.STALLED
+                    if status is not Status.STALLED:
+                        return status
+                elif reach >= step and good(front):
+                    hidden = dip(front)
+                    if hidden == 0.0:
+                        return self.smooth()
+                    step = hidden
+                    continue
+            # the curve may turn back in a corner, so that nothing is to be found beyond
+            if reach < step and clear(front, reach * (1.0 - PAST)):
+                return self.smooth()
+            step = 0.25 * min(step, reach)
+        return Status.STALLED
+
+    def good(self) -> bool:
+        """Whether the curve was where it was predicted, and went on as it did."""
+        return bool(good(self.front))
+
+    @cython.ccall
+    def smooth(self) -> object:
+        """Go on to the place there."""
+        front: Front = self.front
+        count: cython.int = self.trail.count
+        if self.keep(front.step):
+            return self.end()
+        if self.soft is not None and not self.low <= front.there.z[self.n] <= self.high:
+            self.trail.cut(count)  # beyond an end that was not landed on
+            self.step = 0.25 * front.step
+            return Status.STALLED if self.step < AFTER else None
+        if self.interior and closes(front, self.first, self.head):
+            self.trail.close()
+            return Status.CLOSED
+        turned: cython.bint = front.there.orientation != front.here.orientation
+        self.trail.add(front.there, front.newton.scale, BRANCH if turned else 0, front.there.shift)
+        self.step = next_step(front, self.max_step)
+        front.accept(front.there, front.step)
+        self.rise()
+        return Status.UNBOUNDED if extent(front) > self.problem.boundless * self.size else None
+
+    @cython.cfunc
+    def corner(self) -> object:
+        """Go on from the first corner of the step, in the direction that the curve has beyond.
+
+        STALLED where the curve is not found up to there, or not where it was predicted.
+        """
+        front: Front = self.front
+        at, which = events.first_margin(front)
+        if not front.shorten((1.0 - BEFORE) * at) or not good(front):
+            return Status.STALLED
+        if self.keep(front.step):
+            return self.end()
+        place: Place = front.between if front.put(at, True, True) else front.there
+        point = events.found(front, at, Mark.CORNER, place)
+        return self.turn(come(front, place, at, which), point)
+
+    @cython.ccall
+    def turn(self, which: cython.int, point: events.Found, past: cython.double = BEYOND) -> object:
+        """Keep the corner that is here, and turn into the direction that the curve has beyond."""
+        front: Front = self.front
+        rise: cython.double = front.here.tangent[self.n]
+        growth = np.array(front.here.growth)
+        if self.soft is None:
+            cross(front, which, past)
+        else:
+            cross_softly(front, past)
+        mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
+        if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
+            mark |= Mark.PEAK
+        if np.array_equal(self.trail.last(), point.z):  # the step before has come to the corner
+            mark |= self.trail.drop()
+        self.trail.put(point.z, point.direction, mark, point.orientation, point.shift)
+        self.rise()
+        self.step = AFTER
+        return None
+
+    def aim(self, step: float, longer: bool) -> None:
+        """Choose the next step; whether it may be longer than it was to be."""
+        self.step = step if longer else min(self.step, step)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def keep(self, limit: cython.double) -> cython.bint:
+        """Keep what happens within the step up to a limit; true if the curve leaves its range there."""
+        if quiet(self.front, self.stops, self.most):
+            return False
+        for event in events.within(self.front, limit, self.values, self.greatest):
+            ends = event.mark & Mark.STATION and event.z[self.n] in (self.low, self.high)
+            mark = Mark.END if ends else event.mark
+            self.trail.put(event.z, event.direction, mark, event.orientation, event.shift)
+            if ends:
+                return True
+        return False
+
+    @cython.cfunc
+    def end(self) -> object:
+        """The status of a curve that has left its range."""
+        back = not self.interior and self.trail.last()[-1] == self.first[self.n]
+        return Status.RETURNED if back else Status.COMPLETE
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def rise(self) -> cython.void:
+        """The greatest outputs so far."""
+        k: cython.Py_ssize_t
+        for k in range(self.most.shape[0]):
+            self.most[k] = max(self.most[k], self.front.here.output[k])
+
+    def path(self, status: Status) -> Path:
+        """The points kept so far."""
+        return self.trail.path(status, self.front.newton.evaluations)
