@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.multipliers import multipliers
+from fcm.harmonic.multipliers import multipliers, multipliers_of
 from fcm.harmonic.record import amplitudes_at, states
 from fcm.harmonic.start import solutions
+from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
 from fcm.scene import scene_from_dict
 
 from . import rings
@@ -118,3 +120,13 @@ def test_neighbours_that_turn_against_each_other_are_told_from_a_fold():
     assert len(growing) == 1 and growing[0].real < 0.0
     (of_ring, *_) = multipliers(whole, rings.around(z, (1, 3), 2, one.scene.ring))
     assert of_ring == pytest.approx(abs(growing[0]), rel=1e-6)
+
+
+def test_stability_of_all_points_is_told_by_the_multipliers_of_few():
+    """Modes of other diameters, some always near the negative axis, do not ask for each point."""
+    system = System(scene_from_dict(rings.sector(12, 5)), (1, 3))
+    (path,) = traced(system).branches.paths
+    found = stability(system, path)
+    each = multipliers_of(system, float(path.parameter.max()))
+    np.testing.assert_array_equal(found.stable, [each.verdict(z).stable for z in path.z])
+    assert found.evaluations < 0.6 * len(path.z)

@@ -18,6 +18,7 @@ from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.multipliers import Multipliers, far_above
 from fcm.harmonic.ring_monodromy import RingMonodromy
 from fcm.harmonic.sequence import Sequence
+from fcm.harmonic.spectrum import Verdict
 from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -107,6 +108,11 @@ class RingMultipliers(Multipliers):
         whole[..., :2] = blocks[:, :2]
         whole[..., 2:] = turned.reshape(len(turn), self.contacts, 2 * count).view(np.float64)
         return bool(sequence.look(whole.ravel()))
+
+    def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
+        """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
+        found = Multipliers.verdict(self, z, turning)
+        return found._replace(turn=min(found.turn * self.ring.period, np.pi))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""
