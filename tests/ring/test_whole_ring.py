@@ -8,8 +8,8 @@ import pytest
 import fcm
 from fcm.harmonic.multipliers import multipliers, multipliers_of
 from fcm.harmonic.record import amplitudes_at, states
-from fcm.harmonic.start import solutions
 from fcm.harmonic.stability import stability
+from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import scene_from_dict
