@@ -9,6 +9,7 @@ import numpy as np
 from fcm.continuation.follow import Progress
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.start import Found
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
 from fcm.scene.model import FloatArray
@@ -53,20 +54,23 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
     traced again, from starts of its own: a branch of few harmonics may not exist with more. Whether the
     branches are complete is another question, see their status.
     """
+    looked: tuple[Found, ...] = ()
     for _ in range(ROUNDS):
-        found = estimated(system, accuracy, progress)
+        found = estimated(system, accuracy, progress, looked)
         if found.reached or found.work > WORK:
             return found
         more = enlarged(found, accuracy)
         if more == system.harmonics:
             return found
-        system = system.with_harmonics(more)
+        system, looked = system.with_harmonics(more), found.traced.looked
     return found
 
 
-def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
-    """The response of a system, with its errors."""
-    response = traced(system, progress)
+def estimated(
+    system: System, accuracy: float, progress: Progress | None = None, fewer: tuple[Found, ...] = ()
+) -> Accurate:
+    """The response of a system, with its errors; fewer as of `traced`."""
+    response = traced(system, progress, fewer)
     paths = response.branches.paths
     shown = tuple(reported(system, path) for path in paths)
     errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))

@@ -24,6 +24,9 @@ BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to the
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
+FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed
+NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
+FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -32,23 +35,43 @@ ComplexArray = npt.NDArray[np.complex128]
 @dataclass(frozen=True)
 class Found:
     """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end,
-    or back to its beginning."""
+    or back to its beginning; how far it is to be followed with more harmonics, infinite if that is not told.
+    """
 
     omega: float
     solutions: tuple[FloatArray, ...]
     complete: bool
+    reach: float
 
 
-def solutions(system: System, omega: float) -> Found:
-    """All solutions at omega that hang together with rest."""
+def solutions(system: System, omega: float, reach: float | None = None) -> Found:
+    """All solutions at omega that hang together with rest.
+
+    Far above 1 the curve of the level of many harmonics has many folds and corners, none of which matters if
+    it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
+    otherwise they are the first FEW.
+    """
     most = highest(system, omega)
     linear = min(BEFORE * least(system, omega), 1.0)
-    path = level_curve(system, omega, (0.0, most), linear=linear)
+    if reach is None and len(system.harmonics) > FEW:
+        few = system.with_harmonics(system.harmonics[:FEW])
+        reach = _reach(level_curve(few, omega, (0.0, most), linear=linear))
+    top = most if reach is None else min(reach, most)
+    path = level_curve(system, omega, (0.0, top), linear=linear)
     at = np.flatnonzero(path.parameter == 1.0)
     found = [np.append(path.z[i, :-1], omega) for i in at]
     if not found:
         found = list(_from_linear(system, omega))
-    return Found(omega, tuple(found), path.status in (Status.COMPLETE, Status.RETURNED))
+    complete = path.status in (Status.COMPLETE, Status.RETURNED)
+    return Found(omega, tuple(found), complete, _reach(path) if len(system.harmonics) >= FEW else np.inf)
+
+
+def _reach(path: Path) -> float:
+    """Up to which level the curve of more harmonics is to be followed."""
+    near = np.flatnonzero(path.parameter < NEAR)
+    if path.status is not Status.COMPLETE or not near.size:
+        return np.inf
+    return FURTHER * float(path.parameter[: near[-1] + 1].max())
 
 
 def level_curve(

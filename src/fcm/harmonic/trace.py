@@ -22,11 +22,15 @@ class Traced:
     looked: tuple[Found, ...]
 
 
-def traced(system: System, progress: Progress | None = None) -> Traced:
-    """Trace the branches through all solutions at the ends of the range and at the resonances inside it."""
+def traced(system: System, progress: Progress | None = None, fewer: tuple[Found, ...] = ()) -> Traced:
+    """Trace the branches through all solutions at the ends of the range and at the resonances inside it.
+
+    fewer: what was found there with fewer harmonics, if anything.
+    """
     span = system.scene.frequency_range
     exact = system.with_harmonics(system.harmonics)  # no table is asked for solutions to start from
-    looked = tuple(solutions(exact, omega) for omega in (*span, *resonances(system)))
+    reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
+    looked = tuple(solutions(exact, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
     starts = [z for found in looked for z in found.solutions]
     branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
     return Traced(_steady(system, branches), looked)
