@@ -69,11 +69,12 @@ class Truth:
 
         From the point normal to the curve, then along the curve of many harmonics to the frequency.
         """
-        if np.isnan(self.corrector.displaced(z, direction, self.many.harmonics, None)).any():
+        near = self.beside(z, direction)
+        if near is None:
             return None
         (lifted,) = self.corrector.known.values()
         newton = lifted.newton
-        near, tangent = np.array(newton.z), np.array(newton.tangent)
+        tangent = np.array(newton.tangent)
         if near[-1] == z[-1]:
             return near
         onward = (z[-1] - near[-1]) * tangent[-1] > 0.0  # along the curve, whichever way that leads
@@ -84,6 +85,13 @@ class Truth:
             return None
         heading = path.direction[0] / newton.scale @ tangent
         return path.z[-1] if (heading > 0.0) == onward else None
+
+    def beside(self, z, direction):
+        """The motion of many harmonics next to z, normal to the curve; None if there is none."""
+        if np.isnan(self.corrector.displaced(z, direction, self.many.harmonics, None)).any():
+            return None
+        (lifted,) = self.corrector.known.values()
+        return np.array(lifted.newton.z)
 
     def amplitude(self, z):
         """Half the peak-to-peak displacements of a motion of many harmonics."""

@@ -14,5 +14,6 @@ cdef class Lifted:
     cdef double[::1] still
     cpdef bint beside(self, double[::1] z, double[::1] direction) except -1
     cdef bint corrected(self) except -1
+    cdef bint onward(self) except -1
     cdef bint nearly(self) except -1
     cdef double away(self) except -1

@@ -44,7 +44,6 @@ class Lifted:
         """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        along: cython.double = 0.0
         for i in range(self.place.shape[0]):
             self.guess[self.place[i]] = z[i]
         self.balance.measure(self.guess)
@@ -58,10 +57,6 @@ class Lifted:
             self.newton.row[i] = self.row[i] / sqrt(total)
         if not self.corrected():
             return False
-        for i in range(self.guess.shape[0]):
-            along += self.newton.tangent[i] * self.newton.row[i]
-        if along < TURNED:
-            return False
         self.balance.report(self.newton.z, self.still)
         self.found[0] = self.newton.z[self.balance.unknowns]
         for i in range(self.balance.outputs):
@@ -74,8 +69,8 @@ class Lifted:
         """Move the guess to the curve: at once, or gradually."""
         self.between.taken = 0.0
         self.newton.z[:] = self.guess
-        if self.nearly():
-            return self.newton.moved <= FAR
+        if self.nearly() and self.newton.moved <= FAR and self.onward():
+            return True
         self.newton.z[:] = self.guess
         self.between.evaluate(self.guess)
         self.between.removed[:] = self.between.residual
@@ -83,7 +78,17 @@ class Lifted:
             self.between.taken = 1.0 - part
             if not self.newton.correct(1.0) or self.newton.moved > FAR:
                 return False
-        return self.away() <= FAR
+        return self.away() <= FAR and self.onward()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def onward(self) -> cython.bint:
+        """Whether the curve there goes the same way."""
+        i: cython.Py_ssize_t
+        along: cython.double = 0.0
+        for i in range(self.guess.shape[0]):
+            along += self.newton.tangent[i] * self.newton.row[i]
+        return along >= TURNED
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -28,23 +28,29 @@ class _LostError(Exception):
 
 
 def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
-    """Greatest amplitudes (dof,) of the corrected curve from point first to point last of the path.
+    """Greatest amplitudes (dof,) of the corrected curve between point first and point last of the path.
 
-    These are the last points before and behind a stretch at which it was found. None if it does not lead from
-    one to the other.
+    These are the last points before and behind a stretch at which it was found; one of them may be beyond an
+    end of the path. Where the corrected curve does not lead from one to the other, it is what hangs on both,
+    as far as that stays near the stretch. None if that is nothing, or too long.
     """
     path = corrected.path
-    if first < 0 or last >= len(path.z):
-        return None
-    more = corrected.sets(np.unique(np.linspace(first, last, 5).astype(np.intp)))
+    inside = np.linspace(max(first, 0), min(last, len(path.z) - 1), 5)
+    more = corrected.sets(np.unique(inside.astype(np.intp)))
     before = _end(corrected, more, range(first, max(first - TRIES, -1), -1))
     behind = _end(corrected, more, range(last, min(last + TRIES, len(path.z))))
-    if before is None or behind is None:
-        return None
-    part = path.parameter[before.number : behind.number + 1]
-    span = _span(np.append(part, (before.z[-1], behind.z[-1])))
-    found = _across(corrected, more, before, behind, span, before.rises)
-    return _across(corrected, more, behind, before, span, not behind.rises) if found is None else found
+    span = _span(corrected, before, behind)
+    pieces = []
+    for begin, end in ((before, behind), (behind, before)):
+        if begin is None:
+            continue
+        piece = _followed(corrected, more, begin, end, span, begin.rises == (begin is before))
+        if piece is None:
+            return None
+        if piece.arrived:
+            return piece.greatest
+        pieces.append(piece.greatest)
+    return np.max(pieces, axis=0) if pieces else None
 
 
 @dataclass(frozen=True)
@@ -57,6 +63,14 @@ class _End:
     rises: bool
 
 
+@dataclass(frozen=True)
+class _Piece:
+    """Greatest amplitudes (dof,) of a piece of the corrected curve, and whether it came to the other end."""
+
+    greatest: FloatArray
+    arrived: bool
+
+
 def _end(corrected: Corrected, more: tuple[int, ...], places: Iterable[int]) -> _End | None:
     """At the first of some places where there is one."""
     path, lifted = corrected.path, corrected.corrector.lifted(more)
@@ -67,15 +81,15 @@ def _end(corrected: Corrected, more: tuple[int, ...], places: Iterable[int]) -> 
     return None
 
 
-def _across(
+def _followed(
     corrected: Corrected,
     more: tuple[int, ...],
     begin: _End,
-    end: _End,
+    end: _End | None,
     span: tuple[float, float],
     forward: bool,
-) -> FloatArray | None:
-    """Greatest amplitudes of the corrected curve from one end to the other, if it leads there."""
+) -> _Piece | None:
+    """The corrected curve from one end to the other, or as far as it stays in the span."""
     balance = corrected.corrector.system.with_harmonics(more).balance()
     reports = 0
 
@@ -85,22 +99,28 @@ def _across(
         if reports > PATIENCE:
             raise _LostError
 
+    stations = (float(end.z[-1]),) if end else ()
     try:
-        path = follow(balance, begin.z, span, forward, STEP, (float(end.z[-1]),), count)
+        path = follow(balance, begin.z, span, forward, STEP, stations, count)
     except _LostError:
         return None
     points = Points(balance, len(path.z))
     points.take(path.z, path.direction, np.ones(len(path.z)))
     amplitude = np.asarray(points.amplitude)
-    off = np.abs(amplitude - end.amplitude).max(axis=1, initial=0.0)
-    arrived = np.flatnonzero((path.parameter == end.z[-1]) & (off < SAME * end.amplitude.max()))
-    if not arrived.size:
-        return None
-    greatest: FloatArray = amplitude[: arrived[0] + 1].max(axis=0)
-    return greatest
+    last, arrived = len(amplitude), False
+    if end:
+        off = np.abs(amplitude - end.amplitude).max(axis=1, initial=0.0)
+        there = np.flatnonzero((path.parameter == end.z[-1]) & (off < SAME * end.amplitude.max()))
+        last, arrived = (int(there[0]) + 1, True) if there.size else (last, False)
+    return _Piece(amplitude[:last].max(axis=0, initial=0.0), arrived)
 
 
-def _span(inside: FloatArray) -> tuple[float, float]:
+def _span(corrected: Corrected, before: _End | None, behind: _End | None) -> tuple[float, float]:
     """Frequencies, and beyond them, as folds may have moved."""
+    path, ends = corrected.path, [end for end in (before, behind) if end]
+    first, last = before.number if before else 0, behind.number if behind else len(path.z) - 1
+    inside = np.append(path.parameter[first : last + 1], [end.z[-1] for end in ends])
     low, high = float(inside.min()), float(inside.max())
-    return low - BEYOND * (high - low), high + BEYOND * (high - low)
+    reach = BEYOND * (high - low)
+    lowest, highest = corrected.corrector.system.scene.frequency_range
+    return max(low - reach, min(lowest, low)), min(high + reach, max(highest, high))

@@ -1,0 +1,50 @@
+"""Work on many cases, each in a process of its own that is ended when it takes too much processor time."""
+
+from __future__ import annotations
+
+import multiprocessing
+import resource
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from multiprocessing.connection import Connection, wait
+from typing import TypeVar
+
+Case = TypeVar("Case")
+Result = TypeVar("Result")
+
+
+def in_time(
+    work: Callable[[Case], Result], cases: Iterable[Case], seconds: int, at_once: int = 1
+) -> Iterator[tuple[Case, Result | None]]:
+    """Each case with its result, as they end; None where it took more processor time, or failed."""
+    context = multiprocessing.get_context("fork")
+    waiting = list(cases)[::-1]
+    count, done = len(waiting), 0
+    running: dict[Connection, Case] = {}
+    while waiting or running:
+        while waiting and len(running) < at_once:
+            case = waiting.pop()
+            receive, send = context.Pipe(duplex=False)
+            context.Process(target=_send, args=(work, case, seconds, send), daemon=True).start()
+            send.close()
+            running[receive] = case
+        for receive in wait(list(running)):
+            assert isinstance(receive, Connection)
+            case, result = running.pop(receive), _received(receive)
+            done += 1
+            print(f"\r{done} of {count}", end="", file=sys.stderr, flush=True)
+            yield case, result
+    print(file=sys.stderr)
+
+
+def _send(work: Callable[[Case], Result], case: Case, seconds: int, send: Connection) -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    send.send(work(case))
+
+
+def _received(receive: Connection) -> Result | None:
+    try:
+        result: Result = receive.recv()
+    except EOFError:  # it was ended, or ended with an error, which it has told
+        return None
+    return result
