@@ -24,7 +24,8 @@ BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to the
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
-FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed
+FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
+UNKNOWNS = 64  # or as many as make this many unknowns
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
 FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
@@ -49,12 +50,12 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
 
     Far above 1 the curve of the level of many harmonics has many folds and corners, none of which matters if
     it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
-    otherwise they are the first FEW.
+    otherwise a few are taken for that.
     """
     most = highest(system, omega)
     linear = min(BEFORE * least(system, omega), 1.0)
-    if reach is None and len(system.harmonics) > FEW:
-        few = system.with_harmonics(system.harmonics[:FEW])
+    if reach is None and len(system.harmonics) > _few(system):
+        few = system.with_harmonics(system.harmonics[: _few(system)])
         reach = _reach(level_curve(few, omega, (0.0, most), linear=linear))
     top = most if reach is None else min(reach, most)
     path = level_curve(system, omega, (0.0, top), linear=linear)
@@ -63,7 +64,14 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     if not found:
         found = list(_from_linear(system, omega))
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    return Found(omega, tuple(found), complete, _reach(path) if len(system.harmonics) >= FEW else np.inf)
+    enough = len(system.harmonics) >= _few(system)
+    return Found(omega, tuple(found), complete, _reach(path) if enough else np.inf)
+
+
+def _few(system: System) -> int:
+    """How many harmonics tell how far more are to be followed."""
+    contacts = max(len(system.scene.contacts), 1)
+    return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
 
 
 def _reach(path: Path) -> float:
