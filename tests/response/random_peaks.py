@@ -8,7 +8,6 @@ balance's own; where there is none, the peak is counted as alone.
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -64,9 +63,7 @@ def peaks(seed: int) -> list[Peak]:
     return out
 
 
-def height(
-    found: Accurate, problem: OrbitProblem, known: list[Sample], number: int, d: int
-) -> float | None:
+def height(found: Accurate, problem: OrbitProblem, known: list[Sample], number: int, d: int) -> float | None:
     """Of the exact peak beside the greatest amplitude of a degree of freedom on a path."""
     path, amplitude = found.traced.branches.paths[number], found.shown[number].amplitude[:, d]
     top = int(amplitude.argmax())

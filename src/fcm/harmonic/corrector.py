@@ -16,6 +16,8 @@ LEAST = 0.01  # of what the first of them would do; what does less is not taken
 COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
 LARGE = 0.05  # a change of an amplitude beyond which the corrected point is corrected once more
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
+ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
+SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
 
 
 class Corrector:
@@ -63,13 +65,36 @@ class Corrector:
         self, more: tuple[int, ...], z: FloatArray, direction: FloatArray, found: FloatArray
     ) -> FloatArray:
         """A corrected point corrected."""
-        if more not in self.second:
-            system = self.system.with_harmonics(more)
-            self.second[more] = Further(system), Corrector(system, again=False)
-        further, corrector = self.second[more]
+        further, corrector = self.of(more)
         share = further.shares(z[None], further.forces(z[None]), found[None, 1:])
         again = corrector.displaced(z, direction, corrector.sets(share)[0], found[1:])
         return found if again is None else again
+
+    def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
+        """Amplitudes (dof,) of a point displaced again and again, each time with the harmonics that would do
+        most, until that changes them no more. NaN where that leads nowhere.
+        """
+        harmonics, now = self.system.harmonics, amplitude
+        for _ in range(ROUNDS):
+            further, corrector = self.of(harmonics)
+            more = corrector.best(further.shares(z[None], further.forces(z[None]), now[None])[0])
+            if more == harmonics:
+                break
+            lifted = corrector.lifted(more)
+            if not lifted.beside(z, direction):
+                return np.full(len(now), np.nan)
+            z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
+            before, now, harmonics = now, np.array(lifted.found[1:]), more
+            if (np.abs(now - before) <= SETTLED * np.abs(now - amplitude)).all():
+                break
+        return now
+
+    def of(self, harmonics: tuple[int, ...]) -> tuple[Further, Corrector]:
+        """What further harmonics would do to points of a balance of some, and corrects these."""
+        if harmonics not in self.second:
+            system = self.system.with_harmonics(harmonics)
+            self.second[harmonics] = Further(system), Corrector(system, again=False, enough=self.enough)
+        return self.second[harmonics]
 
     def sets(self, share: FloatArray) -> list[tuple[int, ...]]:
         """The harmonics of the system and those that would do most, for shares (point, harmonic).

@@ -24,6 +24,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
+CHANCE_AT_PEAKS = 0.05
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
@@ -93,8 +94,13 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     )
     inside = (tops > 0) & (tops < len(path.z) - 1)
     now = shown.amplitude[tops, d]
-    height = np.where(inside, _heights(corrected, change[:, 1:], tops), now * (1.0 + shift[tops, d]))
+    height = np.where(
+        inside,
+        _heights(corrected, change[:, 1:], tops) * corrected.settled(tops),
+        now * (1.0 + shift[tops, d]),
+    )
     relative = np.abs(height - now) / np.where(now > 0.0, now, 1.0)
+    relative = np.maximum(relative, CHANCE_AT_PEAKS * np.median(relative))
     error[tops[inside], d[inside]] = relative[inside]
     size = shown.amplitude.max(axis=1)
     return Errors(
