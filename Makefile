@@ -113,7 +113,8 @@ tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
 	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
 
-study: $(VENV)/installed  ## two hundred random scenes, do three step limits agree, are the errors true?
+study: $(VENV)/installed  ## bundled and two hundred random scenes: do three step limits agree, are errors true?
+	$(BIN)/python tests/response/bundled_steps.py
 	$(BIN)/python tests/response/random_scenes.py
 	$(BIN)/python tests/response/random_peaks.py
 

@@ -76,7 +76,7 @@ def peaks(case, harmonics):
 
 
 def beyond(system, path, amplitude):
-    """Greatest amplitudes of the curve of many harmonics next to the highest point of a path, if there is one."""
+    """Greatest amplitudes of the curve of many harmonics next to the highest point of a path."""
     truth, at = Truth(system), int((amplitude / amplitude.max(axis=0)).mean(axis=1).argmax())
     z = truth.beside(path.z[at], path.direction[at])
     motion = None if z is None else exact(truth.many, z)
