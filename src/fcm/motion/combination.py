@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import BLOCK, LEADING, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
+from fcm.motion.pool import BLOCK, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ class Flow(NamedTuple):
     owner: list[int]  # (exit,) the contact that it belongs to
     goal: list[int]  # (exit,) the state to which it leads
     powers: FloatArray  # (POWERS, linear, linear)
-    rounding: FloatArray  # (LEADING, exit, linear) sizes of the Taylor coefficients of the exits
+    series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
 
@@ -47,14 +47,14 @@ def made(system: System, states: Codes) -> Flow:
     for _ in range(POWERS - 1):
         powers.append(powers[-1] @ powers[-1])
     leading = [rows.T]
-    for j in range(1, LEADING):
+    for j in range(1, ORDER + 1):
         leading.append(change @ leading[-1] / j)
     table = [np.hstack((leading[0], leading[1], 24.0 * leading[4]))]
     for _ in range(BLOCK):
         table.append(powers[0] @ table[-1])
     return Flow(
         states.copy(), step, rows, owner, goal, np.array(powers),
-        np.abs(leading).transpose(0, 2, 1),
+        np.stack(leading, axis=2).reshape(rows.shape[1], -1),
         np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
         np.hstack(table),
     )  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.motion.gauge import sample
+from fcm.motion.samples import sample
 from fcm.motion.segments import Segments
 from fcm.motion.system import LETTERS, System
 from fcm.scene.model import FloatArray

@@ -21,18 +21,17 @@ from fcm.motion.pool import ORDER
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.segments import Segments
-    from cython.cimports.fcm.motion.series import summed
+    from cython.cimports.fcm.motion.series import needed
 else:
     from fcm.motion.flow import Flows
     from fcm.motion.segments import Segments
-    from fcm.motion.series import summed
+    from fcm.motion.series import needed
 
 GRAZING = cython.declare(
     cython.double, 1e-12
 )  # an exit passed this slowly, relative to its terms, is touched
 DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
-_ORDER = cython.declare(cython.int, 19)
-_POWERS = cython.declare(cython.int, 6)
+_POWERS = cython.declare(cython.int, 8)
 _OPEN = cython.declare(cython.int, 0)
 _POSITIVE = cython.declare(cython.int, 2)
 _NEGATIVE = cython.declare(cython.int, 3)
@@ -123,7 +122,7 @@ class Derivative:
             if self.at == last:
                 self._follow(slot, position - self.position)
                 self.position = position
-                self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0, 1.0)
+                self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0)
                 for i in range(self.flows.size):
                     self.rate[i] = self._rates[0, i]
                 return -1
@@ -184,23 +183,22 @@ class Derivative:
     @cython.exceptval(check=False)
     def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
         """By a part x < 1 of a step."""
-        n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
-        k: cython.Py_ssize_t
-        j: cython.int
-        h: cython.double = self.flows.step[slot]
-        for k in range(u):
-            self.flows.part(slot, x, self.columns, k)
-        self.flows.taylor(slot, self.columns, u + 1, self._terms)
-        for k in range(self.flows.size):
-            self._grades[0, k] = self.columns[u, k]
-        for j in range(_ORDER):
-            self.flows.derive(slot, self._grades, j, self._grades, j + 1, h / (j + 1))
-            self._grades[j + 1, n] += h / (j + 1) * self._terms[j, n + 1]
-            self._grades[j + 1, n + 1] -= h / (j + 1) * self._terms[j, n]
-            self.flows.steepen(self._terms, j, self._grades, j + 1, h / (j + 1))
-        summed(self._terms, x, self.columns, u + 1)
-        summed(self._grades, x, self.columns, u)
+        orders: cython.Py_ssize_t = needed(x)
+        h: cython.double = x * self.flows.step[slot]
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        self.flows.part(slot, x, self.columns, 0, u)
+        for i in range(self.flows.size):
+            self._grades[0, i], self._terms[0, i] = self.columns[u, i], self.columns[u + 1, i]
+        self.flows.extend(slot, self._terms, orders, h, self._terms, False)
+        self.flows.extend(slot, self._grades, orders, h, self._terms, True)
+        for j in range(orders - 1, -1, -1):
+            for i in range(self.flows.size):
+                self._grades[j, i] += self._grades[j + 1, i]
+                self._terms[j, i] += self._terms[j + 1, i]
+        for i in range(self.flows.size):
+            self.columns[u, i], self.columns[u + 1, i] = self._grades[0, i], self._terms[0, i]
 
     @cython.cfunc
     @cython.nogil
@@ -219,8 +217,8 @@ class Derivative:
         moved: cython.double
         for p in range(self.flows.size):
             self.columns[u + 1, p] = segments.y[i + 1, p]
-        self.flows.derive(old, self.columns, u + 1, self._rates, 0, 1.0)
-        self.flows.derive(new, self.columns, u + 1, self._rates, 1, 1.0)
+        self.flows.derive(old, self.columns, u + 1, self._rates, 0)
+        self.flows.derive(new, self.columns, u + 1, self._rates, 1)
         for p in range(n):
             speed += self.flows.row[old, e, p] * self._rates[0, p]
             size += fabs(self.flows.row[old, e, p]) * fabs(self._rates[0, p])

@@ -54,8 +54,8 @@ def first_descent_of(powers: FloatArray, floor: float) -> float | None:
     >>> first_descent_of(p, 1e-15) is None
     True
     """
-    column = np.ascontiguousarray(powers, dtype=np.float64).reshape(-1, 1)
-    found = first_descent(column, 0, floor, workspace())
+    row = np.ascontiguousarray(powers, dtype=np.float64).reshape(1, -1)
+    found = first_descent(row, 0, floor, workspace())
     return found if found >= 0.0 else None
 
 
@@ -68,19 +68,19 @@ def first_descent(
     floor: cython.double,
     work: cython.double[:, ::1],
 ) -> cython.double:
-    """The root for column k of the powers, -1 where there is none."""
+    """The root for row k of the powers, -1 where there is none."""
     i: cython.int
     j: cython.int
-    least: cython.double = powers[0, k]
+    least: cython.double = powers[k, 0]
     for i in range(1, _N + 1):
-        least -= fabs(powers[i, k])
+        least -= fabs(powers[k, i])
     if least >= -floor:
         return -1.0
     for j in range(_N + 1):
-        work[0, j] = powers[0, k]
+        work[0, j] = powers[k, 0]
     for i in range(1, _N + 1):
         for j in range(i, _N + 1):
-            work[0, j] += _WEIGHTS[i, j] * powers[i, k]
+            work[0, j] += _WEIGHTS[i, j] * powers[k, i]
     return _search(powers, k, floor, work)
 
 
@@ -193,7 +193,7 @@ def _root(
         value = slope = 0.0
         for i in range(_N, -1, -1):
             slope = slope * x + value
-            value = value * x + powers[i, k]
+            value = value * x + powers[k, i]
         if value == 0.0:
             return x
         if value > 0.0:

@@ -31,10 +31,8 @@ else:
     from fcm.motion.series import Series
 
 _ORDER = cython.declare(cython.int, 19)
-_POWERS = cython.declare(cython.int, 6)
+_POWERS = cython.declare(cython.int, 8)
 _BLOCK = cython.declare(cython.int, 16)
-_LEADING = cython.declare(cython.int, 8)
-_SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as make a step complete
 
 
 @cython.cclass
@@ -43,8 +41,7 @@ class Flows(Series):
 
     def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
         Series.__init__(self, modal, ports, law)
-        self._terms, self._rates = np.zeros((ORDER + 1, self.size)), np.zeros((2, self.size))
-        self._grades, self._exits = np.zeros((2, self.size)), np.zeros((ORDER + 1, 2 * self.contacts + 1))
+        self._terms, self._grades = np.zeros((ORDER + 1, self.size)), np.zeros((ORDER + 1, self.size))
         self._whole = np.zeros(self.size)
 
     @cython.cfunc
@@ -75,27 +72,6 @@ class Flows(Series):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def part(
-        self, slot: cython.Py_ssize_t, x: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
-    ) -> cython.void:
-        """Move row k of y by a part x of a step."""
-        i: cython.Py_ssize_t
-        j: cython.int = 0
-        size: cython.double = 1.0
-        a: cython.Py_ssize_t = 0
-        for i in range(self.size):
-            self._rates[0, i] = y[k, i]
-        while size > _SERIES_END:
-            j += 1
-            size *= x / j
-            self.derive(slot, self._rates, a, self._rates, 1 - a, x * self.step[slot] / j)
-            a = 1 - a
-            for i in range(self.size):
-                y[k, i] += self._rates[a, i]
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def watch(
         self,
         slot: cython.Py_ssize_t,
@@ -116,6 +92,38 @@ class Flows(Series):
             x = y[k, i]
             for w in range(wide):
                 seen[w] += self.table[slot, i, w] * x
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def leave(
+        self,
+        slot: cython.Py_ssize_t,
+        y: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        powers: cython.double[:, ::1],
+    ) -> cython.void:
+        """Taylor coefficients (exit, ORDER + 1) of the exits in the step from row k of y."""
+        n: cython.Py_ssize_t = self.linear
+        e: cython.Py_ssize_t
+        w: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        j: cython.int
+        x: cython.double = y[k, n]
+        other: cython.double = y[k, n + 1]
+        for e in range(self.exits[slot]):
+            w = e * (_ORDER + 1)
+            for j in range(_ORDER + 1):
+                powers[e, j] = (
+                    self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
+                )
+        for i in range(n):
+            x = y[k, i]
+            if x != 0.0:
+                for e in range(self.exits[slot]):
+                    w = e * (_ORDER + 1)
+                    for j in range(_ORDER + 1):
+                        powers[e, j] += self.series[slot, i, w + j] * x
 
     @cython.cfunc
     @cython.nogil
@@ -161,32 +169,43 @@ class Flows(Series):
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         j: cython.int
-        e: cython.Py_ssize_t
-        h: cython.double = self.step[slot]
         for i in range(self.size):
-            self._rates[0, i] = self._grades[0, i] = 0.0
-        self._rates[0, n + b] = 1.0
-        self.taylor(slot, self._rates, 0, self._terms)
-        self.leave(slot, self._terms, 0, _ORDER, self._exits)
+            self._terms[0, i] = self._grades[0, i] = 0.0
+        self._terms[0, n + b] = 1.0
+        self.extend(slot, self._terms, _ORDER, self.step[slot], self._terms, False)
+        self.extend(slot, self._grades, _ORDER, self.step[slot], self._terms, True)
         for i in range(n):
             self.forced[slot, 0, b, i] = self.forced[slot, 0, 2 + b, i] = 0.0
             self.sizes_forced[slot, b, i] = fabs(self._terms[1, i]) + fabs(self._terms[2, i])
-        for j in range(_ORDER):
-            self.derive(slot, self._grades, 0, self._grades, 1, h / (j + 1))
-            self._grades[1, n] += h / (j + 1) * self._terms[j, n + 1]
-            self._grades[1, n + 1] -= h / (j + 1) * self._terms[j, n]
-            self.steepen(self._terms, j, self._grades, 1, h / (j + 1))
-            for i in range(self.size):
-                self._grades[0, i] = self._grades[1, i]
+        for j in range(_ORDER, 0, -1):
             for i in range(n):
-                self.forced[slot, 0, b, i] += self._terms[j + 1, i]
-                self.forced[slot, 0, 2 + b, i] += self._grades[1, i]
-        for e in range(self.exits[slot]):
-            self.table_forced[slot, b, e] = self._exits[0, e]
-            self.table_forced[slot, b, self.exits[slot] + e] = self._exits[1, e]
-            self.table_forced[slot, b, 2 * self.exits[slot] + e] = 24.0 * self._exits[4, e]
-            for j in range(_LEADING):
-                self.rounding_forced[slot, j, e, b] = fabs(self._exits[j, e])
+                self.forced[slot, 0, b, i] += self._terms[j, i]
+                self.forced[slot, 0, 2 + b, i] += self._grades[j, i]
+        self._unit_exits(slot, b)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _unit_exits(self, slot: cython.Py_ssize_t, b: cython.Py_ssize_t) -> cython.void:
+        """The exits in that step."""
+        exits: cython.Py_ssize_t = self.exits[slot]
+        e: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        w: cython.Py_ssize_t
+        j: cython.int
+        g: cython.double
+        for e in range(exits):
+            w = e * (_ORDER + 1)
+            for j in range(_ORDER + 1):
+                self.series_forced[slot, b, w + j] = 0.0
+            for i in range(self.linear):
+                g = self.row[slot, e, i]
+                if g != 0.0:
+                    for j in range(_ORDER + 1):
+                        self.series_forced[slot, b, w + j] += g * self._terms[j, i]
+            self.table_forced[slot, b, e] = self.series_forced[slot, b, w]
+            self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
+            self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
 
     @cython.cfunc
     @cython.nogil

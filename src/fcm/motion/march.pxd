@@ -1,4 +1,5 @@
 from fcm.motion.flow cimport Flows
+from fcm.motion.lookout cimport Lookout
 from fcm.motion.segments cimport Segments
 
 cdef class March:
@@ -8,19 +9,14 @@ cdef class March:
     cdef readonly double time, duration
     cdef readonly double[:, ::1] y
     cdef readonly signed char[:, ::1] states
-    cdef Py_ssize_t _slot, _exit, _passes
+    cdef Lookout _ahead
+    cdef Py_ssize_t _passes
     cdef bint _settled, _fresh
-    cdef double _base, _left
-    cdef double[:, ::1] _here, _there, _terms, _powers, _work
-    cdef double[::1] _noise, _floors, _seen
+    cdef double[::1] _noise
     cdef signed char[::1] _failed
     cdef int _go(self) noexcept nogil
     cdef int _settle(self) noexcept nogil
-    cdef bint _fails(self) noexcept nogil
-    cdef void _switch(self) noexcept nogil
-    cdef void _open_segment(self) noexcept nogil
-    cdef bint _block(self) noexcept nogil
-    cdef void _stand(self, int steps) noexcept nogil
-    cdef bint _suspect(self, Py_ssize_t k, Py_ssize_t e) noexcept nogil
-    cdef bint _passed(self, double before) noexcept nogil
-    cdef void _finish(self, double position, double inside) noexcept nogil
+    cdef bint _fails(self, Py_ssize_t slot) noexcept nogil
+    cdef void _switch(self, Py_ssize_t slot) noexcept nogil
+    cdef bint _open_segment(self) noexcept nogil
+    cdef void _close_segment(self) noexcept nogil

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.motion.cycle import Cycle
-from fcm.motion.gauge import Gauge
+from fcm.motion.integrals import Integrals
+from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
 from fcm.scene.model import FloatArray
@@ -33,7 +34,9 @@ def measure(cycle: Cycle, known: Extremes | None = None) -> Measure:
     """
     system, shapes = cycle.system, cycle.system.scene.modal.shapes
     least, greatest = known or displaced(system, cycle.segments)
-    found = _gauged(system, cycle.segments, np.zeros((0, system.size - 2)))
+    steps = system.steps(cycle.segments)
+    found = Integrals(steps)
+    system.run(found, steps)
     # x = a sin(theta + phase): its integral with sin(theta) + i cos(theta) is a exp(i phase) T / 2
     wave = 2.0 / cycle.duration * (np.asarray(found.sine) + 1j * np.asarray(found.cosine)) @ shapes
     mean = np.asarray(found.mean) @ shapes / cycle.duration
@@ -62,7 +65,9 @@ def displaced(system: System, segments: Segments) -> Extremes:
 
 def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
     """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
-    found = _gauged(system, segments, rows, integrals=False)
+    steps = system.steps(segments)
+    found = Scan(steps, rows)
+    system.run(found, steps)
     places = np.asarray(found.place)
     return _placed(found.least, places[:, 2:]), _placed(found.greatest, places[:, :2])
 
@@ -70,10 +75,3 @@ def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
 def _placed(values: FloatArray, places: FloatArray) -> list[Extreme]:
     pairs = zip(np.asarray(values).tolist(), places.tolist(), strict=True)
     return [Extreme(value, int(place[0]), place[1]) for value, place in pairs]
-
-
-def _gauged(system: System, segments: Segments, rows: FloatArray, integrals: bool = True) -> Gauge:
-    steps = system.steps(segments)
-    gauge = Gauge(steps, rows, integrals)
-    system.run(gauge, steps)
-    return gauge

@@ -10,7 +10,7 @@ import numpy as np
 from fcm.scene.model import FloatArray
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
-POWERS = 6  # of exp(A h): 1, 2, 4 ... 32 steps
+POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
 BLOCK = 16  # steps that are looked at together: a power of two
 LEADING = 8  # derivatives of an exit that may tell which combination follows
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
@@ -71,7 +71,7 @@ class Pool:
         owner: list[int],
         goal: list[int],
         powers: FloatArray,
-        rounding: FloatArray,
+        series: FloatArray,
         sizes: FloatArray,
         table: FloatArray,
     ) -> int:
@@ -79,8 +79,8 @@ class Pool:
         k, exits, made = self._place(), len(owner), self._pool
         made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
-        made["power"][k], made["sizes"][k], made["rounding"][k, :, :exits] = powers, sizes, rounding
-        made["table"][k, :, : table.shape[1]], made["used"][k] = table, self.clock
+        made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
+        made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
         return k
 
     def _place(self) -> int:
@@ -101,7 +101,7 @@ class Pool:
             "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
             "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
-            "rounding": (LEADING, e, n), "rounding_forced": (LEADING, e, 2),
+            "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
         kinds = {"states": np.int8, "goal": np.int8, "exits": np.intp, "owner": np.intp, "used": np.intp}
         old, made = self._pool, {}
@@ -114,7 +114,7 @@ class Pool:
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
         self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
-        self.rounding, self.rounding_forced = made["rounding"], made["rounding_forced"]
+        self.series, self.series_forced = made["series"], made["series_forced"]
         self._pool = made
 
     @cython.cfunc

@@ -17,13 +17,14 @@ class Segments:
 
     A segment begins at the time `start` [s] with the state vector `y` (d,), lasts for `length` steps of the
     flow of its `states` (contact,), and is `ended` by an exit of that flow, or (-1) by the end of the motion.
+    While it lasts, the exits of each contact are no less than `slack` (contact,).
     """
 
     def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:
         self.count = 0
         self.y, self.states = np.zeros((capacity, size)), np.zeros((capacity, contacts), np.int8)
         self.start, self.length = np.zeros(capacity), np.zeros(capacity)
-        self.ended = np.zeros(capacity, np.intp)
+        self.ended, self.slack = np.zeros(capacity, np.intp), np.zeros((capacity, contacts))
 
     def __len__(self) -> int:
         return self.count
@@ -85,7 +86,7 @@ class Segments:
         """These segments without room for more."""
         k: cython.Py_ssize_t = self.count
         self.y, self.states, self.ended = self.y[:k], self.states[:k], self.ended[:k]
-        self.start, self.length = self.start[:k], self.length[:k]
+        self.start, self.length, self.slack = self.start[:k], self.length[:k], self.slack[:k]
         return self
 
     def room(self, capacity: int) -> Segments:
@@ -94,5 +95,5 @@ class Segments:
         k = made.count = self.count
         np.asarray(made.y)[:k], np.asarray(made.states)[:k] = self.y[:k], self.states[:k]
         np.asarray(made.start)[:k], np.asarray(made.length)[:k] = self.start[:k], self.length[:k]
-        np.asarray(made.ended)[:k] = self.ended[:k]
+        np.asarray(made.ended)[:k], np.asarray(made.slack)[:k] = self.ended[:k], self.slack[:k]
         return made

@@ -1,8 +1,12 @@
-"""The motion of each combination as a power series, and the Taylor coefficients of its exits."""
+"""The motion of each combination as a power series by the position, which is counted in steps."""
 
 from __future__ import annotations
 
 import cython
+import numpy as np
+
+from fcm.motion.pool import ORDER
+from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.pool import Pool
@@ -13,11 +17,16 @@ _ORDER = cython.declare(cython.int, 19)
 _OPEN = cython.declare(cython.int, 0)
 _STICK = cython.declare(cython.int, 1)
 _POSITIVE = cython.declare(cython.int, 2)
+_SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as make a step complete
 
 
 @cython.cclass
 class Series(Pool):
-    """Flows as power series: positions are counted in steps."""
+    """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
+
+    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
+        Pool.__init__(self, modal, ports, law)
+        self._own = np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc
     @cython.nogil
@@ -29,82 +38,94 @@ class Series(Pool):
         a: cython.Py_ssize_t,
         z: cython.double[:, ::1],
         b: cython.Py_ssize_t,
-        factor: cython.double,
     ) -> cython.void:
-        """Row b of z becomes factor A y, y being row a."""
-        m: cython.Py_ssize_t = self.modes
-        c: cython.Py_ssize_t = self.contacts
-        last: cython.Py_ssize_t = self.linear
+        """Row b of z becomes A y, y being row a."""
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        state: cython.int
-        f: cython.double
-        n: cython.double
-        u: cython.double
-        v: cython.double
-        sine: cython.double = y[a, last]
-        cosine: cython.double = y[a, last + 1]
-        for i in range(m):
-            z[b, i] = factor * y[a, m + i]
-            z[b, m + i] = (
-                self.drive[0, i] * sine + self.drive[1, i] * cosine + self.hold[i] * y[a, last - 1]
-                - self.stiffness[i] * y[a, i] - self.damping[i] * y[a, m + i]
-            )  # fmt: skip
-        for j in range(c):
-            state = self.states[slot, j]
-            u = v = 0.0
-            for i in range(m):
-                u += self.tangential[j, i] * y[a, m + i]
-                v += self.normal[j, i] * y[a, m + i]
-            v *= self.k_v[j]
-            f, n = y[a, 2 * m + j], y[a, 2 * m + c + j]
-            if state == _OPEN:  # the preload is missing
-                f, n = 0.0, -max(self.n_0[j], 0.0) * y[a, last - 1]
-                u = 0.0
-            else:  # a gap is not pressed
-                n += min(self.n_0[j], 0.0) * y[a, last - 1]
-                if state == _STICK:
-                    u = self.k_u[j] * u if self.rough[j] else 0.0
-                else:
-                    u = self.mu[j] * v if state == _POSITIVE else -self.mu[j] * v
-            for i in range(m):
-                z[b, m + i] -= self.push_u[j, i] * f + self.push_v[j, i] * n
-            z[b, 2 * m + j] = factor * u
-            z[b, 2 * m + c + j] = factor * v
-        for i in range(m):
-            z[b, m + i] *= factor
-        z[b, last - 1] = 0.0
-        z[b, last] = factor * self.omega * cosine
-        z[b, last + 1] = -factor * self.omega * sine
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def steepen(
-        self,
-        y: cython.double[:, ::1],
-        a: cython.Py_ssize_t,
-        z: cython.double[:, ::1],
-        b: cython.Py_ssize_t,
-        factor: cython.double,
-    ) -> cython.void:
-        """Add factor dA / d omega y to row b of z, y being row a, of forces that grow with the frequency."""
-        m: cython.Py_ssize_t = self.modes
-        n: cython.Py_ssize_t = self.linear
-        i: cython.Py_ssize_t
-        for i in range(m):
-            z[b, m + i] += factor * (self.slope[0, i] * y[a, n] + self.slope[1, i] * y[a, n + 1])
+        for i in range(self.size):
+            self._own[0, i] = y[a, i]
+        self.extend(slot, self._own, 1, 1.0, self._own, False)
+        for i in range(self.size):
+            z[b, i] = self._own[1, i]
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def extend(
-        self, slot: cython.Py_ssize_t, terms: cython.double[:, ::1], known: cython.int, last: cython.int
+        self,
+        slot: cython.Py_ssize_t,
+        z: cython.double[:, ::1],
+        last: cython.Py_ssize_t,
+        step: cython.double,
+        y: cython.double[:, ::1],
+        graded: cython.bint,
     ) -> cython.void:
-        """Taylor coefficients from those that are known up to an order to the last one."""
-        j: cython.int
-        for j in range(known, last):
-            self.derive(slot, terms, j, terms, j + 1, self.step[slot] / (j + 1))
+        """Taylor coefficients from row 0 of z on, by the position in a step of that length [s].
+
+        If it is graded, those of the derivative by the frequency of the motion with the coefficients y:
+        z[a + 1] = step / (a + 1) (A z[a] + dA / d omega y[a]).
+        """
+        m: cython.Py_ssize_t = self.modes
+        c: cython.Py_ssize_t = self.contacts
+        end: cython.Py_ssize_t = self.linear
+        a: cython.Py_ssize_t
+        b: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        state: cython.int
+        factor: cython.double
+        f: cython.double
+        n: cython.double
+        u: cython.double
+        v: cython.double
+        one: cython.double
+        sine: cython.double
+        cosine: cython.double
+        for a in range(last):
+            b = a + 1
+            factor = step / b
+            one, sine, cosine = z[a, end - 1], z[a, end], z[a, end + 1]
+            z[b, end - 1] = 0.0
+            z[b, end] = factor * self.omega * cosine
+            z[b, end + 1] = -factor * self.omega * sine
+            for i in range(m):
+                z[b, i] = factor * z[a, m + i]
+                z[b, m + i] = factor * (
+                    self.drive[0, i] * sine + self.drive[1, i] * cosine + self.hold[i] * one
+                    - self.stiffness[i] * z[a, i] - self.damping[i] * z[a, m + i]
+                )  # fmt: skip
+            for j in range(c):
+                state = self.states[slot, j]
+                v = 0.0
+                for i in range(m):
+                    v += self.normal[j, i] * z[a, m + i]
+                v *= factor * self.k_v[j]
+                f, n, u = z[a, 2 * m + j], z[a, 2 * m + c + j], 0.0
+                if state == _OPEN:  # the preload is missing
+                    f, n = 0.0, -max(self.n_0[j], 0.0) * one
+                else:  # a gap is not pressed
+                    n += min(self.n_0[j], 0.0) * one
+                    if state != _STICK:
+                        u = self.mu[j] * v if state == _POSITIVE else -self.mu[j] * v
+                    elif self.rough[j]:
+                        for i in range(m):
+                            u += self.tangential[j, i] * z[a, m + i]
+                        u *= factor * self.k_u[j]
+                f *= factor
+                n *= factor
+                if f != 0.0:
+                    for i in range(m):
+                        z[b, m + i] -= self.push_u[j, i] * f
+                if n != 0.0:
+                    for i in range(m):
+                        z[b, m + i] -= self.push_v[j, i] * n
+                z[b, 2 * m + j] = u
+                z[b, 2 * m + c + j] = v
+            if graded:
+                sine, cosine = factor * y[a, end], factor * y[a, end + 1]
+                z[b, end] += cosine
+                z[b, end + 1] -= sine
+                for i in range(m):
+                    z[b, m + i] += self.slope[0, i] * sine + self.slope[1, i] * cosine
 
     @cython.cfunc
     @cython.nogil
@@ -120,39 +141,46 @@ class Series(Pool):
         i: cython.Py_ssize_t
         for i in range(self.size):
             terms[0, i] = y[k, i]
-        self.extend(slot, terms, 0, _ORDER)
+        self.extend(slot, terms, _ORDER, self.step[slot], terms, False)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def leave(
+    def part(
         self,
         slot: cython.Py_ssize_t,
-        terms: cython.double[:, ::1],
-        first: cython.int,
-        last: cython.int,
-        exits: cython.double[:, ::1],
+        x: cython.double,
+        y: cython.double[:, ::1],
+        first: cython.Py_ssize_t,
+        last: cython.Py_ssize_t,
     ) -> cython.void:
-        """Taylor coefficients of the exits, (ORDER + 1, exit), from those of the state, of some orders."""
-        m: cython.Py_ssize_t = self.modes
-        e: cython.Py_ssize_t
+        """Move the rows from the first to before the last of y by a part x of a step."""
         i: cython.Py_ssize_t
-        f: cython.Py_ssize_t
-        n: cython.Py_ssize_t
-        j: cython.int
-        g: cython.double
-        for e in range(self.exits[slot]):
-            f = 2 * m + self.owner[slot, e]
-            n = f + self.contacts
-            for j in range(first, last + 1):
-                if self.goal[slot, e] == _STICK and self.states[slot, self.owner[slot, e]] != _OPEN:
-                    g = 0.0  # the end of a slip: its velocity
-                    for i in range(m, 2 * m):
-                        g += self.row[slot, e, i] * terms[j, i]
-                else:
-                    g = self.row[slot, e, f] * terms[j, f] + self.row[slot, e, n] * terms[j, n]
-                    g += self.row[slot, e, self.linear - 1] * terms[j, self.linear - 1]
-                exits[j, e] = g
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        orders: cython.Py_ssize_t = needed(x)
+        for k in range(first, last):
+            for i in range(self.size):
+                self._own[0, i] = y[k, i]
+            self.extend(slot, self._own, orders, x * self.step[slot], self._own, False)
+            for j in range(orders - 1, -1, -1):
+                for i in range(self.size):
+                    self._own[j, i] += self._own[j + 1, i]
+            for i in range(self.size):
+                y[k, i] = self._own[0, i]
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def needed(x: cython.double) -> cython.int:
+    """The terms beyond the first that a part x of a step takes, to rounding."""
+    j: cython.int = 0
+    size: cython.double = 1.0
+    while size > _SERIES_END and j < _ORDER:
+        j += 1
+        size *= x / j
+    return j
 
 
 @cython.cfunc

@@ -1,0 +1,230 @@
+"""The extremes of any rows of the state vector over a motion: roots of their velocities.
+
+Of the steps only those are expanded that may hold one: where the velocity changes its sign from end to end,
+or has an extreme of its own between ends of one sign and beyond zero.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs
+
+from fcm.motion.pool import ORDER
+from fcm.scene.model import FloatArray
+
+if cython.compiled:
+    from cython.cimports.fcm.motion.steps import Steps
+else:
+    from fcm.motion.steps import Steps
+
+_ORDER = cython.declare(cython.int, 19)
+
+
+@cython.cclass
+class Scan:
+    """`greatest` and `least` (row,), the extremes of rows @ y, y without its last two components.
+
+    `place` (row, 4) is where they are: segment and position of the greatest, and of the least.
+    """
+
+    def __init__(self, steps: Steps, rows: FloatArray) -> None:
+        self.steps, count, d = steps, rows.shape[0], steps.flows.size
+        places = np.nonzero(rows)
+        self._entry, self._column = rows[places], places[1].copy()
+        self._first = np.searchsorted(places[0], np.arange(count + 1))
+        self.greatest, self.least = np.full(count, -np.inf), np.full(count, np.inf)
+        self.place, self._powers = np.zeros((count, 4)), np.zeros(ORDER + 1)
+        self._here, self._there = np.zeros((1, d)), np.zeros((3, d))
+        self._old, self._new = np.zeros((3, count)), np.zeros((3, count))
+
+    def go(self) -> int:
+        """Go through all steps: 0 when done, -1 where a flow is missing."""
+        stopped: cython.int
+        with cython.nogil:
+            stopped = self._go()
+        return int(stopped)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _go(self) -> cython.int:
+        """Segment by segment."""
+        slot: cython.Py_ssize_t
+        while self.steps.at + 1 < self.steps.segments.count:
+            if self.steps.segments.length[self.steps.at + 1] > 0.0:
+                slot = self.steps.flows.find(self.steps.segments.states, self.steps.at + 1)
+                if slot < 0:
+                    return -1
+                self.steps.flows.refresh(slot)
+                self.steps.at += 1
+                self._scan_segment(slot)
+            else:
+                self.steps.at += 1
+        return 0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _scan_segment(self, slot: cython.Py_ssize_t) -> cython.void:
+        left: cython.double = self.steps.segments.length[self.steps.at]
+        length: cython.double
+        i: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        expanded: cython.bint
+        self.steps.first = 0.0
+        for i in range(self.steps.flows.size):
+            self._there[0, i] = self.steps.segments.y[self.steps.at, i]
+        self._look(slot, self._old)
+        for r in range(self.greatest.shape[0]):
+            self._note(r, 0.0, self._old[0, r])
+        while left > 0.0:
+            length = min(left, 1.0)
+            for i in range(self.steps.flows.size):
+                self._here[0, i] = self._there[0, i]
+            if length == 1.0:
+                self.steps.flows.advance(slot, 0, self._there, 0)
+            else:
+                self.steps.flows.part(slot, length, self._there, 0, 1)
+            self._look(slot, self._new)
+            expanded = False
+            for r in range(self.greatest.shape[0]):
+                if self._may_turn(r):
+                    if not expanded:
+                        self.steps.length = length
+                        self.steps.flows.taylor(slot, self._here, 0, self.steps.terms)
+                        expanded = True
+                    self._extremes(r)
+                self._note(r, length, self._new[0, r])
+                for i in range(3):
+                    self._old[i, r] = self._new[i, r]
+            left -= 1.0
+            self.steps.first += 1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _look(self, slot: cython.Py_ssize_t, out: cython.double[:, ::1]) -> cython.void:
+        """The rows at the place there, and their first two derivatives by the position."""
+        r: cython.Py_ssize_t
+        j: cython.int
+        h: cython.double = self.steps.flows.step[slot]
+        self.steps.flows.extend(slot, self._there, 2, h, self._there, False)
+        for r in range(self.greatest.shape[0]):
+            for j in range(3):
+                out[j, r] = self._dot(r, self._there, j)
+            out[2, r] *= 2.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _may_turn(self, r: cython.Py_ssize_t) -> cython.bint:
+        """Whether the step may hold an extreme beyond those so far, by the slopes at its ends.
+
+        A step is a part of the fastest motion in which no slope grows to more than twice those at its ends.
+        """
+        first: cython.double = self._old[1, r]
+        last: cython.double = self._new[1, r]
+        bend: cython.double = self._old[2, r]
+        reach: cython.double
+        if first * last >= 0.0 and (bend * first >= 0.0 or bend * self._new[2, r] >= 0.0):
+            return False
+        reach = 2.0 * max(fabs(first), fabs(last))
+        high: cython.bint = max(self._old[0, r], self._new[0, r]) + reach > self.greatest[r]
+        return high or min(self._old[0, r], self._new[0, r]) - reach < self.least[r]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _dot(self, r: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.double:
+        """Of row r with row k of y."""
+        i: cython.Py_ssize_t
+        total: cython.double = 0.0
+        for i in range(self._first[r], self._first[r + 1]):
+            total += self._entry[i] * y[k, self._column[i]]
+        return total
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _extremes(self, r: cython.Py_ssize_t) -> cython.void:
+        """Those of row r in a step whose terms are there."""
+        first: cython.double = self._old[1, r]
+        j: cython.int
+        turn: cython.double
+        for j in range(_ORDER + 1):
+            self._powers[j] = self._dot(r, self.steps.terms, j)
+        if first * self._new[1, r] < 0.0:
+            self._turn(r, 0.0, self.steps.length)
+            return
+        turn = self._root(2, 0.0, self.steps.length)
+        if self._value(1, turn) * first < 0.0:
+            self._turn(r, 0.0, turn)
+            self._turn(r, turn, self.steps.length)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _turn(self, r: cython.Py_ssize_t, low: cython.double, high: cython.double) -> cython.void:
+        """Take the value where the velocity changes its sign."""
+        x: cython.double = self._root(1, low, high)
+        self._note(r, x, self._value(0, x))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _note(self, r: cython.Py_ssize_t, x: cython.double, value: cython.double) -> cython.void:
+        """Take a value, at x, if it is an extreme so far."""
+        if value > self.greatest[r]:
+            self.greatest[r] = value
+            self.place[r, 0], self.place[r, 1] = self.steps.at, self.steps.first + x
+        if value < self.least[r]:
+            self.least[r] = value
+            self.place[r, 2], self.place[r, 3] = self.steps.at, self.steps.first + x
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _value(self, order: cython.int, x: cython.double) -> cython.double:
+        """The polynomial or one of its derivatives."""
+        j: cython.int
+        factor: cython.double
+        total: cython.double = 0.0
+        for j in range(_ORDER, order - 1, -1):
+            factor = (
+                1.0
+                if order == 0
+                else j
+                if order == 1
+                else j * (j - 1)
+                if order == 2
+                else j * (j - 1) * (j - 2)
+            )
+            total = total * x + factor * self._powers[j]
+        return total
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _root(self, order: cython.int, low: cython.double, high: cython.double) -> cython.double:
+        """The root of a derivative with different signs at low and high: Newton's method between them."""
+        sense: cython.double = self._value(order, low)
+        x: cython.double = 0.5 * (low + high)
+        value: cython.double
+        slope: cython.double
+        new: cython.double
+        for _ in range(60):
+            value, slope = self._value(order, x), self._value(order + 1, x)
+            if value == 0.0:
+                return x
+            if value * sense > 0.0:
+                low = x
+            else:
+                high = x
+            new = x - value / slope if slope != 0.0 else low
+            if not low < new < high:
+                new = 0.5 * (low + high)
+            if fabs(new - x) <= 1e-15:
+                return new
+            x = new
+        return x
