@@ -120,7 +120,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     swept = ", ".join(f"{plain(key)} = {value:g}" for key, value in one["parameters"].items())
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
-        "bound": ", at a bound: beyond it there may be less",
+        "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less",
     }[one["kind"]]  # fmt: skip
     at = " and ".join(f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}" for place in one["at"])
     least = (

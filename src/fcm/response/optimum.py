@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from fcm.harmonic.choice import accurate
+from fcm.harmonic.choice import WORK, enlarged, estimated
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.sweep import trace
@@ -21,16 +21,13 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import FloatArray, Scene
-from fcm.track.curves import tracks
 from fcm.track.descent import Valley, descend
-from fcm.track.envelope import Least, Target, least, pieces_of
-from fcm.track.follow import Way
-from fcm.track.tracked import Condition, Kind
+from fcm.track.envelope import Least, Target
+from fcm.track.lowest import HIGHER, Lowest, Search
 from fcm.track.varied import along
 
-ROUNDS = 3  # of choosing harmonics by the accuracy at the optimum
-AGAIN = 3  # times that curves are followed from the optimum, where it has higher peaks than were known
-HIGHER = 1e-5  # relative: a peak of the response that is this much higher was not followed
+ROUNDS = 4  # of choosing harmonics by the accuracy at the optimum
+COUNTS = 1e-6  # of the greatest: peaks that are lower are none
 SEEKING = 0.8  # share of the bar that is over when the optimum is found
 
 
@@ -67,13 +64,12 @@ def optimise(
     tracking = Tracking(key, "optimum", aim.bounds[0], wanted.harmonics or (1,), [])
     curves = free.each_curve()
     for i, curve in enumerate(curves):
-        if progress is not None:
-            progress(SEEKING * i / len(curves), "optimum")
-        found, tracked = _optimum(_Task(curve, numbers, wanted.accuracy), wanted.harmonics)
+        shown = part(progress, SEEKING * i / len(curves), SEEKING * (i + 1) / len(curves))
+        found, tracked = _optimum(_Task(curve, numbers, wanted.accuracy), wanted.harmonics, shown)
         tracking.optima.append(found)
         tracking.curves += tracked
     tracking.harmonics = tuple(sorted({h for one in tracking.optima for h in one.harmonics}))
-    shown = None if progress is None else part(progress, SEEKING, 1.0 - SEEKING)
+    shown = None if progress is None else part(progress, SEEKING, 1.0)
     response = trace(
         _at(free, numbers, tracking.optima), progress=shown, harmonics=tracking.harmonics, **options
     )
@@ -98,50 +94,61 @@ class _Task:
         """The scene with values of the numbers."""
         return with_values(self.scene, self.numbers, values)
 
-    def conditions(self) -> list[Condition]:
-        """What is tracked."""
-        found = [Condition(Kind.PEAK, dof) for dof in sorted({target.dof for target in self.targets})]
-        if any(target.ends for target in self.targets):
-            found += [Condition(Kind.END, omega=omega) for omega in self.scene.frequency_range]
-        return found
 
-
-def _optimum(task: _Task, harmonics: tuple[int, ...] | None) -> tuple[Optimal, list[TrackedCurve]]:
+def _optimum(
+    task: _Task, harmonics: tuple[int, ...] | None, progress: Progress | None
+) -> tuple[Optimal, list[TrackedCurve]]:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
     chosen = harmonics or (1,)
-    for _ in range(1 if harmonics else ROUNDS):
-        found = _on_line(task, chosen) if len(task.numbers) == 1 else _downhill(task, chosen)
+    known: Lowest | None = None
+    for i in range(ROUNDS):
+        shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
+        if len(task.numbers) == 1:
+            known = _search(task, chosen).run(known, _sharing(shown))
+            found = _on_line(task, known, chosen)
+        else:
+            found = _downhill(task, chosen)
         if harmonics:
-            return found
-        values = np.array(list(found[0].values.values()))
-        more = accurate(System(task.put(values)), task.accuracy).system.harmonics
-        if set(more) <= set(chosen):
-            return found
-        chosen = tuple(sorted({*chosen, *more}))
+            break
+        more = _enough(task, found[0], chosen)
+        if more == chosen:
+            break
+        chosen = more
     return found
 
 
-def _on_line(task: _Task, harmonics: tuple[int, ...]) -> tuple[Optimal, list[TrackedCurve]]:
-    """Of one number: over all of its range, by the curves of the peaks."""
-    (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
-    system, line = System(task.scene, harmonics), along(number)
-    seeds: tuple[float, ...] = ()
+def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
+    return None if progress is None else lambda share: progress(share, "optimum")
+
+
+def _enough(task: _Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
+    """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on."""
+    scene = task.put(np.array(list(found.values.values())))
+    dofs = [target.dof for target in task.targets]
     while True:
-        found = tracks(system, line, span, task.conditions(), seeds)
-        way = Way(system, line, span, (), task.scene.max_step)
-        best = least(
-            way, [piece for target in task.targets for piece in pieces_of(way, found.curves, target)]
-        )
-        if best is None:
-            raise ResponseError(_nothing(task))
-        valley = Valley(System(task.scene, harmonics), [number], task.bounds, task.targets)
-        q = np.array([(best.s - span[0]) / (span[1] - span[0])])
-        there = max((valley.height(one, q)[0] for one in valley.peaks(q)), default=0.0)
-        if there <= best.value * (1.0 + HIGHER) or len(seeds) == AGAIN:
-            break
-        seeds = (*seeds, best.s)
+        there = estimated(System(scene, harmonics), task.accuracy)
+        height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
+        worst = float(there.peak[dofs][height > COUNTS * height.max()].max(initial=0.0))
+        there = replace(there, worst=worst)
+        if worst <= task.accuracy or there.work > WORK:
+            return harmonics
+        more = enlarged(there, task.accuracy)
+        if more == harmonics:
+            return harmonics
+        harmonics = more
+
+
+def _search(task: _Task, harmonics: tuple[int, ...]) -> Search:
+    (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
+    return Search(System(task.scene, harmonics), along(number), span, task.targets)
+
+
+def _on_line(task: _Task, found: Lowest, harmonics: tuple[int, ...]) -> tuple[Optimal, list[TrackedCurve]]:
+    """Of one number, by the curves of the peaks."""
+    if found.best is None:
+        raise ResponseError(_nothing(task))
     curves = [as_curve(task.scene, one) for one in found.curves]
-    return _optimal(task, np.array([best.s]), best, harmonics), curves
+    return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
 def _downhill(task: _Task, harmonics: tuple[int, ...]) -> tuple[Optimal, list[TrackedCurve]]:

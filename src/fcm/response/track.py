@@ -70,7 +70,7 @@ def track(
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
     tracking = Tracking(over, what, span, chosen, [])
     for i, one in enumerate(curves):
-        shown = None if progress is None else part(progress, i / len(curves), 1.0 / len(curves))
+        shown = None if progress is None else part(progress, i / len(curves), (i + 1.0) / len(curves))
         found = _tracked(one, number, span, what, chosen, shown)
         _add(tracking, one, found)
     response = Response.without_curves(scene)

@@ -58,7 +58,7 @@ class Optimal:
     minimised: tuple[str, ...]
     value: float
     active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
-    kind: str  # "smooth", "kink", "corner", "bound"
+    kind: str  # "smooth", "kink", "corner", "end", "bound"
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
 
@@ -90,8 +90,9 @@ class Tracking:
 
     @property
     def complete(self) -> bool:
-        """Whether every curve was followed to its end."""
-        return not self.problems and all(curve.complete for curve in self.curves)
+        """Whether every curve was followed to its end; of an optimum, whether nothing is known against it."""
+        followed = self.what == "optimum" or all(curve.complete for curve in self.curves)
+        return followed and not self.problems
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""

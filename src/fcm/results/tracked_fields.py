@@ -103,7 +103,9 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
         "optimum_kind": (
             ("optimum",),
             np.array([one.kind for one in optima], dtype=str),
-            {"long_name": "smooth, kink of equal peaks, corner of the response, or bound of a number"},
+            {
+                "long_name": "smooth, kink of equal peaks, corner of the response, end of a higher peak, or bound"
+            },
         ),
     }
 

@@ -11,8 +11,9 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.corner import Corner
-from fcm.track.follow import Ending, Spot, Way, follow, land
+from fcm.track.follow import follow, land
 from fcm.track.seeds import moved, special_points
+from fcm.track.spot import Ending, Spot, Way
 from fcm.track.tracked import Condition, Kind, Tracked
 from fcm.track.varied import Line
 
@@ -101,8 +102,8 @@ class _Made:
         """Follow those that no curve has passed; z = (x, omega, s)."""
         for condition, z in points:
             spot = land(self.way, condition, z)
-            if spot is not None and not any(_holds(one, condition, spot, self.way) for one in self.curves):
-                self.curves.append(_whole(self.way, condition, spot))
+            if spot is not None and not any(passed(one, condition, spot, self.way) for one in self.curves):
+                self.curves.append(whole(self.way, condition, spot))
 
 
 def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
@@ -123,7 +124,7 @@ def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, Fl
     return found
 
 
-def _holds(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
+def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
     """Whether a curve has passed a spot."""
     if curve.condition != condition:
         return False
@@ -145,7 +146,7 @@ def _on_chord(points: FloatArray) -> bool:
     return bool((off < BESIDE * length).any())
 
 
-def _whole(way: Way, condition: Condition, spot: Spot) -> Track:
+def whole(way: Way, condition: Condition, spot: Spot) -> Track:
     """The curve through a spot, both ways."""
     spots, ending = follow(way, condition, spot, True)
     endings = (ending, ending)

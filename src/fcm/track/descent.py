@@ -21,8 +21,9 @@ from fcm.harmonic.system import System
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray
 from fcm.track.envelope import EQUAL, Height, Least, Target
-from fcm.track.follow import Ending, Spot, Way, follow, land
+from fcm.track.follow import follow, land
 from fcm.track.seeds import moved, special_points
+from fcm.track.spot import Ending, Spot, Way
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 

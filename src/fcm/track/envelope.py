@@ -17,11 +17,12 @@ from scipy.optimize import brentq, minimize_scalar
 from fcm.continuation.newton import Newton
 from fcm.scene.model import FloatArray
 from fcm.track.curves import Track
-from fcm.track.follow import Way
+from fcm.track.spot import Way
 from fcm.track.tracked import Condition, Kind, Tracked
 
 BRACKETS = 4  # of the lowest points, in which the least value is sought
 FINE = 1e-9  # of the span: the number is known to this
+ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
 EQUAL = 1e-7  # relative: peaks that are one at a crossing
 
 
@@ -48,7 +49,7 @@ class Least:
     s: float
     value: float
     active: tuple[Height, ...]
-    kind: str  # "smooth", "kink" of two equal peaks, "corner", or "bound"
+    kind: str  # "smooth", "kink" of two equal peaks, "corner", "end" of a higher peak, or "bound"
 
 
 class Piece:
@@ -64,6 +65,10 @@ class Piece:
     def covers(self, s: float) -> bool:
         """Whether it is a function there."""
         return bool(self.s[0] <= s <= self.s[-1])
+
+    def roughly(self, s: float) -> float:
+        """The height between two points, by the chord."""
+        return float(np.interp(s, self.s, self.height))
 
     def at(self, s: float) -> Height:
         """Exactly, or by the chord where Newton's method does not come to it."""
@@ -131,7 +136,7 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
     low, high = way.span
     grid = np.unique(np.concatenate([piece.s for piece in pieces]))
     grid = grid[(grid >= low) & (grid <= high)]
-    rough = np.array([np.max([np.interp(s, p.s, p.height) for p in pieces if p.covers(s)]) for s in grid])
+    rough = np.array([np.max([p.roughly(s) for p in pieces if p.covers(s)]) for s in grid])
     inner = np.pad(rough, 1, constant_values=np.inf)
     lowest = np.flatnonzero((rough <= inner[:-2]) & (rough <= inner[2:]))
     lowest = lowest[np.argsort(rough[lowest])][:BRACKETS]
@@ -142,7 +147,7 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
 def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, float, float]:
     """A value of s between its neighbours, among which those of the highest piece itself."""
     s = float(grid[i])
-    top = max((p for p in pieces if p.covers(s)), key=lambda p: float(np.interp(s, p.s, p.height)))
+    top = max((p for p in pieces if p.covers(s)), key=lambda p: p.roughly(s))
     low, high = float(grid[max(i - 1, 0)]), float(grid[min(i + 1, len(grid) - 1)])
     below, above = top.s[top.s < s], top.s[top.s > s]
     low = min(low, float(below.max())) if below.size else low
@@ -155,7 +160,9 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
     span = way.span[1] - way.span[0]
 
     def highest(s: float) -> tuple[Height, Piece]:
-        heights = [(piece.at(s), piece) for piece in pieces if piece.covers(s)]
+        rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
+        top = max(rough.values())
+        heights = [(piece.at(s), piece) for piece, height in rough.items() if height > ROUGH * top]
         return max(heights, key=lambda pair: pair[0].value)
 
     if high > low:
@@ -182,7 +189,16 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
     top = highest(s)[0]
     active = [h for p in pieces if p.covers(s) and (h := p.at(s)).value >= top.value * (1.0 - EQUAL)]
     kind = "kink" if len(active) > 1 else kind
+    if kind == "corner" and any(_ends_higher(piece, s, top.value, width) for piece in pieces):
+        kind = "end"
     return Least(s, top.value, tuple(active), kind)
+
+
+def _ends_higher(piece: Piece, s: float, value: float, width: float) -> bool:
+    """Whether a piece that is not there ends higher close by."""
+    ends = ((piece.s[0], piece.height[0]), (piece.s[-1], piece.height[-1]))
+    near = any(abs(end - s) < width and height > value * (1.0 + EQUAL) for end, height in ends)
+    return near and not piece.s[0] < s < piece.s[-1]
 
 
 def _turned(

@@ -11,7 +11,6 @@ A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -63,12 +62,37 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
     return Onset(value, slope, numbers)
 
 
-def onsets(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> Iterator[Onset]:
-    """All of all contacts that have them, at all unknowns."""
-    for c, law in enumerate(laws):
-        block = np.ascontiguousarray(x[c * law.width : (c + 1) * law.width])
-        for kind in kinds_of(law):
-            yield onset(law, block, kind, harmonics)
+def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """The functions of all contacts that have them, at all unknowns: separation and closing, then slip."""
+    if not laws:
+        return np.zeros(0)
+    blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
+    numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
+    mu, k_u, k_v, n_0 = numbers.T
+    u, v = (np.array([_polynomial(block, part) for block in blocks]) for part in (0, 1))
+    load, push = v * k_v[:, None], u * k_u[:, None]
+    load[:, 0] += n_0
+    limit = mu[:, None] * load
+    pressed, slides = k_v > 0.0, mu * k_u > 0.0
+    sought = np.concatenate((load[pressed], -load[pressed], (push + limit)[slides], (limit - push)[slides]))
+    least = _all_least(sought, harmonics)
+    a, b = int(pressed.sum()), int(slides.sum())
+    return np.concatenate((least[:a], -least[a : 2 * a], least[2 * a : 2 * a + b] + least[2 * a + b :]))
+
+
+def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
+    """The least value of each row of c as of `_least`."""
+    h, wave = np.array(harmonics), c[:, 1:]
+    if h.size == 1:
+        return c[:, 0].real - np.abs(wave[:, 0])  # type: ignore[no-any-return]
+    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
+    at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
+    for _ in range(REFINED):
+        turned = np.exp(1j * np.outer(at, h)) * wave
+        bend = (h * h * turned).real.sum(axis=1)
+        step = (h * turned).imag.sum(axis=1) / np.where(bend < 0.0, bend, 1.0)
+        at = at - np.where(bend < 0.0, step, 0.0)
+    return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1)  # type: ignore[no-any-return]
 
 
 def kinds_of(law: Law) -> tuple[str, ...]:

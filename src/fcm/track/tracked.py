@@ -16,20 +16,18 @@ from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.continuation.problem import Problem
-from fcm.harmonic.by_number import growth_of
+from fcm.harmonic.whole import Amplitude, jacobian_of
 from fcm.scene.model import FloatArray
-from fcm.track.onset import onset, onsets
+from fcm.track.onset import onset, values
 from fcm.track.varied import Varied
-
-ComplexArray = npt.NDArray[np.complex128]
 
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
 ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
 
 LEAST_ASIDE = 1e-9  # and at least, where a corner is near
+ASKEW = 1e3  # times as long as the row: a tangent that is nearly across it
 
 
 class Kind(Enum):
@@ -57,6 +55,14 @@ class Tangent(NamedTuple):
     matrix: FloatArray
 
 
+class Look(NamedTuple):
+    """The balance at a place: its Jacobian, by s, and the slopes of ln amplitude of a peak by (y, s)."""
+
+    jacobian: FloatArray  # (unknown, unknown + 1)
+    by_s: FloatArray  # (unknown,)
+    growth: FloatArray  # (unknown + 2,)
+
+
 class Tracked(Problem):
     """See the module; y, s are the numbers z (unknown + 2,) of a problem, s the last."""
 
@@ -72,15 +78,25 @@ class Tracked(Problem):
         z = np.asarray(z)
         self.varied.put(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
-        by_s, shown = self.varied.by_s(y)
-        balance = self.varied.balance
+        here = self._look(y)
         residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
-        residual[:n] = balance.residual
-        jacobian[:n, : n + 1], jacobian[:n, n + 1] = balance.jacobian, by_s
-        value, gradient = self._condition(y, shown)
+        residual[:n] = self.varied.balance.residual
+        jacobian[:n, : n + 1], jacobian[:n, n + 1] = here.jacobian, here.by_s
+        value, gradient = self._condition(y, here)
         unit = np.asarray(self.scale)[n]  # by which the row of this unknown is divided
         residual[n], jacobian[n] = unit * value, unit * gradient
         return 0
+
+    def _look(self, y: FloatArray) -> Look:
+        """The balance at a place."""
+        balance = self.varied.balance
+        balance.evaluate(y)
+        by_s, growth = self.varied.by_s(y), np.zeros(self.n + 2)
+        if self.condition.kind is Kind.PEAK:
+            one = Amplitude(balance, self.condition.which)
+            one.at(y)
+            growth = np.append(one.slopes, by_s.of(one)) / max(one.value, SMALLEST)
+        return Look(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
         """As the balance; s by the span. The row becomes the tangent of the response curve."""
@@ -90,8 +106,7 @@ class Tracked(Problem):
         balance.measure(y)
         scale[:-1], scale[-1] = balance.scale, self.span
         balance.evaluate(y)
-        matrix = np.asarray(balance.jacobian) * scale[:-1] / scale[:-2, None]
-        t = np.linalg.svd(matrix)[2][-1]
+        t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row)
         self.row[:] = t if t @ self.row >= 0.0 else -t
         return 0
 
@@ -104,7 +119,7 @@ class Tracked(Problem):
         self.varied.put(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
-        t = self._tangent(np.array(balance.jacobian)).t
+        t = self._tangent(jacobian_of(balance)).t
         t /= np.linalg.norm(t)
         balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
         return t, np.array(balance.output), np.array(balance.growth)
@@ -117,7 +132,7 @@ class Tracked(Problem):
         right[-1] = 1.0
         return Tangent(np.linalg.solve(matrix, right), matrix)
 
-    def _condition(self, y: FloatArray, shown: ComplexArray) -> tuple[float, FloatArray]:
+    def _condition(self, y: FloatArray, here: Look) -> tuple[float, FloatArray]:
         """g, without a unit, and its derivatives by (y, s)."""
         kind = self.condition.kind
         if kind is Kind.END:
@@ -126,7 +141,7 @@ class Tracked(Problem):
             return (y[-1] - self.condition.omega) / self.varied.balance.span, gradient
         if kind is Kind.ONSET:
             return self._onset(y)
-        return self._turning(y, shown)
+        return self._turning(y, here)
 
     def _onset(self, y: FloatArray) -> tuple[float, FloatArray]:
         c, width = self.condition.which, self.varied.balance.width
@@ -138,17 +153,15 @@ class Tracked(Problem):
         unit = float(np.linalg.norm(gradient * np.asarray(self.scale))) or 1.0
         return found.value / unit - self.offset, gradient / unit
 
-    def _turning(self, y: FloatArray, shown: ComplexArray) -> tuple[float, FloatArray]:
+    def _turning(self, y: FloatArray, here: Look) -> tuple[float, FloatArray]:
         """Of a fold, or a peak: growth along the tangent, which row . t = 1 makes as long as it is."""
-        scale, n, balance = np.asarray(self.scale)[:-1], self.n, self.varied.balance
-        tangent = self._tangent(np.array(balance.jacobian))
-        t, here = tangent.t, np.zeros(n + 2)
-        if self.condition.kind is Kind.PEAK:
-            here = self._growth(y, shown)
-        else:
-            here[-2] = 1.0 / scale[-1]
-        value = float(here[:-1] @ (scale * t))
-        adjoint = np.linalg.solve(tangent.matrix.T, here[:-1] * scale)[:-1] / scale[:-1]
+        scale = np.asarray(self.scale)[:-1]
+        tangent = self._tangent(here.jacobian)
+        t, special = tangent.t, here.growth
+        if self.condition.kind is Kind.FOLD:
+            special[-2] = 1.0 / scale[-1]
+        value = float(special[:-1] @ (scale * t))
+        adjoint = np.linalg.solve(tangent.matrix.T, special[:-1] * scale)[:-1] / scale[:-1]
         ahead = scale * t / np.linalg.norm(t)
         step = self._room(y, ahead)
         gradient = self._aside(y + step * ahead, adjoint) - self._aside(y - step * ahead, adjoint)
@@ -171,25 +184,12 @@ class Tracked(Problem):
         if balance.margins:
             balance.bound(y)
             return np.array(balance.margin)
-        return np.array([one.value for one in onsets(balance.laws, y, self.varied.harmonics)])
-
-    def _growth(self, y: FloatArray, shown: ComplexArray) -> FloatArray:
-        """The slopes by (y, s) of the logarithm of the amplitude that is to be greatest."""
-        balance, d, slopes = self.varied.balance, self.condition.which, np.empty(self.n + 2)
-        for i, unit in enumerate(np.eye(self.n + 1)):
-            balance.report(y, unit)
-            slopes[i] = balance.growth[d]
-        slopes[-1] = growth_of(balance, shown)[d]
-        return slopes / max(float(balance.output[d]), SMALLEST)
+        return values(balance.laws, y, self.varied.harmonics)
 
     def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
-        by_s, shown = self.varied.by_s(y)
-        jacobian = np.asarray(self.varied.balance.jacobian)
-        changing: FloatArray = -np.append(adjoint @ jacobian, adjoint @ by_s)
-        if self.condition.kind is Kind.PEAK:
-            changing += self._growth(y, shown)
-        return changing
+        look = self._look(y)
+        return look.growth - np.append(adjoint @ look.jacobian, adjoint @ look.by_s)  # type: ignore[no-any-return]
 
     def is_top(self, z: FloatArray) -> bool:
         """Whether a peak is one, and not a trough: whether growth falls along the response."""
@@ -209,7 +209,21 @@ class Tracked(Problem):
         """An amplitude, and its rate along a direction (unknown + 2,), what s does to it included."""
         self.varied.put(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
-        shown = self.varied.by_s(y)[1]
-        balance.report(y, np.ascontiguousarray(direction[:-1]))
-        rate = float(balance.growth[dof]) + float(direction[-1] * growth_of(balance, shown)[dof])
-        return float(balance.output[dof]), rate
+        balance.evaluate(y)
+        one = Amplitude(balance, dof)
+        one.at(y)
+        slopes = np.append(one.slopes, self.varied.by_s(y).of(one))
+        return one.value, float(slopes @ direction)
+
+
+def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
+    """Unit vector (unknown + 1,) that a matrix (unknown, unknown + 1) takes to 0; row is nearly that."""
+    closed = np.concatenate((matrix, row[None]))
+    try:
+        t = np.linalg.solve(closed, np.eye(row.size)[-1])
+    except np.linalg.LinAlgError:
+        t = np.full(row.size, np.inf)
+    size = float(np.linalg.norm(t))
+    if size < ASKEW * float(np.linalg.norm(row)):
+        return t / size  # type: ignore[no-any-return]
+    return np.linalg.svd(matrix)[2][-1]

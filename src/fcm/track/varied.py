@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.by_number import Rates, rates_of
+from fcm.harmonic.by_number import Rates, law_rates, rates_of
 from fcm.harmonic.system import System
+from fcm.harmonic.whole import Amplitude, answer
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import linear_of
@@ -45,6 +46,20 @@ def along(number: Number) -> Line:
     return Line((number,), np.zeros(1), np.ones(1))
 
 
+class ByNumber(NamedTuple):
+    """Rates by s: of residual and contacts' forces (unknown,); by a structure of X (harmonic, dof)."""
+
+    residual: FloatArray
+    force: FloatArray
+    shown: ComplexArray | None
+
+    def of(self, one: Amplitude) -> float:
+        """Rate of an amplitude."""
+        if self.shown is None:
+            return float(one.of_forces @ self.force)
+        return float((one.weights @ self.shown[:, one.dof]).real)
+
+
 class Varied:
     """The balance of a system (of one curve) that `put` moves along a line, with the rates by s.
 
@@ -56,7 +71,9 @@ class Varied:
         tables = {address[0] for number in line.numbers for address in number.addresses}
         fields = {address[-1] for number in line.numbers for address in number.addresses}
         rigid = bool((system.linear.natural == 0.0).any())
-        self._structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
+        self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
+        # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
+        self._constant = not self.structure and (len(line.numbers) == 1 or "gap" not in fields)
         self.system, self.balance = system, system.balance()
         self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
         self._rates: list[Rates] = []
@@ -68,24 +85,42 @@ class Varied:
         self.s = s
         self.system = system = copy(self.base)
         object.__setattr__(system, "scene", self.line.scene(self.base.scene, s))
-        if self._structure:
+        if self.structure:
             object.__setattr__(system, "linear", linear_of(system.scene))
             self.balance = system.balance()
         for law, contact in zip(self.balance.laws, system.scene.contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
-        self._rates = []
+        if not self._constant:
+            self._rates = []
 
-    def by_s(self, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """Rates of the residual and of the displacements reported, by s at fixed z; evaluates the balance."""
-        balance = self.balance
-        residual = np.zeros(balance.unknowns)
-        shown = np.zeros((len(self.harmonics), balance.outputs), dtype=np.complex128)
-        balance.evaluate(z)
+    def by_s(self, z: FloatArray) -> ByNumber:
+        """Rates by s at fixed z, where the balance was evaluated last."""
+        force = self._forces_by_s(z)
+        if not self.structure:
+            return ByNumber(answer(self.balance, force), force, None)
+        residual = np.zeros(self.balance.unknowns)
+        shown = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
         for rate, weight in zip(self.rates, self.line.direction, strict=True):
             if weight:
-                of_residual, of_shown = rate.at(balance, z)
+                of_residual, of_shown = rate.at(self.balance, z)
                 residual, shown = residual + weight * of_residual, shown + weight * of_shown
-        return residual, shown
+        return ByNumber(residual, force, shown)
+
+    def _forces_by_s(self, z: FloatArray) -> FloatArray:
+        """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""
+        balance, w, rates = self.balance, self.balance.width, self.contact_rates()
+        found = np.zeros(balance.unknowns)
+        for c, (rate, law) in enumerate(zip(rates, balance.laws, strict=True)):
+            here = slice(c * w, (c + 1) * w)
+            if rate.any() and not rate[:3].any() and law.k_v > 0.0:
+                by_load = np.array(balance.tangent[c, :, 1])
+                by_load[1] += balance.counted[c]
+                by_load /= law.k_v
+                by_load[1] -= float(law.n_0 > 0.0)  # what the structure at rest is in equilibrium with
+                found[here] = rate[3] * by_load
+            elif rate.any():
+                found[here] = rate @ law_rates(law, z[here])
+        return found
 
     @property
     def rates(self) -> list[Rates]:

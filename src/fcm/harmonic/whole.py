@@ -1,0 +1,112 @@
+"""The whole Jacobian of a balance, and what its structure answers to forces of its contacts, as arrays."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.balance import Balance
+from fcm.scene.model import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+REFINED = 4  # Newton steps to an extreme, at most
+CLOSE = 1e-9  # [rad] the last of them
+
+
+def jacobian_of(balance: Balance) -> FloatArray:
+    """Of a balance as it was evaluated last, (unknown, unknown + 1), also of one that is condensed."""
+    if not balance.rank:
+        return np.array(balance.jacobian)
+    tangent, n, w = np.asarray(balance.tangent), balance.unknowns, balance.width
+    found = np.empty((n, n + 1))
+    for c in range(balance.contacts):
+        columns = np.zeros((n, w))
+        columns[c * w : (c + 1) * w] = tangent[c]
+        found[:, c * w : (c + 1) * w] = answer(balance, columns)
+    found[range(n), range(n)] += 1.0
+    found[:, n] = np.asarray(balance.jacobian)[:, 0]
+    return found
+
+
+def answer(balance: Balance, force: FloatArray) -> FloatArray:
+    """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
+    seen, (mean, first) = balance.seen, places(balance)
+    out = np.empty_like(force)
+    out[mean] = np.asarray(seen.static) @ force[mean]
+    G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)
+    F = force[first] + 1j * force[first + 1]
+    x = (G @ F.reshape(*first.shape, -1)).reshape(F.shape)
+    out[first], out[first + 1] = x.real, x.imag
+    return out
+
+
+def places(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Where the mean (port,) and the real part of each harmonic (harmonic, port) are among the unknowns."""
+    p = np.arange(2 * balance.contacts)
+    first = (p // 2) * balance.width
+    return first + p % 2, first + 2 + 2 * (p % 2) + 4 * np.arange(balance.seen.count)[:, None]
+
+
+class Amplitude:
+    """Half the peak-to-peak displacement of a degree of freedom, with its slopes.
+
+    With the displacement's amplitudes X_h it changes by Re sum_h W_h dX_h, where W_h = exp(i h theta) at the
+    greatest displacement, minus that at the least, halved.
+    """
+
+    def __init__(self, balance: Balance, dof: int) -> None:
+        self.balance, self.dof = balance, dof
+        self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
+        self.weights = np.zeros(balance.seen.count, dtype=np.complex128)
+        self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
+
+    def at(self, z: FloatArray) -> None:
+        """Where the balance was evaluated last, z (unknown + 1,)."""
+        balance, d, n = self.balance, self.dof, self.balance.unknowns
+        direction = np.zeros(n + 1)
+        direction[-1] = 1.0
+        balance.report(z, direction)
+        self.value, self.slopes[n] = balance.output[d], balance.growth[d]
+        shown, seen, rows = balance.shown, balance.seen, places(balance)[1]
+        X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
+        self.weights = W = _weights(X, np.asarray(seen.harmonics), shown.samples)
+        if not balance.contacts:
+            return
+        if not shown.apart[d]:  # of the contacts' own displacements
+            of_ports = W[:, None] * np.asarray(shown.attached)[:, d]
+            self.slopes[rows], self.slopes[rows + 1] = of_ports.real, -of_ports.imag
+            return
+        c = np.asarray(seen.c_re) + 1j * np.asarray(seen.c_im)
+        of_ports = -W[:, None] * ((c * np.asarray(shown.shapes)[:, d]) @ np.asarray(seen.shapes))
+        self.of_forces[rows], self.of_forces[rows + 1] = of_ports.real, -of_ports.imag
+        blocks = self.of_forces.reshape(balance.contacts, 1, -1) @ np.asarray(balance.tangent)
+        self.slopes[:n] = blocks.ravel()
+
+
+def _weights(X: ComplexArray, harmonics: FloatArray, samples: int) -> ComplexArray:
+    """W (harmonic,) of a displacement X (harmonic,)."""
+    if harmonics.size == 1:
+        size = np.abs(X)
+        return np.conj(X) / np.where(size > 0.0, size, 1.0)  # type: ignore[no-any-return]
+    theta, waves = _sampled(tuple(harmonics.tolist()), samples)
+    wave = (waves @ X).real
+    at = theta[[wave.argmax(), wave.argmin()]]
+    derivatives = np.stack((1j * harmonics * X, -harmonics * harmonics * X))
+    for _ in range(REFINED):  # Newton's method, as the extremes themselves are refined
+        slope, bend = (derivatives @ np.exp(1j * harmonics[:, None] * at)).real
+        step = slope / np.where(bend != 0.0, bend, 1.0)
+        at = at - np.where((bend != 0.0) & (np.abs(step) < theta[1]), step, 0.0)
+        if np.abs(step).max() < CLOSE:
+            break
+    ends = np.exp(1j * harmonics[:, None] * at)
+    return 0.5 * (ends[:, 0] - ends[:, 1])  # type: ignore[no-any-return]
+
+
+@lru_cache(maxsize=8)
+def _sampled(harmonics: tuple[float, ...], samples: int) -> tuple[FloatArray, ComplexArray]:
+    """Angles of a period (sample,), and exp(i h theta) (sample, harmonic)."""
+    theta = 2.0 * np.pi * np.arange(samples) / samples
+    return theta, np.exp(1j * np.outer(theta, harmonics))

@@ -1,0 +1,132 @@
+"""The least peak over a range of one number: follow the highest peaks, look where they are lowest, again.
+
+What was followed is nowhere above the response. So where the response, traced at the lowest point of what
+was followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
+Only ordinary curves at such points are traced, and those at both ends of the range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation.follow import Progress
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+from fcm.track.curves import Track, passed, whole
+from fcm.track.envelope import Least, Target, least, pieces_of
+from fcm.track.follow import Way, land
+from fcm.track.seeds import moved, special_points
+from fcm.track.spot import Spot
+from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import Line
+
+VISITS = 12  # of lowest points
+HIGHER = 1e-5  # relative: a peak that is this much higher was not followed
+HIGH = 0.9  # of the highest: peaks that are followed from where they are met
+
+
+@dataclass(frozen=True)
+class Lowest:
+    """The least peak, None where there is none; what was followed; whether it is known to be least."""
+
+    best: Least | None
+    curves: tuple[Track, ...]
+    checked: bool
+    harmonics: tuple[int, ...]
+
+
+@dataclass
+class Search:
+    """Of one scene and its targets, with the curves that are known."""
+
+    system: System
+    line: Line
+    span: tuple[float, float]
+    targets: Sequence[Target]
+    curves: list[Track] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        step = self.system.scene.max_step
+        self.way = Way(self.system, self.line, self.span, (), step, peaks_only=True)
+
+    def conditions(self) -> list[Condition]:
+        """What may be greatest."""
+        found = [Condition(Kind.PEAK, dof) for dof in sorted({target.dof for target in self.targets})]
+        if any(target.ends for target in self.targets):
+            found += [Condition(Kind.END, omega=w) for w in self.system.scene.frequency_range]
+        return found
+
+    def run(self, known: Lowest | None = None, progress: Progress | None = None) -> Lowest:
+        """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
+        if known is None:
+            for value in self.span:
+                self.visit(value)
+        else:
+            self.lift(known)
+            if known.best is not None:
+                self.visit(known.best.s)
+        for count in range(VISITS):
+            if progress is not None:
+                progress(count / (count + 2.0))
+            best = self.best()
+            checked = best is not None and self.visit(best.s) <= best.value * (1.0 + HIGHER)
+            if best is None or checked:
+                break
+        return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
+
+    def best(self) -> Least | None:
+        """Of what was followed."""
+        pieces = [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
+        return least(self.way, pieces)
+
+    def visit(self, value: float) -> float:
+        """Trace the response at a value; follow what is high and not known; the greatest of it."""
+        here = moved(self.system, self.line.scene(self.system.scene, value))
+        points = special_points(here, self.conditions())[0]
+        spots = [(one, land(self.way, one, np.append(z, value))) for one, z in points]
+        return self.follow([(one, spot) for one, spot in spots if spot is not None])
+
+    def follow(self, spots: list[tuple[Condition, Spot]]) -> float:
+        """Curves through the high ones of some spots; the greatest height."""
+        heights = [self.height(one, spot) for one, spot in spots]
+        top = max(heights, default=0.0)
+        for (one, spot), height in zip(spots, heights, strict=True):
+            known = any(passed(curve, one, spot, self.way) for curve in self.curves)
+            if height >= HIGH * top and not known:
+                self.curves.append(whole(self.way, one, spot))
+        return top
+
+    def height(self, condition: Condition, spot: Spot) -> float:
+        """The greatest of the targets at a spot; 0 where it is none of them."""
+        problem = self.way.tracked(condition)
+        problem.measure(spot.z)
+        amplitude = problem.along(spot.z)[1]
+        counts = [
+            t.dof for t in self.targets if condition.which == t.dof or (condition.kind is Kind.END and t.ends)
+        ]
+        return max((float(amplitude[d]) for d in counts), default=0.0)
+
+    def lift(self, known: Lowest) -> None:
+        """Follow curves found with fewer harmonics from both their ends and their middle."""
+        for curve in known.curves:
+            for i in sorted({0, len(curve.spots) // 2, len(curve.spots) - 1}):
+                contacts = len(self.system.scene.contacts)
+                z = lifted(curve.spots[i].z, contacts, known.harmonics, self.system.harmonics)
+                spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
+                if spot is not None:
+                    self.follow([(curve.condition, spot)])
+
+
+def lifted(
+    z: npt.NDArray[np.float64], contacts: int, old: tuple[int, ...], new: tuple[int, ...]
+) -> FloatArray:
+    """Unknowns with more harmonics, which are 0, and what follows the unknowns."""
+    fewer, more = (2 + 4 * len(one) for one in (old, new))
+    found = np.zeros((contacts, more))
+    at = [0, 1, *(2 + 4 * new.index(h) + i for h in old for i in range(4))]
+    found[:, at] = z[: contacts * fewer].reshape(contacts, fewer)
+    return np.concatenate((found.ravel(), z[contacts * fewer :]))
