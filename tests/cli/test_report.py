@@ -24,6 +24,14 @@ def test_the_greatest_peaks_of_all_curves_are_shown_in_the_order_of_the_file():
     assert rows[-1] == "the 4 of 6 degrees of freedom with the greatest peaks"
 
 
+def test_rotations_are_in_radians_and_come_after_displacements():
+    peaks = {"7x": 1e-6, "7rz": 3.0, "8x": 2e-6, "8:5": 2.0, "9rx": 4.0, "tip": 5e-6}
+    header, *rows = as_table({"curves": [curve(peaks)], "units": {"length": "m"}}, "Hz").splitlines()
+    for name in ("7x [m]", "8x [m]", "9rx [rad]", "tip [m]"):
+        assert f"peak {name}" in header
+    assert "7rz" not in header and rows[-1].endswith("greatest peaks, displacements before rotations")
+
+
 def test_a_peak_where_the_range_ends_is_marked():
     text = as_table({"curves": [curve({"u": 1.0, "v": 2.0}, edge=("v",))]}, "Hz")
     assert text.splitlines()[1].split()[:6] == ["1.00000", "1.50000", "-", "2.00000", "1.50000*", "-"]

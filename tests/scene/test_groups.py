@@ -78,6 +78,12 @@ def test_mistakes_of_pairs(change, words):
     assert words in refused([PAIRS | NUMBERS | change])
 
 
+def test_all_nodes_that_are_not_there_are_named():
+    said = refused([PAIRS | NUMBERS | {"nodes": [[40, 99], [98, 51]], "tangential": {"x": 0.6, "rz": 0.8}}])
+    for node, directions in ((40, ["rz"]), (99, ["x", "rz", "z"]), (98, ["x", "rz", "z"]), (51, ["rz"])):
+        assert all(f'node {node} has no degree of freedom along "{one}"' in said for one in directions)
+
+
 def test_areas_without_what_they_share():
     gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
     assert "areas: share a total preload n_0" in refused([PAIRS | gap | {"areas": [1, 2]}])

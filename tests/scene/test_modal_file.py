@@ -228,6 +228,12 @@ def test_what_may_be_a_modal_mass_is_refused(tmp_path, save, name):
         scene_of(tmp_path, name)
 
 
+@pytest.mark.parametrize("save, name", WRITERS)
+def test_what_is_not_used_is_said(tmp_path, save, name):
+    save(tmp_path / name, MODES | {"m": np.array([3.0, 4.0])})
+    assert scene_of(tmp_path, name).notes == (f'modal: "m" of {name} is not used',)
+
+
 def test_shapes_scaled_to_one_without_their_masses(tmp_path):
     modes = {key: value for key, value in MODES.items() if key != "mass"}
     np.savez(tmp_path / "m.npz", **(modes | {"shapes": np.array([[1.0, 0.2, 0.3], [0.1, -1.0, 0.5]])}))

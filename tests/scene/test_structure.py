@@ -221,6 +221,11 @@ def test_damping_between_modes_is_left_out_and_said():
     assert said == pytest.approx(worst, rel=0.01)
 
 
+def test_a_damping_matrix_that_leaves_modes_undamped():
+    """At their resonances, within the range, there is no response to compare."""
+    assert (read(damping=np.zeros((3, 3)).tolist()).modal.damping == 0.0).all()
+
+
 def test_a_loss_factor_is_half_of_it_at_each_resonance():
     scene = read(damping={"loss_factor": 0.02})
     assert any("a loss factor is taken as half of it for damping ratio" in note for note in scene.notes)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.terminal import plain
+from fcm.units import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
@@ -54,31 +55,39 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
 
 
 def _greatest(curves: Sequence[Curve]) -> list[str]:
-    """Those degrees of freedom whose peaks are the greatest, in the order of the file."""
+    """Those degrees of freedom whose peaks are the greatest, in the order of the file.
+
+    Rotations, which are of another unit, come after all displacements.
+    """
 
     def peak(dof: str) -> float:
         found = ((curve["peak"].get(dof) or {}).get("amplitude") for curve in curves)
         return max((value for value in found if value is not None), default=0.0)
 
     dofs = list(curves[0]["peak"])
-    chosen = sorted(dofs, key=peak, reverse=True)[:_MOST_DOFS]
+    chosen = sorted(dofs, key=lambda dof: (is_rotation(dof), -peak(dof)))[:_MOST_DOFS]
     return [dof for dof in dofs if dof in chosen]
 
 
 def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:
     """What was swept, the peaks, the points, the time, the folds, whether it is whole."""
-    of_length = f" [{length}]" if length else ""
-    peaks = [text for dof in dofs for text in (f"peak {dof}{of_length}", f"at {unit}", "error")]
+    peaks = [text for dof in dofs for text in (f"peak {_with_unit(dof, length)}", f"at {unit}", "error")]
     balanced = ["harmonics"] if any("harmonics" in curve for curve in curves) else []
     folds = "folds at level" if "level_folds" in curves[0] else f"folds at {unit}"
     header = [*names, *peaks, *balanced, "points", "time [s]", folds, ""]
     rows = [_curve_row(curve, dofs, bool(balanced)) for curve in curves]
     lines = [aligned([header, *rows], left=2)]
     if (count := len(curves[0]["peak"])) > len(dofs):
-        lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks")
+        turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
+        lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
     return "\n".join(lines)
+
+
+def _with_unit(dof: str, length: str) -> str:
+    unit = unit_of(dof, length)
+    return f"{dof} [{unit}]" if unit else dof
 
 
 def _at_edge(curve: Curve, dof: str) -> bool:

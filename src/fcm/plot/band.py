@@ -12,6 +12,7 @@ from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.place import name_at_side
 from fcm.plot.read import LEVEL, DrawnResponse, wide
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.units import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,7 +51,7 @@ def draw_bands(
             axes.plot(band.frequency, band.median, color=colour, linewidth=1.1)
         axes.set_xlabel(frequency_label(response.frequency_unit))
         name = response.dofs[column]
-        axes.set_ylabel(with_unit(f"Amplitude of {name}", response.length), parse_math=False)
+        axes.set_ylabel(with_unit(f"Amplitude of {name}", unit_of(name, response.length)), parse_math=False)
         axes.margins(x=0.0)
         axes.minorticks_on()
         if wide(response.curves):

@@ -14,6 +14,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.units import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,7 +116,8 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     name = symbol if symbol == key else f"{symbol}  ({key})"
     x = peaks.parameters[key][known]
     lower.set_xlabel(name, parse_math=symbol != key)
-    upper.set_ylabel(with_unit(f"Peak amplitude of {peaks.dofs[column]}", peaks.length), parse_math=False)
+    dof = peaks.dofs[column]
+    upper.set_ylabel(with_unit(f"Peak amplitude of {dof}", unit_of(dof, peaks.length)), parse_math=False)
     lower.set_ylabel(frequency_label(peaks.frequency_unit).replace("Frequency", "Peak frequency"))
     if x.min() > 0.0 and x.max() > _DECADES * x.min():
         lower.set_xscale("log")

@@ -22,6 +22,7 @@ from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.units import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,7 +151,8 @@ def _named(curve: DrawnCurve, names: bool = True) -> str:
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
     axes.set_xlabel(frequency_label(response.frequency_unit))
-    axes.set_ylabel(with_unit(f"Amplitude of {response.dofs[column]}", response.length), parse_math=False)
+    dof = response.dofs[column]
+    axes.set_ylabel(with_unit(f"Amplitude of {dof}", unit_of(dof, response.length)), parse_math=False)
     axes.margins(x=0.0, y=0.07)
     axes.minorticks_on()
     if log:

@@ -14,7 +14,7 @@ from fcm.results.gist import gist_of
 from fcm.results.padded import Padded, by_fold, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter, scatter
-from fcm.units import in_unit
+from fcm.units import in_unit, is_rotation
 
 ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
 LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
@@ -128,14 +128,16 @@ def fields_of(response: Response) -> dict[str, Field]:
         from fcm.motion import output
 
         out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
-    return _with_units(out, response.units)
+    return _with_units(out, response.units, [dof for dof in response.dofs if is_rotation(dof)])
 
 
-def _with_units(fields: dict[str, Field], units: tuple[str, str]) -> dict[str, Field]:
+def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[str]) -> dict[str, Field]:
     """The variables with the units of length and force that the scene names, where it does."""
     for names, unit in zip((LENGTHS, FORCES), units, strict=True):
         for name in set(names) & set(fields) if unit else ():
             fields[name].attrs["units"] = unit
+            if turning and "dof" in fields[name].dims:
+                fields[name].attrs["comment"] = f"rotations such as {turning[0]} are in radians"
     return fields
 
 

@@ -16,7 +16,7 @@ from fcm.results.fields import ORBIT_KINDS, Field, fields_of
 from fcm.results.padded import CHUNK, Padded
 from fcm.results.result import Orbits, Response
 from fcm.results.scatter import scatter, summary_of
-from fcm.units import in_unit
+from fcm.units import in_unit, unit_of
 
 if TYPE_CHECKING:
     import xarray
@@ -161,9 +161,12 @@ def write_csv(response: Response, path: str | Path) -> None:
     levels = any(curve.level is not None for curve in response.curves)
     modes = ("modal_amplitude", "damping_ratio") if any(c.mode is not None for c in response.curves) else ()
     kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
-    unit = f" [{response.units[0]}]" if response.units[0] else ""
-    bare = ("phase", "error")
-    columns = [f"{kind} {dof}{'' if kind in bare else unit}" for dof in response.dofs for kind in kinds]
+    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
+    columns = [
+        f"{kind} {dof} [{units[dof]}]" if units[dof] and kind not in ("phase", "error") else f"{kind} {dof}"
+        for dof in response.dofs
+        for kind in kinds
+    ]
     regimes = [f"regime {name}" for name in response.contacts]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
@@ -208,8 +211,8 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
     tracking = response.tracking
     assert tracking is not None
     keys = list(tracking.curves[0].parameters) if tracking.curves else []
-    unit = f" [{response.units[0]}]" if response.units[0] else ""
-    amplitudes = [f"amplitude {dof}{unit}" for dof in response.dofs]
+    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
+    amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
     header = ["track", "what", *keys, tracking.key, f"frequency [{response.frequency_unit}]", *amplitudes]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

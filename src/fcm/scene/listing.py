@@ -117,10 +117,12 @@ def _shares(frequency: FloatArray, along: FloatArray) -> list[float] | None:
 
 def _normalisation(scene: Scene) -> str:
     mass = scene.modal.mass
-    if (mass == 1.0).all():
-        return "mass-normalised: every modal mass is 1"
     largest = np.abs(scene.modal.shapes).max(axis=1)
-    scale = "largest value 1; " if np.allclose(largest, 1.0, rtol=1e-6, atol=0.0) else ""
+    of_one = largest.size > 1 and np.allclose(largest, 1.0, rtol=1e-6, atol=0.0)
+    if (mass == 1.0).all():
+        doubt = "taken as mass-normalised, but the largest value of each is 1"
+        return doubt if of_one else "mass-normalised: every modal mass is 1"
+    scale = "largest value 1; " if of_one else ""
     return f"{scale}modal masses from {mass.min():.6g} to {mass.max():.6g}"
 
 

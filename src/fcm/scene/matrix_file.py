@@ -107,6 +107,8 @@ def _chosen(found: dict[str, Any], chosen: str, path: str) -> Any:
 
 
 def _matrix(found: Any, path: str, files: Files) -> Any:
+    if found.dtype.kind not in "biufc":
+        raise DataFileError(f"{quoted(path)} holds a matrix of {found.dtype}, not of numbers")
     files.check_size(Path(path), 8 * max(found.shape))  # a sparse array has a number for each row or column
     matrix = scipy.sparse.csc_array(found)
     if matrix.dtype.kind not in "biuf":

@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import choices, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.uff import read_uff
 
@@ -84,6 +84,9 @@ def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: lis
     if unknown:
         may_be = f"{quoted(name)} has {quoted(unknown[0])}, which may be the modal mass"
         raise DataFileError(f"{may_be}: name it mass, or leave it out")
+    unused = [one for one in others if one not in WANTED and not one.startswith("__")]
+    if unused:
+        notes.append(f"modal: {choices(unused)} of {name} {'is' if len(unused) == 1 else 'are'} not used")
     if "frequency" in arrays and "angular_frequency" in arrays:
         raise DataFileError(f"{quoted(name)} has frequency and angular_frequency; keep one")
     return arrays

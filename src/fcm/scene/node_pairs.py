@@ -59,15 +59,15 @@ def along(section: Section, weights: dict[str, float], pair: Pair, dofs: Names |
     """The relative displacement of a pair along a direction; None after a mistake."""
     if dofs is None or not weights:
         return None
-    found = np.zeros(len(dofs))
+    found, before = np.zeros(len(dofs)), section.mistakes.count
     for direction, weight in weights.items():
         for node, sign in zip(pair, (1.0, -1.0), strict=False):
             name = dofs.find(f"{node}{direction}") or dofs.find(f"{node}_{direction}")
-            if not name:
+            if name:
+                found[dofs.place[name]] += sign * weight
+            else:
                 section.wrong("nodes", f"node {node} has no degree of freedom along {quoted(direction)}")
-                return None
-            found[dofs.place[name]] += sign * weight
-    return found
+    return found if section.mistakes.count == before else None
 
 
 def read_shares(section: Section, count: int) -> list[float]:

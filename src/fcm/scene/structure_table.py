@@ -185,7 +185,9 @@ def _check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str
         return f"({names[i]}, {names[j]}) is {shown(float(matrix[i, j]))}"
 
     entries = "; ".join(f"{entry(row[k], column[k])}, {entry(column[k], row[k])}" for k in worst)
-    section.wrong(key, f"is not symmetric: {int(wrong.sum())} pairs of entries differ; {entries}")
+    count = int(wrong.sum())
+    differ = "a pair of entries differs" if count == 1 else f"{count} pairs of entries differ"
+    section.wrong(key, f"is not symmetric: {differ}; {entries}")
 
 
 def _symmetric(matrix: Any) -> Any:

@@ -44,8 +44,14 @@ def coupling_effect(
     worst = 0.0
     for omega in (low, *inside.tolist(), high):
         undamped = np.diag(stiffness - omega**2).astype(np.complex128)
-        whole = seen.conj().T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
-        alone = seen.conj().T @ (pushes / (np.diagonal(undamped) + 1j * omega * np.diagonal(modal))[:, None])
+        of_each = np.diagonal(undamped) + 1j * omega * np.diagonal(modal)
+        if not of_each.all():
+            continue  # at the resonance of an undamped mode: no force gives a response
+        try:
+            whole = seen.conj().T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
+        except np.linalg.LinAlgError:
+            continue
+        alone = seen.conj().T @ (pushes / of_each[:, None])
         size = np.abs(whole).max()
         worst = max(worst, float(np.abs(whole - alone).max() / size) if size else 0.0)
     return worst
