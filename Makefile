@@ -8,6 +8,11 @@ DEMO   := build/demo
 PAPER  := build/paper
 REPORT := build/report
 
+# Beside what fcm is measured: where TMDSimPy comes from, and the processor time [s] that a curve may take.
+TMDSIMPY        ?= https://github.com/tmd-lab/tmdsimpy
+TMDSIMPY_COMMIT := 17d5fc3ffa22c8ac6f38e5b77e3a396aae261e7b
+LIMIT           ?= 20
+
 # What is compiled: a list of modules in pyproject.toml.
 KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.toml) $(wildcard src/fcm/*/*.pxd src/fcm/*/*/*.pxd)
 
@@ -32,7 +37,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others report convergence demo picture paper figures test check tables \
+.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration flexibility published report convergence demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -113,10 +118,30 @@ tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
 	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
 
-study: $(VENV)/installed  ## bundled and two hundred random scenes: do three step limits agree, are errors true?
-	$(BIN)/python tests/response/bundled_steps.py
-	$(BIN)/python tests/response/random_scenes.py
-	$(BIN)/python tests/response/random_peaks.py
+study: $(VENV)/installed  ## bundled and two hundred random scenes: do three step limits agree, are errors true? half an hour
+	@mkdir -p build
+	$(BIN)/python tests/response/bundled_steps.py > build/study.partial
+	$(BIN)/python tests/response/random_scenes.py >> build/study.partial
+	$(BIN)/python tests/response/random_peaks.py >> build/study.partial
+	@mv build/study.partial build/study.txt; cat build/study.txt
+
+calibration: $(VENV)/installed  ## estimated over true errors of hard curves; some minutes
+	@mkdir -p build
+	$(BIN)/python tests/harmonic/calibration.py > build/calibration.partial
+	@mv build/calibration.partial build/calibration.txt; cat build/calibration.txt
+
+flexibility: build/flexibility.txt  ## what the flexibility of the modes that are left out is worth
+	@cat $<
+
+build/flexibility.txt: tests/structure/kept_modes.py src/fcm/scenes/beam.toml $(SOLVER) $(VENV)/installed
+	@mkdir -p build
+	$(BIN)/python $< src/fcm/scenes/beam.toml w15 1 2 3 5 10 > $@
+
+published: build/published.json  ## the numbers that others have published, beside those obtained
+
+build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/fcm/scenes/*.toml) $(VENV)/installed
+	@mkdir -p build
+	$(BIN)/python -m fcm.report published $@
 
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
@@ -125,9 +150,21 @@ bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, s
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
 	$(BIN)/python tests/benchmarks/motion.py
 
-bench-others: $(OTHERS)/installed  ## run times beside another package, pyHarm-os, in an environment of its own
-	cd $(OTHERS) && bin/python ../../tests/benchmarks/pyharm.py > table.txt; \
-		status=$$?; cat table.txt; exit $$status
+bench-others: $(VENV)/installed  ## beside pyHarm-os and tmdsimpy, in environments of their own; half an hour
+	@mkdir -p $(OTHERS)
+	@rm -f $(OTHERS)/pyharm.json $(OTHERS)/tmdsimpy.json
+	$(BIN)/python tests/benchmarks/others/problems.py $(OTHERS)/problems.json
+	@for one in pyharm tmdsimpy; do $(MAKE) --no-print-directory $(OTHERS)/$$one.json || \
+		echo "bench-others: $$one is left out: its environment could not be made, or it failed; see above" >&2; done
+	$(BIN)/python -m fcm.report others $(OTHERS)
+
+$(OTHERS)/pyharm.json: $(OTHERS)/pyharm/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
+	cd $(@D)/pyharm && bin/python $(CURDIR)/tests/benchmarks/others/with_pyharm.py \
+		../problems.json ../$(@F) $(LIMIT)  # there, as it leaves a file where it runs
+
+$(OTHERS)/tmdsimpy.json: $(OTHERS)/tmdsimpy/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
+	$(OTHERS)/tmdsimpy/bin/python tests/benchmarks/others/with_tmdsimpy.py $(OTHERS)/problems.json $@ $(LIMIT) \
+		$(OTHERS)/tmdsimpy/source
 
 kills: $(VENV)/installed-dev  ## sweeps killed at fifty random instants: nothing lost, nothing left behind
 	FCM_KILLS=50 $(BIN)/python -m pytest tests/faults/test_kill.py
@@ -136,17 +173,21 @@ extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if
 	@mkdir -p build
 	$(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
 
-report: $(REPORT)/index.html  ## error against run time of the bundled scenes on a page, build/report/index.html
+report: $(REPORT)/index.html  ## errors, run times and what failed on a page, build/report/index.html; minutes
+	@# with what bench-others, calibration, extremes and study have left, if they were run
 
 $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py) \
-		$(wildcard build/extremes.json $(OTHERS)/table.txt)
-	$(BIN)/python -m fcm.report accuracy $(REPORT) $(COMPARED:%=--scene %) \
-		--extremes build/extremes.json --others $(OTHERS)/table.txt
+		build/convergence.txt build/flexibility.txt build/published.json \
+		$(wildcard build/calibration.txt build/extremes.json build/study.txt $(OTHERS)/*.json)
+	$(BIN)/python -m fcm.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
 
-convergence: $(VENV)/installed  ## error against run time with 1 to 15 harmonics, as the picture of README.md
+convergence: build/convergence.txt  ## error against run time with 1 to 15 harmonics, as the picture of README.md
+	cp build/convergence.png .github/convergence.png
+	@cat $<
+
+build/convergence.txt: src/fcm/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report convergence build/convergence.json --picture .github/convergence.png > build/convergence.txt
-	@cat build/convergence.txt
+	$(BIN)/python -m fcm.report convergence build/convergence.json --picture build/convergence.png > $@
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 
@@ -181,10 +222,17 @@ $(VENV)/installed: pyproject.toml $(KERNELS)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
 	@touch $@
 
-$(OTHERS)/installed: pyproject.toml
-	@mkdir -p $(@D)
-	test -x $(OTHERS)/bin/python || $(PYTHON) -m venv $(OTHERS)
-	$(OTHERS)/bin/python -m pip install --quiet --disable-pip-version-check --editable '.[benchmark]'
+$(OTHERS)/pyharm/installed:
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check 'pyHarm-os>=1.2'
+	@touch $@
+
+$(OTHERS)/tmdsimpy/installed:  # a repository that no package index has, at one of its commits
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy 'jax[cpu]'
+	rm -rf $(@D)/source
+	git clone --quiet $(TMDSIMPY) $(@D)/source
+	git -C $(@D)/source -c advice.detachedHead=false checkout --quiet $(TMDSIMPY_COMMIT)
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed

@@ -7,12 +7,11 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
 from fcm.orbit import periodic
-from fcm.report.accuracy import accuracy as page
+from fcm.report.evidence import evidence as page
 from fcm.scene import load_scene
 
 RANGE = "[0.8, 1.6]"
@@ -55,10 +54,8 @@ def test_every_method_with_its_errors_and_costs(fcm, short):
 def _the_page_shows_it(text, result):
     """With what is missing in it said."""
     Path("c.json").write_text(text)
-    Path("others.txt").write_text("ratio < 5")
-    options = ["--scene", "c", "--others", "others.txt", "--extremes", "none.txt"]
-    done = CliRunner().invoke(page, [".", *options])
-    assert done.exit_code == 0, done.output
+    Path("study.txt").write_text("ratio < 5")
+    page.main([".", "--scene", "c", "--results", "."], standalone_mode=False)
     html = Path("index.html").read_text()
     parts = result["contributions"]
     assert f"<td>{parts['single harmonic']['errors']['peak']:.1e}</td>" in html

@@ -8,7 +8,9 @@ from fcm.cli.lazy import LazyGroup
 
 PAGES = {
     "paper": ("fcm.report.paper:paper", "The figures of the paper, and its numbers beside those obtained."),
-    "accuracy": ("fcm.report.accuracy:accuracy", "Error against run time of some scenes."),
+    "evidence": ("fcm.report.evidence:evidence", "Errors and run times of every method, and what failed."),
+    "others": ("fcm.report.others:others", "Other packages beside fcm."),
+    "published": ("fcm.report.published:published", "Published numbers beside those obtained."),
     "convergence": ("fcm.report.convergence:convergence", "Error against run time with more harmonics."),
 }
 

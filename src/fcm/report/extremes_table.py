@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +27,9 @@ def read_cases(path: Path) -> list[Case]:
     return cases
 
 
-def section(cases: Sequence[Case]) -> Section:
-    """A line for each case, and how many pass."""
+def section(path: Path) -> Section:
+    """A line for each case of a file, and how many pass."""
+    cases = read_cases(path)
     passed = sum(bool(case["passes"]) for case in cases)
     return Section(
         "Stiff and extreme cases",
@@ -38,8 +39,9 @@ def section(cases: Sequence[Case]) -> Section:
     )
 
 
-def failures(cases: Sequence[Case]) -> list[tuple[str, str]]:
-    """Names of the cases that do not pass or are not complete, and why."""
+def failures(path: Path) -> list[tuple[str, str]]:
+    """Names of the cases of a file that do not pass or are not complete, and why."""
+    cases = read_cases(path)
     wrong = [(case["name"], "; ".join(case["faults"])) for case in cases if not case["passes"]]
     return wrong + [(c["name"], c["reason"]) for c in cases if c["passes"] and not c["complete"]]
 

@@ -52,6 +52,7 @@ class Section:
     caption: str = ""
     commands: tuple[str, ...] = ()
     tables: tuple[Table, ...] = ()
+    after: tuple[str, ...] = ()  # what the tables show
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def _section(section: Section) -> str:
         )
     if section.commands:
         parts.append("<pre>" + "\n".join(map(escape, section.commands)) + "</pre>")
-    parts += [_table(table) for table in section.tables]
+    parts += [_table(table) for table in section.tables] + _paragraphs(section.after)
     return "\n".join([*parts, "</section>"])
 
 

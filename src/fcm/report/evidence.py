@@ -1,4 +1,4 @@
-"""Error against run time of the bundled scenes: a page of their comparisons (``make report``)."""
+"""How wrong and how slow every method is, and what failed: one page (``make report``)."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ import click
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.tables import Rows, every
 from fcm.files import replacing
-from fcm.report import extremes_table
+from fcm.report import extremes_table, others, published, recorded
 from fcm.report.made import facts
 from fcm.report.page import Page, Section, Table, render
 
-TITLE = "Error against run time"
+TITLE = "The evidence"
 ABOUT = (
     "Every scene below is solved by every method: harmonic balance with the default table, with the fast one "
     "and in closed form, and the exact periodic motion, each over a range of longest steps. Errors are "
@@ -38,44 +38,55 @@ CAPTION = (
     "Error of the curve against processor time, longest steps halved from marker to marker. Arrows point "
     "down where the error is below what its reference can show."
 )
-MISSING = "{0}: not in this report; {1} makes it, and make report then takes it"
+STORED = (  # how a file of results becomes a section, what of it failed, the file, and what makes it
+    (extremes_table.section, extremes_table.failures, "extremes.json", "make extremes"),
+    (published.section, published.failures, "published.json", "make published"),
+)
+RECORDED = (recorded.STUDY, recorded.CALIBRATION, recorded.FLEXIBILITY)
+OTHERS = "bench-others"  # a folder of results
 
 
 @click.command()
 @click.argument("folder", type=click.Path(exists=True, file_okay=False, path_type=Path))
 @click.option("--scene", "scenes", multiple=True, required=True, metavar="NAME", help="In this order.")
 @click.option(
-    "--extremes", type=click.Path(path_type=Path), metavar="FILE", help="What `make extremes` wrote."
-)
-@click.option(
-    "--others", type=click.Path(path_type=Path), metavar="FILE", help="What `make bench-others` wrote."
-)
+    "--results", type=click.Path(path_type=Path), required=True, metavar="FOLDER",
+    help="Where the targets of make leave what they found.",
+)  # fmt: skip
 @pass_messages
-def accuracy(
-    messages: Messages, folder: Path, scenes: Sequence[str], extremes: Path | None, others: Path | None
-) -> None:
-    """Write FOLDER/index.html from NAME.json and NAME.png of each scene in FOLDER."""
+def evidence(messages: Messages, folder: Path, scenes: Sequence[str], results: Path) -> None:
+    """Write FOLDER/index.html from NAME.json and NAME.png of each scene in it, and from the results."""
     begin = time.perf_counter()
     found = {name: json.loads((folder / f"{name}.json").read_text(encoding="utf-8")) for name in scenes}
-    sections = [_scene(name, summary) for name, summary in found.items()]
+    sections = [recorded.section(recorded.CONVERGENCE, results, folder)]
+    sections += [_scene(name, summary) for name, summary in found.items()]
     failed = [(name, text) for name, one in found.items() for text in _failures(one)]
     missing = []
-    if extremes is not None and extremes.is_file():
-        cases = extremes_table.read_cases(extremes)
-        sections.append(extremes_table.section(cases))
-        failed += extremes_table.failures(cases)
+    for read, wrong, file, target in STORED:
+        path = results / file
+        if path.is_file():
+            sections.append(read(path))
+            failed += wrong(path)
+        else:
+            missing.append((target, recorded.MISSING.format(target)))
+    sections += [recorded.section(one, results, folder) for one in RECORDED]
+    unknown = [one.target for one in (recorded.CONVERGENCE, *RECORDED) if not (results / one.file).is_file()]
+    missing += [(target, recorded.MISSING.format(target)) for target in unknown]
+    if (results / OTHERS / "problems.json").is_file():
+        sections.append(_others(results / OTHERS, folder))
     else:
-        missing.append(MISSING.format("the stiff and extreme cases", "make extremes"))
-    if others is not None and others.is_file():
-        printed = others.read_text(encoding="utf-8").rstrip()
-        sections.append(Section("Beside another package", commands=("make bench-others", printed)))
-    else:
-        missing.append(MISSING.format("the comparison with another package", "make bench-others"))
+        missing.append(("make bench-others", recorded.MISSING.format("make bench-others")))
     sections.append(_left_out(found, failed, missing))
     output = folder / "index.html"
     with replacing(output) as partial:
         partial.write_text(render(Page(TITLE, ABOUT, sections, facts(), facts_first=True)), encoding="utf-8")
     messages.info(f"wrote {output}: {len(found)} scenes, in {time.perf_counter() - begin:.1f} s")
+
+
+def _others(results: Path, folder: Path) -> Section:
+    """Beside other packages, with the picture drawn into the page's folder."""
+    others.draw(results, folder / "others.png")
+    return others.section(results)
 
 
 def _scene(name: str, summary: dict[str, Any]) -> Section:
@@ -98,12 +109,12 @@ def _table(rows: Rows) -> Table:
 
 
 def _left_out(
-    found: dict[str, dict[str, Any]], failed: Sequence[tuple[str, str]], missing: Sequence[str]
+    found: dict[str, dict[str, Any]], failed: Sequence[tuple[str, str]], missing: Sequence[tuple[str, str]]
 ) -> Section:
     """What failed, what was not compared, and what the scenes did not need."""
     rows = [(name, "failed", text) for name, text in failed]
     rows += [(name, "left out", text) for name, one in found.items() for text in one["left_out"]]
-    rows += [("the report", "left out", text) for text in missing]
+    rows += [(target, "not run", text) for target, text in missing]
     text = () if rows else ("Nothing failed, and nothing was left out.",)
     tables = (Table(("scene", "", "what"), rows),) if rows else ()
     return Section("What failed or was left out", text=text, tables=tables)
