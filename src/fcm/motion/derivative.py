@@ -162,6 +162,7 @@ class Derivative:
         sine: cython.double = self.columns[u + 1, n]
         cosine: cython.double = self.columns[u + 1, n + 1]
         h: cython.double = self.flows.step[slot] * (1 << j)
+        self.flows.reach(slot, j)
         if n < DENSE:
             for k in range(u):
                 self.flows.advance(slot, j, self.columns, k)

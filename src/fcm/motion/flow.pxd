@@ -10,5 +10,6 @@ cdef class Flows(Series):
     cdef void refresh(self, Py_ssize_t slot) noexcept nogil
     cdef void _unit(self, Py_ssize_t slot, Py_ssize_t b) noexcept nogil
     cdef void _unit_exits(self, Py_ssize_t slot, Py_ssize_t b) noexcept nogil
-    cdef void _double(self, Py_ssize_t slot) noexcept nogil
+    cdef void reach(self, Py_ssize_t slot, Py_ssize_t last) noexcept nogil
+    cdef void _double(self, Py_ssize_t slot, Py_ssize_t j) noexcept nogil
     cdef void _look(self, Py_ssize_t slot) noexcept nogil

@@ -31,7 +31,7 @@ else:
     from fcm.motion.series import Series
 
 _ORDER = cython.declare(cython.int, 19)
-_POWERS = cython.declare(cython.int, 8)
+_WHOLE = cython.declare(cython.int, 4)  # BLOCK is 2**4 steps
 _BLOCK = cython.declare(cython.int, 16)
 
 
@@ -157,7 +157,8 @@ class Flows(Series):
         b: cython.Py_ssize_t
         for b in range(2):
             self._unit(slot, b)
-        self._double(slot)
+        self.reached[slot] = 0
+        self.reach(slot, _WHOLE)
         self._look(slot)
         self.made_for[slot] = self.omega
 
@@ -210,45 +211,42 @@ class Flows(Series):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _double(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The columns over 1, 2, 4 ... steps: C(2 t) = E C + C R, with the rotation R of the forces."""
+    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.void:
+        """Make the columns of the forces over 1, 2, 4 ... 2**last steps, those that are not made yet."""
+        t: cython.double
+        while self.reached[slot] <= last:
+            if self.reached[slot] > 0:
+                self._double(slot, self.reached[slot] - 1)
+            t = self.omega * self.step[slot] * (1 << self.reached[slot])
+            self.turn[slot, self.reached[slot], 0] = cos(t)
+            self.turn[slot, self.reached[slot], 1] = sin(t)
+            self.reached[slot] += 1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _double(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+        """The columns over twice as many steps: C(2 t) = E C + C R, with the rotation R of the forces."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        j: cython.int
         b: cython.int
         x: cython.double
-        t: cython.double = self.step[slot]
-        s: cython.double
-        c: cython.double
-        for j in range(_POWERS):
-            c, s = cos(self.omega * t), sin(self.omega * t)
-            self.turn[slot, j, 0], self.turn[slot, j, 1] = c, s
-            if j + 1 == _POWERS:
-                return
-            for i in range(n):
-                self.forced[slot, j + 1, 0, i] = (
-                    c * self.forced[slot, j, 0, i] - s * self.forced[slot, j, 1, i]
-                )
-                self.forced[slot, j + 1, 1, i] = (
-                    s * self.forced[slot, j, 0, i] + c * self.forced[slot, j, 1, i]
-                )
-                self.forced[slot, j + 1, 2, i] = (
-                    c * self.forced[slot, j, 2, i]
-                    - s * self.forced[slot, j, 3, i]
-                    - t * (s * self.forced[slot, j, 0, i] + c * self.forced[slot, j, 1, i])
-                )
-                self.forced[slot, j + 1, 3, i] = (
-                    s * self.forced[slot, j, 2, i]
-                    + c * self.forced[slot, j, 3, i]
-                    + t * (c * self.forced[slot, j, 0, i] - s * self.forced[slot, j, 1, i])
-                )
-            for b in range(4):
-                for p in range(n):
-                    x = self.forced[slot, j, b, p]
-                    for i in range(n):
-                        self.forced[slot, j + 1, b, i] += self.power[slot, j, p, i] * x
-            t *= 2.0
+        t: cython.double = self.step[slot] * (1 << j)
+        c: cython.double = self.turn[slot, j, 0]
+        s: cython.double = self.turn[slot, j, 1]
+        old: cython.double[:, ::1] = self.forced[slot, j]
+        new: cython.double[:, ::1] = self.forced[slot, j + 1]
+        for i in range(n):
+            new[0, i] = c * old[0, i] - s * old[1, i]
+            new[1, i] = s * old[0, i] + c * old[1, i]
+            new[2, i] = c * old[2, i] - s * old[3, i] - t * new[1, i]
+            new[3, i] = s * old[2, i] + c * old[3, i] + t * new[0, i]
+        for b in range(4):
+            for p in range(n):
+                x = old[b, p]
+                for i in range(n):
+                    new[b, i] += self.power[slot, j, p, i] * x
 
     @cython.cfunc
     @cython.nogil

@@ -14,6 +14,7 @@ cdef class March:
     cdef bint _settled, _fresh
     cdef double[::1] _noise
     cdef signed char[::1] _failed
+    cdef void _enter(self, Py_ssize_t j)
     cdef int _go(self) noexcept nogil
     cdef int _settle(self) noexcept nogil
     cdef bint _fails(self, Py_ssize_t slot) noexcept nogil

@@ -34,6 +34,7 @@ _LEADING = cython.declare(cython.int, 8)  # derivatives of an exit that may tell
 _OPEN = cython.declare(cython.int, 0)
 _STICK = cython.declare(cython.int, 1)
 _POSITIVE = cython.declare(cython.int, 2)
+_NEGATIVE = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -50,6 +51,45 @@ class March:
     def begins(self, y: FloatArray, states: Any, duration: float, limit: int) -> None:
         """Set the state vector (d,), the contacts' states (contact,) and the time to march [s]."""
         np.asarray(self.y)[0], np.asarray(self.states)[0] = y, states
+        self.lasts(duration, limit)
+
+    def enters(self, x: cython.double[::1], sine: cython.double, cosine: cython.double) -> None:
+        """Set y and states from x = (q, q', f) and the phase of the forces; f is brought into its limits."""
+        m: cython.Py_ssize_t = self.flows.modes
+        c: cython.Py_ssize_t = self.flows.contacts
+        n: cython.Py_ssize_t = self.flows.linear
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        change: cython.double
+        for i in range(2 * m + c):
+            self.y[0, i] = x[i]
+        for j in range(c):
+            change = 0.0
+            for i in range(m):
+                change += self.flows.normal[j, i] * x[i]
+            self.y[0, 2 * m + c + j] = self.flows.k_v[j] * change
+        self.y[0, n - 1], self.y[0, n], self.y[0, n + 1] = 1.0, sine, cosine
+        for j in range(c):
+            self._enter(j)
+
+    @cython.cfunc
+    def _enter(self, j: cython.Py_ssize_t) -> cython.void:
+        """The state of a contact by its load and its friction force."""
+        f: cython.Py_ssize_t = 2 * self.flows.modes + j
+        load: cython.double = self.flows.n_0[j] + self.y[0, f + self.flows.contacts]
+        limit: cython.double = self.flows.mu[j] * load
+        if load < 0.0 or (load == 0.0 and self.flows.k_v[j] == 0.0):
+            self.y[0, f], self.states[0, j] = 0.0, _OPEN
+        elif not self.flows.rough[j]:
+            self.y[0, f], self.states[0, j] = 0.0, _STICK
+        elif fabs(self.y[0, f]) <= limit:
+            self.states[0, j] = _STICK
+        else:
+            self.states[0, j] = _POSITIVE if self.y[0, f] > 0.0 else _NEGATIVE
+            self.y[0, f] = limit if self.y[0, f] > 0.0 else -limit
+
+    def lasts(self, duration: float, limit: int) -> None:
+        """Set the time to march [s] from y and states as they stand."""
         self.duration, self.limit, self.time = duration, limit, 0.0
         self.segments = Segments(self.flows.size, self.flows.contacts, max(self.segments.count + 8, 16))
         self._passes, self._ahead.exit = 0, -1

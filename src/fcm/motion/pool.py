@@ -53,11 +53,15 @@ class Pool:
 
     def at(self, omega: float) -> None:
         """Set the frequency [rad/s]."""
+        i: cython.Py_ssize_t
+        b: cython.Py_ssize_t
         if omega == self.omega:
             return
         self.omega = omega
-        square = np.asarray(self.square)
-        self.drive, self.slope = np.asarray(self.constant) + omega**2 * square, 2.0 * omega * square
+        for b in range(2):
+            for i in range(self.modes):
+                self.drive[b, i] = self.constant[b, i] + self.omega * self.omega * self.square[b, i]
+                self.slope[b, i] = 2.0 * self.omega * self.square[b, i]
 
     def bytes(self) -> int:
         """Memory of the pool."""
@@ -98,12 +102,12 @@ class Pool:
         n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
-            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (),
+            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (), "reached": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
             "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
-        kinds = {"states": np.int8, "goal": np.int8, "exits": np.intp, "owner": np.intp, "used": np.intp}
+        kinds = {"states": np.int8, "goal": np.int8, "exits": np.intp, "owner": np.intp, "used": np.intp, "reached": np.intp}
         old, made = self._pool, {}
         for name, shape in shapes.items():
             made[name] = np.zeros((capacity, *shape), kinds.get(name, np.float64))
@@ -112,7 +116,7 @@ class Pool:
         self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
         self.owner, self.goal, self.row = made["owner"], made["goal"], made["row"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
-        self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
+        self.turn, self.reached, self.table, self.table_forced = made["turn"], made["reached"], made["table"], made["table_forced"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]
         self._pool = made

@@ -10,10 +10,10 @@ import numpy as np
 from fcm.motion.combination import Codes
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import CycleError, SimulationError
-from fcm.motion.march import DONE, FULL, LONG, MISSING, UNDECIDED
+from fcm.motion.march import DONE, FULL, LONG, MISSING, UNDECIDED, March
 from fcm.motion.motion import Motion
 from fcm.motion.segments import Segments
-from fcm.motion.state import State, entry, leave, set_angle
+from fcm.motion.state import State, entered, entry, leave, set_angle
 from fcm.motion.system import LETTERS, System
 from fcm.scene.model import FloatArray, Phase, Scene
 
@@ -114,6 +114,20 @@ def march(
     """The segments of the motion over a duration [s], the state vector and the states at its end."""
     march = system.march()
     march.begins(y, states, duration, MOST_TRANSITIONS)
+    segments = _marched(system, march)
+    return segments, np.array(march.y)[0], np.array(march.states)[0]
+
+
+def march_from(system: System, x: FloatArray, duration: float) -> tuple[Segments, FloatArray]:
+    """The segments from x = (q, q', f) at the forces' angle 0 on, and the state vector at their end."""
+    march = entered(system, x)
+    march.lasts(duration, MOST_TRANSITIONS)
+    segments = _marched(system, march)
+    return segments, np.array(march.y)[0]
+
+
+def _marched(system: System, march: March) -> Segments:
+    """The segments of a march to its end."""
     while (stopped := march.go()) != DONE:
         if stopped == MISSING:
             system.make(np.asarray(march.states)[0])
@@ -130,8 +144,9 @@ def march(
             )
         elif stopped == LONG:
             raise CycleError(
-                f"a cycle at {system.omega:g} rad/s lasts {duration * march.rate():.1g} radians of the "
+                f"a cycle at {system.omega:g} rad/s lasts {march.duration * march.rate():.1g} radians of the "
                 "fastest motion; give the contacts less stiffness, leave the highest modes out, or raise the "
                 "frequency"
             )
-    return march.segments.trim(), np.array(march.y)[0], np.array(march.states)[0]
+    segments: Segments = march.segments.trim()
+    return segments

@@ -8,6 +8,11 @@ from cython.cimports.libc.math import fabs
 
 from fcm.scene.model import FloatArray
 
+if cython.compiled:
+    from cython.cimports.fcm.motion.pool import Pool
+else:
+    from fcm.motion.pool import Pool
+
 TINY = cython.declare(cython.double, 1e-300)  # instead of a division by zero where nothing moves
 
 
@@ -31,31 +36,31 @@ class Segments:
 
     def largest(self) -> FloatArray:
         """The greatest magnitude of each component at the ends of segments: (d,)."""
-        out: cython.double[::1] = np.zeros(self.y.shape[1])
+        greatest = np.zeros(self.y.shape[1])
+        out: cython.double[::1] = greatest
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         for k in range(self.count):
             for i in range(self.y.shape[1]):
                 out[i] = max(out[i], fabs(self.y[k, i]))
-        return np.asarray(out)
+        return greatest
 
     def scale(
         self,
         per_unit: cython.double[::1],
-        mu: cython.double[::1],
-        preload: cython.double[::1],
-        k_u: cython.double[::1],
-        omega: cython.double,
+        flows: Pool,
     ) -> FloatArray:
         """The size of the displacements, velocities and friction forces: (2 modes + contacts,).
 
         A mode's is the greatest displacement by the one that its shape gives, a contact's the greatest of its
         force and of the smaller of its limit and of the force of that displacement.
         """
-        m: cython.Py_ssize_t = per_unit.shape[0]
-        c: cython.Py_ssize_t = mu.shape[0]
+        m: cython.Py_ssize_t = flows.modes
+        c: cython.Py_ssize_t = flows.contacts
+        omega: cython.double = flows.omega
         y: cython.double[::1] = self.largest()
-        out: cython.double[::1] = np.empty(2 * m + c)
+        whole = np.empty(2 * m + c)
+        out: cython.double[::1] = whole
         length: cython.double = TINY
         limit: cython.double
         i: cython.Py_ssize_t
@@ -65,9 +70,13 @@ class Segments:
             out[i] = length / per_unit[i]
             out[m + i] = out[i] * omega
         for i in range(c):
-            limit = mu[i] * (fabs(preload[i]) + y[2 * m + c + i])
-            out[2 * m + i] = max(max(y[2 * m + i], min(limit, k_u[i] * length)), TINY)
-        return np.asarray(out)
+            limit = flows.mu[i] * (fabs(flows.n_0[i]) + y[2 * m + c + i])
+            out[2 * m + i] = max(max(y[2 * m + i], min(limit, flows.k_u[i] * length)), TINY)
+        return whole
+
+    def held(self, j: int) -> float:
+        """A lower bound of the exits of contact j over all segments."""
+        return float(np.asarray(self.slack)[: self.count, j].min())
 
     def seen(self) -> list[int]:
         """For each contact the sum of 2**code of the states that it has been in."""

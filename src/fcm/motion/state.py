@@ -9,8 +9,8 @@ import numpy as np
 from fcm.harmonic.rest import RestError, rest_of
 from fcm.motion.combination import Codes
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
-from fcm.motion.system import System, has_friction
+from fcm.motion.march import March
+from fcm.motion.system import System
 from fcm.scene.model import FloatArray, Scene
 
 
@@ -68,35 +68,24 @@ class State:
 
 def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
     """The state vector of a state, and a combination of contact states for the march to begin with."""
-    y = np.zeros(system.size)
+    x = np.zeros(system.unknowns)
     try:
-        y[system.q], y[system.p], y[system.f] = state.q, state.velocity, state.friction
+        x[system.q], x[system.p], x[system.f] = state.q, state.velocity, state.friction
     except ValueError:
         raise SimulationError(
             f"a state of this scene has {system.modes} modes and {len(system.contacts)} contacts"
         ) from None
-    set_angle(y, state.angle)
-    if not np.isfinite(y).all():
+    march = entered(system, x, state.angle)
+    return np.array(march.y)[0], np.array(march.states)[0]
+
+
+def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
+    """The march, to go on from x = (q, q', f) at an angle of the forces."""
+    if not (np.isfinite(x).all() and np.isfinite(angle)):
         raise SimulationError("the state to start from has numbers that are not finite")
-    y[system.n] = system.stiffness * (system.normal @ y[system.q])
-    states = np.array([_initial(system, y, j) for j in range(len(system.contacts))], dtype=np.int8)
-    return y, states
-
-
-def _initial(system: System, y: FloatArray, j: int) -> int:
-    """The state of a contact, by its load and its friction force, which is brought into its limits."""
-    contact, load, force = system.contacts[j], system.preload[j] + y[system.n.start + j], system.f.start + j
-    if load < 0.0 or (load == 0.0 and contact.k_v == 0.0):
-        y[force] = 0.0
-        return OPEN
-    if not has_friction(contact):
-        y[force] = 0.0
-        return STICK
-    limit = contact.mu * load
-    if abs(y[force]) <= limit:
-        return STICK
-    y[force] = np.copysign(limit, y[force])
-    return POSITIVE if y[force] > 0.0 else NEGATIVE
+    march = system.march()
+    march.enters(x, np.sin(angle), np.cos(angle))
+    return march
 
 
 def leave(system: System, y: FloatArray, angle: float) -> State:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from copy import copy
+from math import isfinite
 from typing import Protocol
 
 import numpy as np
@@ -60,7 +60,8 @@ class System:
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
-        other = copy(self)
+        other = System.__new__(System)
+        other.__dict__.update(self.__dict__)
         other.omega = _checked(omega)
         return other
 
@@ -128,7 +129,7 @@ class System:
 
 
 def _checked(omega: float) -> float:
-    if not (np.isfinite(omega) and omega > 0.0):
+    if not (isfinite(omega) and omega > 0.0):
         raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
     return float(omega)
 

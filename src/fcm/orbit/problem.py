@@ -148,7 +148,9 @@ def _label(shot: Shot) -> float:
 
     A transition that passes the start is a corner of the friction force there, though of nothing else.
     """
-    lasts = np.diff(np.asarray(shot.segments.start), append=shot.duration)
+    start = np.asarray(shot.segments.start)
+    lasts = np.empty_like(start)
+    lasts[:-1], lasts[-1] = start[1:] - start[:-1], shot.duration - start[-1]
     states = np.asarray(shot.segments.states)[lasts > INSTANT * shot.duration]
     limited = bytes(choice.contact for choice in shot.chosen if choice.limited)
     return float(crc32(states.tobytes() + limited))

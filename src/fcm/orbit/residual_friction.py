@@ -64,12 +64,15 @@ def always_stuck(system: System, segments: Segments) -> list[int]:
 
 def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choice]:
     """The choices for all contacts that stick all through the segments; wanted are their w, (contact,)."""
+    stuck = always_stuck(system, segments)
+    if not stuck:
+        return []
     y = np.asarray(segments.y)[0]
-    gaps = {j: _gap(system, y, j, float(wanted[j])) for j in always_stuck(system, segments)}
-    away = [j for j, gap in gaps.items() if gap != 0.0]
-    room = rooms(system, segments, away) if away else {}
+    gaps = {j: _gap(system, y, j, float(wanted[j])) for j in stuck}
+    far = [j for j, gap in gaps.items() if gap and abs(gap) > segments.held(j) - _margin(system, y, j)]
+    room = rooms(system, segments, far) if far else {}
     return [
-        _choice(system, segments, j, gap, *room[j]) if gap else Choice(j, 0.0, _row(system, j), 0.0, False)
+        _choice(system, segments, j, gap, *room[j]) if j in room else Choice(j, gap, _row(system, j), 0.0, False)
         for j, gap in gaps.items()
     ]
 

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from fcm.motion.cycle import Cycle
 from fcm.motion.measure import Extremes, displaced
-from fcm.motion.run import march
-from fcm.motion.state import State, entry
+from fcm.motion.run import march_from
+from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import period_derivative
-from fcm.orbit.residual_friction import choices, overshoots, resting
+from fcm.orbit.residual_friction import Choice, choices, overshoots, resting
 from fcm.scene.model import FloatArray, Scene
 
 
@@ -33,29 +33,34 @@ class Shot:
     def __init__(
         self, system: System, x: FloatArray, resting: FloatArray | None = None, periods: int = 1
     ) -> None:
-        m, u = system.modes, system.unknowns
         self.system, self.x, self.resting, self.periods = system, x, resting, periods
-        self.state = State(x[:m], x[m : 2 * m], x[2 * m :])
-        y, states = entry(system, self.state)
-        self.segments, end, _ = march(system, y, states, self.duration)
-        self.gap = end[:u] - x
-        self.chosen = [] if resting is None else choices(system, self.segments, resting)
-        for choice in self.chosen:
-            self.gap[2 * m + choice.contact] = choice.gap
-        for contact, missing in () if resting is None else overshoots(system, self.segments):
-            self.gap[2 * m + contact] -= missing
-        self.scale = self.segments.scale(system.per_unit, system.mu, system.preload, system.k_u, system.omega)
+        self.duration = periods * system.period  # [s]
+        self.segments, end = march_from(system, x, self.duration)
+        self.gap, self.chosen = end[: system.unknowns] - x, list[Choice]()
+        if resting is not None:
+            self._choose(resting)
+        self.scale = self.segments.scale(system.per_unit, system.tuned())
         self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
+
+    def _choose(self, resting: FloatArray) -> None:
+        """Let the gap of the contacts that always stick be that of their slip motions."""
+        first = self.system.f.start
+        self.chosen = choices(self.system, self.segments, resting)
+        for choice in self.chosen:
+            self.gap[first + choice.contact] = choice.gap
+        for contact, missing in overshoots(self.system, self.segments):
+            self.gap[first + contact] -= missing
+
+    @property
+    def state(self) -> State:
+        """The state at its start."""
+        system = self.system
+        return State(self.x[system.q], self.x[system.p], self.x[system.f])
 
     @property
     def cycle(self) -> Cycle:
         """The motion over the periods."""
         return Cycle(self.system, 0.0, self.duration, 0.0, self.segments)
-
-    @property
-    def duration(self) -> float:
-        """Of the periods [s]."""
-        return self.periods * self.system.period
 
     @cached_property
     def sequence(self) -> bytes:
