@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import BLOCK, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, STICK
+from fcm.motion.pool import BLOCK, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, SMALL, STICK
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ class Flow(NamedTuple):
     owner: list[int]  # (exit,) the contact that it belongs to
     goal: list[int]  # (exit,) the state to which it leads
     powers: FloatArray  # (POWERS, linear, linear)
+    terms: FloatArray  # (ORDER + 1, linear, linear) Taylor coefficients over a step, none of a large system
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
@@ -53,7 +54,7 @@ def made(system: System, states: Codes) -> Flow:
     for _ in range(BLOCK):
         table.append(powers[0] @ table[-1])
     return Flow(
-        states.copy(), step, rows, owner, goal, np.array(powers),
+        states.copy(), step, rows, owner, goal, np.array(powers), _terms(change),
         np.stack(leading, axis=2).reshape(rows.shape[1], -1),
         np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
         np.hstack(table),
@@ -113,6 +114,17 @@ def _exponential(a: FloatArray) -> FloatArray:
         for i in (3, 2, 1, 0):
             total += powers[i] / factorial(first + i)
     return total
+
+
+def _terms(a: FloatArray) -> FloatArray:
+    """a**j / j! for j = 0 ... ORDER."""
+    n = a.shape[0]
+    if n > SMALL:
+        return np.empty((0, n, n))
+    terms = [np.eye(n)]
+    for j in range(1, ORDER + 1):
+        terms.append(terms[-1] @ a / j)
+    return np.array(terms)
 
 
 def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:

@@ -53,6 +53,7 @@ class Derivative:
         self.rate = np.zeros(flows.size)
         self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._rates, self._room = np.zeros((2, flows.size)), np.zeros((self.unknowns, flows.linear))
+        self._matrix = np.zeros((flows.linear, flows.linear))
 
     def begins(self, segments: Segments) -> None:
         """Put the derivative at the start of the segments."""
@@ -157,20 +158,12 @@ class Derivative:
         """By 2**j steps."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
-        k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         sine: cython.double = self.columns[u + 1, n]
         cosine: cython.double = self.columns[u + 1, n + 1]
         h: cython.double = self.flows.step[slot] * (1 << j)
         self.flows.reach(slot, j)
-        if n < DENSE:
-            for k in range(u):
-                self.flows.advance(slot, j, self.columns, k)
-        else:
-            with cython.gil:
-                columns = np.asarray(self.columns)[:u, :n]
-                np.matmul(columns, np.asarray(self.flows.power)[slot, j], out=np.asarray(self._room))
-                columns[:] = self._room
+        self._times(self.flows.power[slot, j])
         self.flows.advance(slot, j, self.columns, u)
         self.flows.advance(slot, j, self.columns, u + 1)
         for i in range(n):
@@ -182,6 +175,57 @@ class Derivative:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
+    def _times(self, matrix: cython.double[:, ::1]) -> cython.void:
+        """Multiply the derivatives by the start by the matrix of a flow."""
+        n: cython.Py_ssize_t = self.flows.linear
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        x: cython.double
+        if n >= DENSE:
+            with cython.gil:
+                columns = np.asarray(self.columns)[: self.unknowns, :n]
+                np.matmul(columns, matrix, out=np.asarray(self._room))
+                columns[:] = self._room
+            return
+        for k in range(self.unknowns):
+            for i in range(n):
+                self._room[0, i] = 0.0
+            for p in range(n):
+                x = self.columns[k, p]
+                if x != 0.0:
+                    for i in range(n):
+                        self._room[0, i] += matrix[p, i] * x
+            for i in range(n):
+                self.columns[k, i] = self._room[0, i]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
+        """The same by a part x of a step: by its matrix, or, of a large system, column by column."""
+        n: cython.Py_ssize_t = self.flows.linear
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        size: cython.double
+        if self.flows.terms.shape[1] == 0:
+            self.flows.part(slot, x, self.columns, 0, self.unknowns)
+            return
+        size = x
+        for p in range(n):
+            for i in range(n):
+                self._matrix[p, i] = self.flows.terms[slot, 0, p, i]
+        for j in range(1, orders + 1):
+            for p in range(n):
+                for i in range(n):
+                    self._matrix[p, i] += size * self.flows.terms[slot, j, p, i]
+            size *= x
+        self._times(self._matrix)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
     def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
         """By a part x < 1 of a step."""
         u: cython.Py_ssize_t = self.unknowns
@@ -189,7 +233,7 @@ class Derivative:
         h: cython.double = x * self.flows.step[slot]
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
-        self.flows.part(slot, x, self.columns, 0, u)
+        self._fraction(slot, x, orders)
         for i in range(self.flows.size):
             self._grades[0, i], self._terms[0, i] = self.columns[u, i], self.columns[u + 1, i]
         self.flows.extend(slot, self._terms, orders, h, self._terms, False)

@@ -11,7 +11,7 @@ from typing import Any
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import fabs, isfinite
 
 from fcm.scene.model import FloatArray
 
@@ -53,16 +53,21 @@ class March:
         np.asarray(self.y)[0], np.asarray(self.states)[0] = y, states
         self.lasts(duration, limit)
 
-    def enters(self, x: cython.double[::1], sine: cython.double, cosine: cython.double) -> None:
-        """Set y and states from x = (q, q', f) and the phase of the forces; f is brought into its limits."""
+    def enters(self, x: cython.double[::1], sine: cython.double, cosine: cython.double) -> bool:
+        """Set y and states from x = (q, q', f) and the phase of the forces; f is brought into its limits.
+
+        Whether all of these numbers are finite.
+        """
         m: cython.Py_ssize_t = self.flows.modes
         c: cython.Py_ssize_t = self.flows.contacts
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         change: cython.double
+        finite: cython.bint = isfinite(sine) and isfinite(cosine)
         for i in range(2 * m + c):
             self.y[0, i] = x[i]
+            finite = finite and isfinite(x[i])
         for j in range(c):
             change = 0.0
             for i in range(m):
@@ -71,6 +76,7 @@ class March:
         self.y[0, n - 1], self.y[0, n], self.y[0, n + 1] = 1.0, sine, cosine
         for j in range(c):
             self._enter(j)
+        return bool(finite)
 
     @cython.cfunc
     def _enter(self, j: cython.Py_ssize_t) -> cython.void:

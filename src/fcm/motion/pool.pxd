@@ -11,7 +11,7 @@ cdef class Pool:
     cdef readonly Py_ssize_t[:, ::1] owner
     cdef readonly signed char[:, ::1] goal
     cdef readonly double[:, :, ::1] row, table, table_forced, series, series_forced, sizes, sizes_forced
-    cdef readonly double[:, :, :, ::1] power, forced
+    cdef readonly double[:, :, :, ::1] power, forced, terms
     cdef readonly double[:, :, ::1] turn
     cdef readonly double[::1] made_for
     cdef dict _pool

@@ -15,6 +15,7 @@ BLOCK = 16  # steps that are looked at together: a power of two
 LEADING = 8  # derivatives of an exit that may tell which combination follows
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
+SMALL = 64  # components up to which the Taylor coefficients of exp(A h x) are kept
 FEWEST, MOST_BYTES = 8, 2**29  # flows that are kept at least, and the memory that they otherwise have
 
 
@@ -75,6 +76,7 @@ class Pool:
         owner: list[int],
         goal: list[int],
         powers: FloatArray,
+        terms: FloatArray,
         series: FloatArray,
         sizes: FloatArray,
         table: FloatArray,
@@ -84,6 +86,7 @@ class Pool:
         made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
         made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
+        made["terms"][k] = terms
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
         return k
 
@@ -104,6 +107,7 @@ class Pool:
         shapes = {
             "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (), "reached": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
+            "terms": (ORDER + 1 if n <= SMALL else 0, n, n),
             "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
@@ -116,6 +120,7 @@ class Pool:
         self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
         self.owner, self.goal, self.row = made["owner"], made["goal"], made["row"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
+        self.terms = made["terms"]
         self.turn, self.reached, self.table, self.table_forced = made["turn"], made["reached"], made["table"], made["table_forced"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import cos, isfinite, sin
 
 import numpy as np
 
@@ -81,10 +82,9 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
 
 def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
     """The march, to go on from x = (q, q', f) at an angle of the forces."""
-    if not (np.isfinite(x).all() and np.isfinite(angle)):
-        raise SimulationError("the state to start from has numbers that are not finite")
     march = system.march()
-    march.enters(x, np.sin(angle), np.cos(angle))
+    if not (isfinite(angle) and march.enters(x, sin(angle), cos(angle))):
+        raise SimulationError("the state to start from has numbers that are not finite")
     return march
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fcm.motion.derivative import Derivative
 from fcm.motion.measure import Extreme
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
@@ -22,11 +23,16 @@ class Along(NamedTuple):
 
 def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
     """At a position (in steps) in a segment."""
+    kernel = _at(system, segments, last, position)
+    return Along(np.array(kernel.columns), np.array(kernel.rate))
+
+
+def _at(system: System, segments: Segments, last: int, position: float) -> Derivative:
     kernel = system.derivative()
     kernel.begins(segments)
     while (missing := kernel.go(segments, last, position)) >= 0:
         system.make(np.asarray(segments.states)[missing])
-    return Along(np.array(kernel.columns), np.array(kernel.rate))
+    return kernel
 
 
 def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
@@ -35,9 +41,10 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
     The periods shorten as the frequency grows: dT / d omega = -T / omega.
     """
     last, u = len(segments) - 1, system.unknowns
-    there = derivative_at(system, segments, last, segments.length[last])
-    by_frequency = there.columns[u, :u] - duration / system.omega * there.rate[:u]
-    return there.columns[:u, :u].T, by_frequency
+    kernel = _at(system, segments, last, segments.length[last])
+    columns = np.asarray(kernel.columns)
+    by_frequency = columns[u, :u] - duration / system.omega * np.asarray(kernel.rate)[:u]
+    return columns[:u, :u].T.copy(), by_frequency
 
 
 def along(

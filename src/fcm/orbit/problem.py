@@ -74,8 +74,6 @@ class OrbitProblem(Problem):
         return self._shots[key]
 
     def _made(self, z: FloatArray) -> Shot | None:
-        if not (np.isfinite(z).all() and z[-1] > 0.0):
-            return None
         self.periods += 1
         try:
             return self.shooting.residual(z[:-1], float(z[-1]))

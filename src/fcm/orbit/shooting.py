@@ -39,8 +39,6 @@ class Shot:
         self.gap, self.chosen = end[: system.unknowns] - x, list[Choice]()
         if resting is not None:
             self._choose(resting)
-        self.scale = self.segments.scale(system.per_unit, system.tuned())
-        self.residual = float(np.abs(self.gap / self.scale).max(initial=0.0))
 
     def _choose(self, resting: FloatArray) -> None:
         """Let the gap of the contacts that always stick be that of their slip motions."""
@@ -50,6 +48,17 @@ class Shot:
             self.gap[first + choice.contact] = choice.gap
         for contact, missing in overshoots(self.system, self.segments):
             self.gap[first + contact] -= missing
+
+    @cached_property
+    def scale(self) -> FloatArray:
+        """The size of x: (unknown,)."""
+        scale: FloatArray = self.segments.scale(self.system.per_unit, self.system.tuned())
+        return scale
+
+    @cached_property
+    def residual(self) -> float:
+        """By how much it fails to close, relative to its size."""
+        return float(np.abs(self.gap / self.scale).max(initial=0.0))
 
     @property
     def state(self) -> State:
