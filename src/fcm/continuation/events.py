@@ -21,6 +21,7 @@ else:
 LOOKS = 40  # places looked at to find a root
 FINE = 1e-11  # of a step: a root is known to this
 HIGH = 1e-11  # of an output, to which a peak is known where looking is dear
+TURNED = 1e-15  # of the parameter, to which a fold is known there
 RISE = cython.declare(
     cython.double, 1e-7
 )  # growth of an output over its size, along a unit of arc, that is not rounding
@@ -161,6 +162,7 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     now: cython.double
     bend: cython.double
     last: cython.int = 0
+    n: cython.Py_ssize_t = front.problem.unknowns
     count: cython.int
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
@@ -174,6 +176,10 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
         if kind == PEAK and front.problem.soft:
             bend = abs(after - before) / (high - low)
             if now * now < 2.0 * HIGH * bend * front.between.output[k]:
+                return at
+        if kind == FOLD and front.problem.soft:
+            bend = abs(after - before) / (high - low)
+            if now * now * front.newton.scale[n] < 2.0 * TURNED * bend * front.between.z[n]:
                 return at
         if now * before > 0.0:
             after = 0.5 * after if last == 1 else after

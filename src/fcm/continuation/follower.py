@@ -231,7 +231,7 @@ class Follower:
 
     def aim(self, step: float, longer: bool) -> None:
         """Choose the next step; whether it may be longer than it was to be."""
-        self.step = step if longer else min(self.step, step)
+        self.step = min(step, self.max_step) if longer else min(self.step, step)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -14,7 +14,8 @@ cdef class Newton:
     cdef double[::1] guess
     cdef double[::1] delta
     cdef double[::1] closing
-    cpdef bint correct(self, double reach) except -1
+    cpdef bint correct(self, double reach, double most=*) except -1
+    cdef bint chords(self, double before) except -1
     cpdef bint look(self) except -1
     cdef bint settled(self, double step, double ratio, int count) except -1
     cdef bint factor(self) except -1

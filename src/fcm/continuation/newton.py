@@ -21,6 +21,8 @@ EXACT = cython.declare(cython.double, 1e-11)  # a step that is not worth another
 ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, though the way was long
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
+CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian from before it will do
+CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
 ROUNDINGS = cython.declare(
     cython.double, 8.0
 )  # a step that does not shrink and is no longer than these is one
@@ -47,10 +49,11 @@ class Newton:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def correct(self, reach: cython.double) -> cython.bint:
+    def correct(self, reach: cython.double, most: cython.double = FAR) -> cython.bint:
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
-        reach is the length, in scaled coordinates, that stands before the first step. Converged is what has
+        reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
+        than the most, or the second not half as long, it is given up; moved is then the first. Converged is what has
         an error below CLOSE, for convergence of the order 1.5, that of a force whose slope changes as a root.
         """
         i: cython.Py_ssize_t
@@ -64,6 +67,11 @@ class Newton:
             if not self.factor():
                 return False
             step = self.step()
+            if most < FAR:
+                if count == 0:
+                    self.moved = step
+                if not step < (most if count == 0 else 0.5 * before if count == 1 else FAR):
+                    return False
             if self.problem.soft and step < before and self.settled(step, step / before, count):
                 return self.direct()
             if not step < FAR or (count > 2 and step > 2.0 * before):
@@ -73,6 +81,8 @@ class Newton:
             ratio = step / before
             # the first step says nothing of the convergence yet; that to a corner that is not seen never
             if self.problem.soft:
+                if count > 0 and step * ratio < CHORD and self.chords(step):
+                    return self.direct()
                 before = step
                 continue
             if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
@@ -89,6 +99,25 @@ class Newton:
         if step < EXACT:
             return True
         return count > 0 and ratio > 0.25 and step < ROUGH
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def chords(self, before: cython.double) -> cython.bint:
+        """Whether z, to which a step has led, is on the curve; else it is moved on with the same Jacobian."""
+        i: cython.Py_ssize_t
+        count: cython.int
+        step: cython.double
+        for count in range(CHORDS):  # noqa: B007
+            self.problem.probe(self.z)
+            step = self.step()
+            if step < EXACT:
+                return True
+            if not step < 0.1 * before:
+                return False
+            for i in range(self.problem.unknowns + 1):
+                self.z[i] += self.scale[i] * self.delta[i]
+            before = step
+        return False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

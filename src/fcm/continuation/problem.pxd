@@ -17,6 +17,7 @@ cdef class Problem:
     cdef public double[::1] output
     cdef public double[::1] growth
     cpdef int evaluate(self, double[::1] z) except -1
+    cpdef int probe(self, double[::1] z) except -1
     cpdef int measure(self, double[::1] z) except -1
     cpdef int bound(self, double[::1] z) except -1
     cpdef int refine(self, bint exact) except -1

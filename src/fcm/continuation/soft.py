@@ -1,7 +1,9 @@
 """Steps along a curve whose problem is soft: margins are labels, which tell no distance to their change.
 
-A step that is good has no corner in it, whatever its labels are. Else the change of label is approached until
-it is met, and the curve is left in the direction that the equations have beyond it.
+The length of a step is chosen by how far from its prediction the curve is, in the curve's own size: what is
+smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is short
+and still not good has: the change of label is approached until it is met, and the curve is left in the direction
+that the equations have beyond it.
 """
 
 from __future__ import annotations
@@ -17,7 +19,14 @@ from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.trail import Trail
 
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
-SHARP = 1e-4  # a step this short may turn by any angle below a right angle
+SHARP = (
+    1e-4  # a step this short may turn by any angle below a right angle; only shorter ones look for corners
+)
+ERROR = 5e-4  # distance of the curve from where it is predicted, in its own size, that a step aims at
+MOST = 4.0  # of that, with which a step is good
+GENTLY = 0.5  # cosine of the turn of a step
+ASTRAY = 0.5  # of its length, by which a step may miss the curve
+SHORTER, REFUSED, LONGER = 0.3, (0.1, 0.5), 3.0  # of a step to the next, to the one in its place: limits
 STRAIGHT = 0.999  # cosine beyond which a change of orientation is a branch point and not a way back
 SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends before it
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
@@ -46,6 +55,19 @@ class Follower(Protocol):
         """Choose the next step; whether it may be longer than it was to be."""
 
 
+def growth(error: float) -> float:
+    """Of a step that has missed the curve by so much, to one that misses it by what is aimed at.
+
+    The prediction is a parabola, and what it misses grows as the third power.
+    """
+    return float(0.9 * (ERROR / max(error, 1e-12)) ** (1.0 / 3.0))
+
+
+def within(value: float, low: float, high: float) -> float:
+    """The value, or the limit that is nearest to it."""
+    return min(max(value, low), high)
+
+
 class Soft:
     """The steps, and how often a corner has been tried that is not left yet."""
 
@@ -61,6 +83,9 @@ class Soft:
         while step > SHORTEST:
             if front.go(step) and self.good(follower):
                 return self.smooth(follower)
+            if step > SHARP:
+                step = max(SHARP, step * within(growth(front.newton.moved), *REFUSED))
+                continue
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
                 return self.turn(follower, reach)
@@ -76,13 +101,18 @@ class Soft:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
         front = self.front
         same = front.there.orientation == front.here.orientation
-        return follower.good() and (front.step > SHARP or same or front.turn > STRAIGHT)
+        if front.step <= SHARP:
+            return follower.good() and (same or front.turn > STRAIGHT)
+        near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
+        return same and near and front.turn > GENTLY
 
     def smooth(self, follower: Follower) -> object:
         """Go on to the place there."""
         count = self.trail.count
+        step, error = self.front.step, self.front.missed * self.front.step
         status = follower.smooth()
         if self.trail.count > count:
+            follower.aim(step * within(growth(error), SHORTER, LONGER), True)
             self.repeated = 0
         return status
 

@@ -92,6 +92,12 @@ class OrbitProblem(Problem):
         jacobian[:, -1] = shot.by_frequency[self.free]
         return 0
 
+    def probe(self, z: FloatArray) -> int:
+        """See `Problem`."""
+        shot = self.shot(z)
+        np.asarray(self.residual)[:] = np.nan if shot is None else shot.gap[self.free]
+        return 0
+
     def measure(self, z: FloatArray) -> int:
         """The size of the motion; velocities are displacements times the modes' own frequencies.
 

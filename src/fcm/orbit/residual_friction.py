@@ -21,6 +21,7 @@ from fcm.orbit.derivative import derivative_at
 from fcm.scene.model import Contact, FloatArray, Scene
 
 MARGIN = 1e-9  # distance from the slip limit, relative to the forces
+ROUNDING = 1e-3  # of that: a contact this near to what is wanted has it, whatever its limits
 
 
 class Choice(NamedTuple):
@@ -69,12 +70,18 @@ def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choi
         return []
     y = np.asarray(segments.y)[0]
     gaps = {j: _gap(system, y, j, float(wanted[j])) for j in stuck}
-    far = [j for j, gap in gaps.items() if gap and abs(gap) > segments.held(j) - _margin(system, y, j)]
+    far = [j for j, gap in gaps.items() if abs(gap) > _known_room(system, segments, y, j)]
     room = rooms(system, segments, far) if far else {}
     return [
         _choice(system, segments, j, gap, *room[j]) if j in room else Choice(j, gap, _row(system, j), 0.0, False)
         for j, gap in gaps.items()
     ]
+
+
+def _known_room(system: System, segments: Segments, y: FloatArray, j: int) -> float:
+    """Gaps up to this need no search: within a bound of the limits, or of no size."""
+    margin = _margin(system, y, j)
+    return max(ROUNDING * margin, segments.held(j) - margin)
 
 
 def _row(system: System, j: int) -> FloatArray:

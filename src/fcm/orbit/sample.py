@@ -12,12 +12,13 @@ from fcm.continuation import Between, Mark, Path
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
 from fcm.motion.state import State
-from fcm.orbit.periodic import within_unit_circle
+from fcm.orbit.periodic import STABLE, within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.steady import Steady
 from fcm.scene.model import FloatArray
 
-CROSSINGS = 40  # halvings of a step to where stability changes
+CROSSINGS = 40  # places looked at to find where stability changes
+NARROW = 1e-10  # part of a step to which that is known
 
 
 @dataclass(frozen=True)
@@ -82,20 +83,33 @@ def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample])
     for k, point in enumerate(points[1:]):
         before = points[k]
         if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
-            crossing = _crossing(problem, path, k, before.stable)
+            crossing = _crossing(problem, path, k, before, point)
             out += [] if crossing is None else [crossing]
         out.append(point)
     return out
 
 
-def _crossing(problem: OrbitProblem, path: Path, first: int, stable: bool) -> Sample | None:
-    """The last place of the stable side between two points; None if the curve is not found."""
+def _crossing(problem: OrbitProblem, path: Path, first: int, before: Sample, after: Sample) -> Sample | None:
+    """The last place of the stable side between two points; None if the curve is not found.
+
+    By secants, every third place in the middle: the greatest multiplier may have a corner.
+    """
     between, low, high, found = Between(problem, path, first), 0.0, 1.0, None
-    for _ in range(CROSSINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high or not between.put(middle):
+    falls, rises = _excess(before), _excess(after)
+    for count in range(CROSSINGS):
+        part = 0.5 if count % 3 == 2 else min(max(falls / (falls - rises), 0.01), 0.99)
+        middle = low + part * (high - low)
+        if high - low < NARROW or not between.put(middle):
             break
         here = sampled(problem, between.z, between.direction, int(Mark.CROSSING))
         found = here if here.stable else found
-        low, high = (middle, high) if here.stable == stable else (low, middle)
+        if here.stable == before.stable:
+            low, falls = middle, _excess(here)
+        else:
+            high, rises = middle, _excess(here)
     return found
+
+
+def _excess(point: Sample) -> float:
+    """By how much the greatest multiplier is beyond where stability ends, on a logarithmic scale."""
+    return float(np.log(max(abs(point.multipliers[0]), 1e-300))) - np.log1p(STABLE)
