@@ -102,6 +102,8 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
         assert alone.peaks[dof][0] == pytest.approx(amplitude, rel=1e-8)
         assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
     assert [jump.sweep for jump in alone.jumps()] == [jump.sweep for jump in whole.jumps()]
+    for one, other in zip(alone.jumps(), whole.jumps(), strict=True):
+        assert one.after == pytest.approx(other.after, rel=1e-7)  # not only to the distance of its points
     for jump in alone.jumps():
         beyond = jump.frequency * (1.0 + 1e-4 * (1.0 if jump.sweep == "up" else -1.0))
         last = simulate(yang(n_0), beyond, 300).measures(last=1)[0]

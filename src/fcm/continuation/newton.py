@@ -53,8 +53,9 @@ class Newton:
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
-        than the most, or the second not half as long, it is given up; moved is then the first. Converged is what has
-        an error below CLOSE, for convergence of the order 1.5, that of a force whose slope changes as a root.
+        than the most, or the second not half as long, it is given up; moved is then the first. Converged is
+        what has an error below CLOSE, for convergence of the order 1.5, that of a force whose slope changes
+        as a root.
         """
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.problem.unknowns + 1

@@ -18,7 +18,8 @@ NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 class Problem:
     """Equations of a curve; see the methods for what each array holds.
 
-    residual (n,), jacobian (n, n + 1): by `evaluate` (`probe`: the residual alone), the derivative by the parameter in the last column.
+    residual (n,), jacobian (n, n + 1): by `evaluate`, the derivative by the parameter in the last column; by
+    `probe` the residual alone.
     scale (n + 1,): by `measure`. margin, kind, angle (margins,): by `bound`. output, growth (outputs,): by
     `report`.
     rank: 0; or the size of a smaller system to which that of Newton's method is condensed. Then jacobian is

@@ -1,9 +1,9 @@
 """Steps along a curve whose problem is soft: margins are labels, which tell no distance to their change.
 
 The length of a step is chosen by how far from its prediction the curve is, in the curve's own size: what is
-smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is short
-and still not good has: the change of label is approached until it is met, and the curve is left in the direction
-that the equations have beyond it.
+smaller than that is passed. A step that is good has no corner in it, whatever its labels are. One that is
+short and still not good has: the change of label is approached until it is met, and the curve is left in the
+direction that the equations have beyond it.
 """
 
 from __future__ import annotations
@@ -19,9 +19,7 @@ from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.trail import Trail
 
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
-SHARP = (
-    1e-4  # a step this short may turn by any angle below a right angle; only shorter ones look for corners
-)
+SHARP = 1e-4  # a step this short may turn by any angle below a right angle, and looks for corners
 ERROR = 5e-4  # distance of the curve from where it is predicted, in its own size, that a step aims at
 MOST = 4.0  # of that, with which a step is good
 GENTLY = 0.5  # cosine of the turn of a step

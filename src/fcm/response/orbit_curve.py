@@ -13,6 +13,7 @@ from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
 from fcm.motion.system import has_friction
 from fcm.orbit.family import family
+from fcm.orbit.landing import with_landings
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.response.groups import lost_curve
@@ -27,8 +28,7 @@ LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest i
 def traced_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
     """The points of paths, with a point of NaN between one and the next; complete without a reason."""
     points, folds = list[Sample | None](), list[float]()
-    for path in paths:
-        found = samples(problem, path)
+    for found in with_landings(problem, [samples(problem, path) for path in paths]):
         folds += [point.frequency for point in found if point.mark & Mark.FOLD]
         points += [None, *found] if points else found
     curve = replace(_curve(problem.scene, points, reason, everywhere=False), folds=folds)
