@@ -32,6 +32,9 @@ SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve clo
 MARGIN, FOLD, PEAK = range(3)  # the functions along a step
 
 
+Look = tuple[float, FloatArray]  # a length along the step, and the growths of the outputs there
+
+
 class Found(NamedTuple):
     """A point of the curve within a step."""
 
@@ -118,6 +121,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     here: Place = front.here
     there: Place = front.there
     events = []
+    looks: list[Look] | None = [] if front.problem.soft else None  # which are dear there
     for value in values:
         if (value - here.z[n]) * (value - there.z[n]) < 0.0 and front.land(value):
             events.append(found(front, front.length(front.between), Mark.STATION, front.between))
@@ -125,13 +129,15 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
         events += located(front, FOLD, 0, limit, Mark.FOLD)
     for k in range(front.problem.outputs):
         if turns(here, there, k, most[k]):
-            events += located(front, PEAK, k, limit, Mark.PEAK)
+            events += located(front, PEAK, k, limit, Mark.PEAK, looks)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 
 
-def located(front: Front, kind: int, k: int, limit: float, mark: int) -> list[Found]:
+def located(
+    front: Front, kind: int, k: int, limit: float, mark: int, looks: list[Look] | None = None
+) -> list[Found]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
-    at = root(front, kind, k, front.step)
+    at = root(front, kind, k, front.step, looks)
     return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
 
 
@@ -147,12 +153,18 @@ def value(front: Front, place: Place, kind: cython.int, k: cython.Py_ssize_t) ->
 
 
 @cython.cfunc
-def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.double) -> cython.double:
+def root(
+    front: Front,
+    kind: cython.int,
+    k: cython.Py_ssize_t,
+    step: cython.double,
+    looks: list[Look] | None = None,
+) -> cython.double:
     """Length at which a function changes sign between here and there.
 
     By the secant through the last two values of opposite sign, one of them halved when it does not move
     (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
-    root.
+    root. The looks for peaks of other outputs are where it begins, and those for this one are added.
     """
     low: cython.double = 0.0
     high: cython.double = step
@@ -164,6 +176,16 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
     last: cython.int = 0
     n: cython.Py_ssize_t = front.problem.unknowns
     count: cython.int
+    for at, growths in looks or ():
+        if low < at < high and growths[k] * before > 0.0:
+            low, before = at, growths[k]
+        elif low < at < high:
+            high, after = at, growths[k]
+    bend = 2.0 * HIGH * abs(after - before) / (high - low) * front.here.output[k]
+    if looks and after * after < bend:
+        return high
+    if looks and before * before < bend:
+        return low
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high or not front.put(at, kind == MARGIN, False):
@@ -171,6 +193,8 @@ def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.doub
         if kind != MARGIN and not front.sharpen(False, kind == PEAK):
             return high
         now = value(front, front.between, kind, k)
+        if looks is not None:
+            looks.append((at, np.array(front.between.growth)))
         if now == 0.0:
             return at
         if kind == PEAK and front.problem.soft:

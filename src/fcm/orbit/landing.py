@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from fcm.continuation import Mark
@@ -33,7 +35,7 @@ _ENDS = Mark.FOLD | Mark.CROSSING
 
 def _landed(problem: OrbitProblem, newton: Newton, points: list[Sample], ends: FloatArray) -> list[Sample]:
     out = points[:1]
-    for one, other in zip(points[:-1], points[1:], strict=True):
+    for one, other in pairwise(points):
         if one.stable and other.stable:
             low, high = sorted((one.frequency, other.frequency))
             inside = ends[(ends > low) & (ends < high)].tolist()
