@@ -38,6 +38,14 @@ def test_a_peak_where_the_range_ends_is_marked():
     assert text.splitlines()[-1] == "* at an end of the range: beyond it the curve may rise further"
 
 
+def test_where_the_error_of_a_balanced_peak_is_not_told_it_says_why():
+    one = curve({"u": 1.0}) | {"harmonics": [1, 2, 3]}
+    assert as_table({"curves": [one]}, "Hz").splitlines()[-1].startswith("- not told: with more harmonics")
+    one["peak"]["u"]["error"] = 0.01
+    assert "not told" not in as_table({"curves": [one]}, "Hz")
+    assert "not told" not in as_table({"curves": [curve({"u": 1.0})]}, "Hz")  # of the exact motion
+
+
 def test_a_jump_to_no_stable_part_is_explained():
     jump = {"sweep": "up", "frequency": 1.2, "before": {"u": 1.0}, "after": {"u": None}}
     text = as_table({"curves": [curve({"u": 1.0}, [jump])]}, "Hz")

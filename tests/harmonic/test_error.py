@@ -5,11 +5,12 @@ import pytest
 
 from fcm.continuation import Mark
 from fcm.harmonic.choice import estimated
+from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.error import errors_along
 from fcm.harmonic.system import System
 
 from .calibration import points
-from .truth import scene
+from .truth import Truth, exact, scene
 
 EXACT_FOLDS = {5: (1.239829, 1.193559)}  # of the exact motion: `trace_exact`, to 1e-6
 
@@ -83,3 +84,34 @@ def test_a_fold_at_a_corner_has_an_error_too():
     (errors,) = found.errors
     assert len(errors.fold) == 2
     assert (errors.fold < 1e-4).all()
+
+
+def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
+    """Its peak lies beside a fold: a Newton step at once leads elsewhere, one that comes gradually does not."""
+    system = System(scene("shroud", 10))
+    found, truth = estimated(system, 0.0), Truth(system)
+    path, amplitude = max(
+        (
+            (path, shown.amplitude)
+            for path, shown in zip(found.traced.branches.paths, found.shown, strict=True)
+        ),
+        key=lambda one: one[1].max(),
+    )
+    for d in (0, 2):
+        top = int(amplitude[:, d].argmax())
+        motion = exact(truth.many, truth.beside(path.z[top], path.direction[top]))
+        true = abs(motion[d] / amplitude[top, d] - 1.0)
+        assert true > 0.05
+        assert found.peak[d] == pytest.approx(true, rel=0.15)
+
+
+def test_a_peak_is_corrected_until_it_settles():
+    """What eight further harmonics leave of the error of a stiff contact, the next ones tell."""
+    system = System(scene("shroud", 100), (1,))
+    found, truth = estimated(system, 0.0), Truth(system)
+    (path,), (shown,) = found.traced.branches.paths, found.shown
+    top = int(shown.amplitude[:, 0].argmax())
+    settled = Corrector(system).settled(path.z[top], path.direction[top], shown.amplitude[top])
+    many = truth.amplitude(truth.beside(path.z[top], path.direction[top]))
+    change = np.abs(many - shown.amplitude[top])
+    assert (np.abs(settled - many) < 0.02 * change.max()).all()

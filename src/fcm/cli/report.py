@@ -12,6 +12,7 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _LOST = "\n- the curve has no stable part there to land on"
+_UNTOLD = "- not told: with more harmonics no solution was found near this peak"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
 
 
@@ -82,6 +83,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
         lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
+    if any(_untold(curve, dof) for curve in curves for dof in dofs):
+        lines.append(_UNTOLD)
     return "\n".join(lines)
 
 
@@ -93,6 +96,12 @@ def _with_unit(dof: str, length: str) -> str:
 def _at_edge(curve: Curve, dof: str) -> bool:
     """Whether a peak is where the range ends."""
     return bool((curve["peak"].get(dof) or {}).get("at_edge"))
+
+
+def _untold(curve: Curve, dof: str) -> bool:
+    """Whether the error of a peak of a balance is not known."""
+    peak = curve["peak"].get(dof) or {}
+    return "harmonics" in curve and peak.get("amplitude") is not None and peak.get("error") is None
 
 
 def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
@@ -154,7 +163,9 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     if summary.get("method") == "table" and table is not None:
         errors.append(f"{table:.1e} by the table, corrected at every point")
     if harmonic is not None:
-        errors.append(f"{harmonic:.1e} by leaving out higher harmonics")
+        untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
+        but = ", and of some peaks not told" if untold else ""
+        errors.append(f"{harmonic:.1e} by leaving out higher harmonics{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
