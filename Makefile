@@ -37,7 +37,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration flexibility published report convergence demo picture paper figures test check tables \
+.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration flexibility published report convergence kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -188,6 +188,11 @@ convergence: build/convergence.txt  ## error against run time with 1 to 15 harmo
 build/convergence.txt: src/fcm/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
 	$(BIN)/python -m fcm.report convergence build/convergence.json --picture build/convergence.png > $@
+
+kept-modes: $(VENV)/installed  ## error of peaks against the number of modes kept of a blade, in build
+	@mkdir -p build
+	$(BIN)/python -m fcm.report kept-modes build/kept-modes.json --picture build/kept-modes.png > build/kept-modes.txt
+	@cat build/kept-modes.txt
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 

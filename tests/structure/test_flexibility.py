@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy.linalg
 import scipy.sparse
 
 import fcm
@@ -95,6 +96,8 @@ def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
     first = Modes(whole.stiffness[:kept], whole.shapes[:, :kept])
     beyond = float(whole.stiffness[kept])
     static = np.diagonal(loads.T @ beams.direct(K, M, 0.0, loads, 0.0)).real
+    value, shapes = scipy.linalg.eigh(K.toarray(), M.toarray())
+    third = ((shapes[:, kept:].T @ loads) ** 2 / value[kept:, None] ** 1.5).sum(axis=0)  # m_3
     for omega in np.sqrt(beyond) * np.array([0.1, 0.5, 0.9]):
         more = flexibility(system, first, loads, omega, beyond)
         exact = loads.T @ beams.direct(K, M, 0.0, loads, omega).real
@@ -105,6 +108,10 @@ def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
             if modes is first:
                 left_out = exact - found
         error = np.diagonal(exact - found) / static
+        standing = ((more.modes.shapes.T @ loads) ** 2 / more.modes.stiffness[:, None] ** 1.5).sum(axis=0)
+        off = omega * np.abs(standing - third) / static
+        assert off.max() < more.damping + 1e-9
+        assert blocks > 1 or more.damping < 40 * off.max()
         rounding = 1e-8 * np.abs(np.diagonal(exact) / static).max()
         assert -rounding < error.min() and error.max() < more.bound + rounding
         assert error.max() < np.abs(np.diagonal(left_out) / static).max() + rounding
@@ -143,6 +150,9 @@ def test_few_modes_with_the_flexibility_of_the_others_are_as_good_as_all(tmp_pat
         for keep in (True, False):
             one = scene(tmp_path, modes=kept, flexibility=keep)
             errors[kept, keep] = np.abs(peak(one) / whole - 1).max()
+            if keep:
+                (stated,) = one.notes
+                assert errors[kept, True] < float(stated.rpartition(" ")[2])
     assert errors[4, True] < 1e-6
     assert errors[2, False] > errors[4, False] > 1e-4
     assert all(errors[kept, True] < 0.02 * errors[kept, False] for kept in (2, 4))
@@ -153,7 +163,8 @@ def test_a_scene_says_what_is_kept_and_how_far_it_is_off(tmp_path):
     assert few.modal.frequency.size == 4 + few.modal.added
     (note,) = few.notes
     assert note.startswith("structure: 4 modes of 120 degrees of freedom are kept, and the flexibility")
-    bound = float(note.rpartition(" ")[2])
+    bound, damping = (float(part.split()[0].strip(",")) for part in note.split("by at most ")[1:])
+    assert damping < 0.01
     K, M, names = beams.beam(60)
     at = [names.index(name) for name in few.modal.dofs]
     loads = np.eye(len(few.modal.dofs))

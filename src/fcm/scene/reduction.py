@@ -56,7 +56,17 @@ def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
     text += f", and the flexibility of the others as {added} modes"
     if not np.isfinite(found.bound):
         return f"{text}; how far it is off cannot be told"
-    return f"{text}: receptances up to the range's end are off by at most {max(found.bound, 1e-15):.1e}"
+    return f"{text}: {how_far_off(matrices, found.bound, found.damping)}"
+
+
+def how_far_off(matrices: Matrices, bound: float, damping: float) -> str:
+    """By how much receptances may err and, with one damping ratio for all modes, heights of resonances."""
+    ratio = matrices.ratio or matrices.hysteretic / 2.0
+    most = max(bound + 2.0 * ratio * damping, 1e-15)
+    text = f"receptances up to the range's end are off by at most {most:.1e}"
+    if not ratio:
+        return text
+    return f"{text}, the damping of a resonance by at most {max(damping, 1e-15):.1e}"
 
 
 def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.reduction import MOST_OUTPUTS, damping_of
+from fcm.scene.reduction import MOST_OUTPUTS, damping_of, how_far_off
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
@@ -103,10 +103,8 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     elif not matrices.flexibility:
         text += "; the flexibility of the others is left out"
     elif np.isfinite(bound):
-        text += (
-            ", and the flexibility of the others: receptances up to the range's end are off by at most "
-            f"{max(bound, 1e-15):.1e}"
-        )
+        damping = max(one.damping for one in all_found)
+        text += f", and the flexibility of the others: {how_far_off(matrices, bound, damping)}"
     else:
         text += ", and the flexibility of the others; how far it is off cannot be told"
     notes = [text]

@@ -26,6 +26,7 @@ class Reduced:
     beyond: float  # [rad/s] first frequency left out; inf if there is none
     bound: float  # of the receptances among the loads, relative to their static ones
     missed: int | None  # modes that the eigensolver has missed; None where it cannot be told
+    damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
 
 
 def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | None, rest: bool) -> Reduced:
@@ -53,7 +54,7 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | No
         np.concatenate((kept.stiffness, more.modes.stiffness)),
         np.concatenate((kept.shapes, more.modes.shapes), axis=1),
     )
-    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), more.bound, lost)
+    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), more.bound, lost, more.damping)
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
