@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from math import isnan
 from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import Mistakes, kind, quoted, shown
+from fcm.scene.errors import Mistakes, quoted
 from fcm.scene.keys import names
 from fcm.scene.model import Modal, Scene
 from fcm.scene.names import Names
-from fcm.scene.ring import NEXT, ComplexArray, FloatArray, Ring
-from fcm.scene.rules import RULES, Rule, as_float
+from fcm.scene.ring import NEXT, Ring
+from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 
 Draft = dict[str, Any]
 WHOLE_RING = "needs the whole ring: write all its sectors out as a scene without [cyclic]"
-ROTATED = 1e-8  # relative: of shapes that are real but for a factor, what is left of the imaginary part
 TABLES = {  # that have no meaning for one sector, and why
     "schedule": f"a simulation in time {WHOLE_RING}",
     "start": f"a simulation in time {WHOLE_RING}",
@@ -91,125 +89,6 @@ def only_own(top: Section, drafts: Mapping[str, list[Draft]], dofs: RingNames | 
             if draft["dof"] is not None and draft["dof"][len(dofs.own) : len(dofs)].any():
                 what = 'is of the next sector, which has its own; "next." is for contacts'
                 top.wrong(f"{table}[{number}].dof", what)
-
-
-def complex_row(section: Section, value: Any, path: str, rule: Rule) -> ComplexArray | None:
-    """Numbers, or pairs [real part, imaginary part], as an array; None after a mistake."""
-    if isinstance(value, np.ndarray) and value.dtype.kind == "c":
-        value = [[one.real, one.imag] for one in value.tolist()]
-    if not isinstance(value, list | tuple | np.ndarray):
-        section.mistakes.add(path, f"must be a list of numbers, or of pairs [re, im], is {kind(value)}")
-        return None
-    before = section.mistakes.count
-    parts = [_pair(section, item, f"{path}[{index}]", rule) for index, item in enumerate(value)]
-    return np.array(parts, dtype=np.complex128) if section.mistakes.count == before else None
-
-
-def _pair(section: Section, item: Any, path: str, rule: Rule) -> complex:
-    if as_float(item) is not None:
-        return complex(section.checked(item, path, rule), 0.0)
-    if isinstance(item, list | tuple) and len(item) == 2:
-        real, imaginary = (section.checked(part, path, rule) for part in item)
-        return complex(real, imaginary)
-    section.mistakes.add(path, f"must be a number, or a pair [re, im], is {kind(item)}")
-    return complex(np.nan)
-
-
-def read_diameters(section: Section, modes: int | None, sectors: float) -> Any:
-    """The nodal diameter of each mode; None after a mistake."""
-    if section.missing("nodal_diameter", "one whole number for each mode"):
-        return None
-    value = section.data["nodal_diameter"]
-    found = section.numbers(value, section.at("nodal_diameter"), RULES["nodal_diameter"])
-    if found is None:
-        return None
-    if modes is not None and len(found) != modes:
-        section.wrong("nodal_diameter", f"has {len(found)} numbers, but modal.frequency has {modes}")
-        return None
-    for index in np.flatnonzero(found > sectors / 2.0).tolist():
-        most = f"of {int(sectors)} sectors are 0 to {int(sectors) // 2}"
-        section.wrong(f"nodal_diameter[{index}]", f"is {shown(float(found[index]))}, but those {most}")
-    return found.astype(np.int64)
-
-
-def travelling(section: Section, draft: Draft, sectors: float) -> Draft:
-    """The modes of a draft with shapes of travelling waves; with pairs, those of the ring made so.
-
-    Of the whole ring's modes the pair c, s of one frequency makes the shape c + i s, of which sector k has
-    Re, Im (c + i s) exp(2 pi i n k / sectors): the sine follows a quarter of a turn behind the cosine. Its
-    modal mass for each sector is 2 / sectors times theirs, that of a single mode 1 / sectors times its own.
-    """
-    pairs = section.data.get("pairs", False)
-    if not isinstance(pairs, bool):
-        section.wrong("pairs", f"must be true or false, is {kind(pairs)}")
-        return draft
-    arrays = ("mass", "frequency", "damping", "shapes", "diameter")
-    if any(draft[key] is None for key in arrays) or isnan(sectors):
-        return draft
-    if not pairs:
-        _note_pairs(draft)
-        _check_real(section, draft, int(sectors))
-        return draft
-    firsts = _firsts(section, draft["diameter"], draft["frequency"], int(sectors))
-    if firsts is None:
-        return draft
-    if draft["shapes"].imag.any():
-        section.wrong("pairs", "the shapes of pairs are real: the cosine and the sine of each")
-        return draft
-    at = np.array([first for first, _ in firsts])
-    double = np.array([second for _, second in firsts])
-    made = {key: draft[key][at] for key in ("frequency", "damping", "diameter")}
-    partner = draft["shapes"][np.minimum(at + 1, len(draft["shapes"]) - 1)]
-    made["shapes"] = draft["shapes"][at] + np.where(double[:, None], 1j * partner, 0.0)
-    made["mass"] = draft["mass"][at] * np.where(double, 2.0, 1.0) / sectors
-    return draft | made
-
-
-def _firsts(
-    section: Section, diameter: Any, frequency: FloatArray, sectors: int
-) -> list[tuple[int, bool]] | None:
-    """Where each pair begins, and whether it is one: those of 0 and half of the sectors are single."""
-    found, i = [], 0
-    while i < diameter.size:
-        single = diameter[i] == 0 or 2 * diameter[i] == sectors
-        found.append((i, not single))
-        if not single and (i + 1 == diameter.size or diameter[i + 1] != diameter[i]):
-            what = f"mode {i + 1} of diameter {diameter[i]} has no sine behind it"
-            section.wrong("pairs", f"{what}; modes come as cosine and sine, one behind the other")
-            return None
-        if not single and abs(frequency[i + 1] - frequency[i]) > 1e-3 * frequency[i]:
-            what = f"modes {i + 1} and {i + 2} are no cosine and sine: their frequencies differ"
-            section.wrong("pairs", f"{what}, {frequency[i]:.6g} and {frequency[i + 1]:.6g}")
-            return None
-        i += 1 if single else 2
-    return found
-
-
-def _note_pairs(draft: Draft) -> None:
-    """Say so where modes may be meant as cosines and sines."""
-    if draft["shapes"].imag.any():
-        return
-    same = (np.diff(draft["diameter"]) == 0) & (np.diff(draft["frequency"]) == 0.0)
-    double = next(iter(np.flatnonzero(same & (draft["diameter"][1:] > 0)).tolist()), None)
-    if double is not None:
-        draft["notes"].append(
-            f"modal: modes {double + 1} and {double + 2} have one diameter and one frequency: if they are "
-            "cosine and sine, say so by pairs = true; they are taken as two travelling modes"
-        )
-
-
-def _check_real(section: Section, draft: Draft, sectors: int) -> None:
-    """Turn the shapes of diameter 0 and of half of the sectors real, which they are but for a factor."""
-    shapes = draft["shapes"] = draft["shapes"].copy()
-    for i, diameter in enumerate(draft["diameter"].tolist()):
-        if diameter and 2 * diameter != sectors:
-            continue
-        largest = shapes[i, np.abs(shapes[i]).argmax()]
-        if largest:
-            shapes[i] *= abs(largest) / largest
-        if np.abs(shapes[i].imag).max() > ROTATED * abs(largest):
-            section.wrong(f"shapes[{i}]", f"is of diameter {diameter}, so it is real, but for a factor")
-        shapes[i].imag = 0.0
 
 
 def ring_of(modal: Draft, cyclic: Draft, unit: float) -> tuple[Modal, Ring]:

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.cyclic import complex_row, read_diameters, travelling
 from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.modal_file import note_of_scale, read_modal_file
 from fcm.scene.model import FloatArray, Modal
 from fcm.scene.names import Names, checked_names
+from fcm.scene.ring_modes import complex_row, read_diameters, travelling
 from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
 

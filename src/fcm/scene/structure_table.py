@@ -16,10 +16,7 @@ from fcm.scene.matrix_file import is_matrix_file, read_matrix
 from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
-
-ASYMMETRY = 1e-8  # relative difference of two entries that ought to be equal
-NEGLIGIBLE = 1e-12  # of the largest entry: differences this small are rounding
-MOST_SHOWN = 3  # entries that are not symmetric, named in a message
+from fcm.scene.symmetry import check_symmetric, symmetric
 
 
 @dataclass(frozen=True)
@@ -60,7 +57,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
     dofs = _row_names(section, files, rows)
     for key, matrix in (("stiffness", K), ("mass", M)):
-        _check_symmetric(section, key, matrix, dofs)
+        check_symmetric(section, key, matrix, dofs)
     damping = _damping(section, files, rows, dofs)
     modes = _modes(section)
     coupling = _coupling(section, files, rows)
@@ -70,7 +67,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     if top.mistakes.count > before or dofs is None:
         return dofs, None
     return dofs, Matrices(
-        dofs, _symmetric(K), _symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
+        dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
 
 
@@ -162,38 +159,6 @@ def names_of(text: str) -> list[str]:
     return ["".join(words) for words in lines if words]
 
 
-def _check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> None:
-    """Note the entries that differ from those across the diagonal."""
-    if matrix is None:
-        return
-    difference = abs(matrix - matrix.T).tocoo()
-    size = abs(matrix)
-    both = scipy.sparse.csc_array(size.maximum(size.T))
-    row, column = difference.coords
-    of_both = np.asarray(both[row, column]).ravel() if row.size else np.zeros(0)
-    largest = float(size.max()) if size.nnz else 0.0
-    wrong = (
-        (difference.data > ASYMMETRY * of_both) & (difference.data > NEGLIGIBLE * largest) & (row < column)
-    )
-    if not wrong.any():
-        return
-    worst = np.flatnonzero(wrong)[np.argsort(-difference.data[wrong], kind="stable")][:MOST_SHOWN]
-    named = dofs is not None and len(dofs) == matrix.shape[0]
-    names = [quoted(name) for name in dofs or ()] if named else [str(i) for i in range(matrix.shape[0])]
-
-    def entry(i: int, j: int) -> str:
-        return f"({names[i]}, {names[j]}) is {shown(float(matrix[i, j]))}"
-
-    entries = "; ".join(f"{entry(row[k], column[k])}, {entry(column[k], row[k])}" for k in worst)
-    count = int(wrong.sum())
-    differ = "a pair of entries differs" if count == 1 else f"{count} pairs of entries differ"
-    section.wrong(key, f"is not symmetric: {differ}; {entries}")
-
-
-def _symmetric(matrix: Any) -> Any:
-    return scipy.sparse.csc_array((matrix + matrix.T) / 2)
-
-
 def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[str] | None) -> dict[str, Any]:
     """What the damping is: a ratio, proportional, a matrix, a loss factor."""
     found: dict[str, Any] = {"ratio": None, "by_mass": 0.0, "by_stiffness": 0.0, "C": None, "hysteretic": 0.0}
@@ -211,8 +176,8 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[st
     C = matrix_of(section, "damping", value, files)
     if C is not None and rows is not None and C.shape[0] != rows:
         section.wrong("damping", f"has {C.shape[0]} rows, but the stiffness has {rows}")
-    _check_symmetric(section, "damping", C, dofs)
-    return found | {"C": None if C is None else _symmetric(C)}
+    check_symmetric(section, "damping", C, dofs)
+    return found | {"C": None if C is None else symmetric(C)}
 
 
 def _proportional(table: Section) -> dict[str, Any]:
