@@ -23,6 +23,7 @@ from fcm.track.tracked import Condition, Kind, Tracked
 BRACKETS = 4  # of the lowest points, in which the least value is sought
 FINE = 1e-9  # of the span: the number is known to this
 ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
+GAP = 1e-3  # of the span, in which no piece is known
 EQUAL = 1e-7  # relative: peaks that are one at a crossing
 
 
@@ -144,6 +145,17 @@ def least(way: Way, pieces: Sequence[Piece]) -> Least | None:
     return min(found, key=lambda one: one.value)
 
 
+def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
+    """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
+    low, high = way.span
+    least, found, last = GAP * (high - low), [], low
+    for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
+        if piece.s[0] - last > least:
+            found.append(low if last == low else 0.5 * (last + float(piece.s[0])))
+        last = max(last, float(piece.s[-1]))
+    return [*found, high] if high - last > least else found
+
+
 def _around(pieces: Sequence[Piece], grid: FloatArray, i: int) -> tuple[float, float, float]:
     """A value of s between its neighbours, among which those of the highest piece itself."""
     s = float(grid[i])
@@ -161,6 +173,8 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
 
     def highest(s: float) -> tuple[Height, Piece]:
         rough = {piece: piece.roughly(s) for piece in pieces if piece.covers(s)}
+        if not rough:  # nothing is known there
+            return Height(np.inf, 0.0, np.zeros(0), -1), pieces[0]
         top = max(rough.values())
         heights = [(piece.at(s), piece) for piece, height in rough.items() if height > ROUGH * top]
         return max(heights, key=lambda pair: pair[0].value)

@@ -17,7 +17,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.curves import Track, passed, whole
-from fcm.track.envelope import Least, Target, least, pieces_of
+from fcm.track.envelope import Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.follow import Way, land
 from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Spot
@@ -48,6 +48,7 @@ class Search:
     span: tuple[float, float]
     targets: Sequence[Target]
     curves: list[Track] = field(default_factory=list)
+    visited: set[float] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
@@ -67,8 +68,6 @@ class Search:
                 self.visit(value)
         else:
             self.lift(known)
-            if known.best is not None:
-                self.visit(known.best.s)
         for count in range(VISITS):
             if progress is not None:
                 progress(count / (count + 2.0))
@@ -79,12 +78,19 @@ class Search:
         return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> Least | None:
-        """Of what was followed."""
-        pieces = [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
-        return least(self.way, pieces)
+        """Of what was followed, and of what is met where nothing was."""
+        for value in gaps(self.way, self.pieces()):
+            if value not in self.visited:
+                self.visit(value)
+        return least(self.way, self.pieces())
+
+    def pieces(self) -> list[Piece]:
+        """The parts of the curves that count."""
+        return [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
 
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
+        self.visited.add(value)
         here = moved(self.system, self.line.scene(self.system.scene, value))
         points = special_points(here, self.conditions())[0]
         spots = [(one, land(self.way, one, np.append(z, value))) for one, z in points]
