@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.sensitivity import Kind
+from fcm.harmonic.peak import Kind
 from fcm.response.sensitivity import add_sensitivities
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict

@@ -113,19 +113,23 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
     with house_style():
         figure = new_figure(WIDTH, 1.3 * HEIGHT)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        for track, colour in zip(wanted, sequence_colours(len(wanted)), strict=True):
+        names = list(dict.fromkeys(track.what for track in wanted))
+        colours = dict(zip(names, sequence_colours(len(names)), strict=True))
+        for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
             column = drawn.dofs.index(name) if name in drawn.dofs else 0
             height = np.where(track.trough == 1.0, np.nan, track.amplitude[:, column])
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
-            upper.plot(track.number, height, color=colour, linewidth=1.1, label=track.what)
-            lower.plot(track.number, frequency, color=colour, linewidth=1.1)
+            label = track.what if track.what in names else None  # once for all its curves
+            names = [one for one in names if one != label]
+            upper.plot(track.number, height, color=colours[track.what], linewidth=1.1, label=label)
+            lower.plot(track.number, frequency, color=colours[track.what], linewidth=1.1)
         upper.set_ylabel(with_unit("Peak amplitude", drawn.length), parse_math=False)
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
         low, high = upper.get_ylim()
         if low > 0.0 and high > 10.0 * low:
             logarithmic_axis(upper)
-        if len(wanted) > 1:
+        if len(colours) > 1:
             upper.legend()
         _name_number(lower, drawn.key)
         _mark_optimum(upper, lower, drawn)

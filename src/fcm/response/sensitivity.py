@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.sensitivity import Kind, Sensitivities, sensitivities
+from fcm.harmonic.peak import Kind
+from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.reduction.put_back import unknowns
 from fcm.response.around import check_no_ring
 from fcm.results.result import Curve, Response

@@ -103,9 +103,7 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
         "optimum_kind": (
             ("optimum",),
             np.array([one.kind for one in optima], dtype=str),
-            {
-                "long_name": "smooth, kink of equal peaks, corner of the response, end of a higher peak, bound"
-            },
+            {"long_name": "smooth, kink of equal peaks, corner of the response, end of a higher peak, bound"},
         ),
     }
 
