@@ -22,13 +22,13 @@ if cython.compiled:
     from cython.cimports.fcm.continuation.corner import come, cross, cross_softly
     from cython.cimports.fcm.continuation.events import closes, quiet
     from cython.cimports.fcm.continuation.margins import crosses, dip
-    from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
+    from cython.cimports.fcm.continuation.step_rule import clear, extent, good, kept, next_step
 else:
     from fcm.continuation.ahead import ahead
     from fcm.continuation.corner import come, cross, cross_softly
     from fcm.continuation.events import closes, quiet
     from fcm.continuation.margins import crosses, dip
-    from fcm.continuation.step_rule import clear, extent, good, next_step
+    from fcm.continuation.step_rule import clear, extent, good, kept, next_step
 
 FIRST = cython.declare(cython.double, 1e-3)  # the first step
 SHORTEST = cython.declare(cython.double, 1e-9)  # a step that is still too long then leads nowhere
@@ -201,7 +201,7 @@ class Follower:
         """
         front: Front = self.front
         at, which = events.first_margin(front)
-        if not front.shorten((1.0 - BEFORE) * at) or not good(front):
+        if not front.shorten((1.0 - BEFORE) * at) or not kept(front) or not good(front):
             return Status.STALLED
         if self.keep(front.step):
             return self.end()

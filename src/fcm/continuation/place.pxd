@@ -7,6 +7,7 @@ cdef class Place:
     cdef public int[::1] kind
     cdef public double[::1] angle
     cdef public double[::1] slope
+    cdef readonly Py_ssize_t group
     cdef public double[::1] output
     cdef public double[::1] growth
     cdef public double orientation
@@ -18,4 +19,6 @@ cdef class Place:
     cdef double asked(self, Py_ssize_t k, Problem problem) noexcept
     cdef int incline(self, Problem problem, double[::1] scale, double[::1] beside) except -1
 
-cdef Py_ssize_t nearest(int wanted, double at, int[::1] kind, double[::1] angle) noexcept
+cdef Py_ssize_t nearest(
+    int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first, Py_ssize_t end
+) noexcept

@@ -27,7 +27,7 @@ class Place:
         self.kind = np.zeros(problem.margins, dtype=np.intc)
         self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
-        self.orientation, self.shift = 0.0, 0.0
+        self.orientation, self.shift, self.group = 0.0, 0.0, problem.group
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -63,15 +63,17 @@ class Place:
     ) -> cython.Py_ssize_t:
         """Which of other margins is the one with number k here; -1 if none is.
 
-        It is that of its kind nearest to it, if it is also nearest to that.
+        It is that of its group and kind nearest to it, if it is also nearest to that.
         """
         i: cython.Py_ssize_t
+        first: cython.Py_ssize_t = k - k % self.group
+        end: cython.Py_ssize_t = first + self.group
         if self.kind[k] == NONE:
             return -1
         if kind[k] == self.kind[k] and angle[k] == self.angle[k]:
             return k
-        i = nearest(self.kind[k], self.angle[k], kind, angle)
-        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle) == k else -1
+        i = nearest(self.kind[k], self.angle[k], kind, angle, first, end)
+        return i if i >= 0 and nearest(kind[i], angle[i], self.kind, self.angle, first, end) == k else -1
 
     @cython.ccall
     @cython.exceptval(-1e300, check=False)
@@ -109,13 +111,21 @@ class Place:
 @cython.cfunc
 @cython.exceptval(check=False)
 def nearest(
-    wanted: cython.int, at: cython.double, kind: cython.int[::1], angle: cython.double[::1]
+    wanted: cython.int,
+    at: cython.double,
+    kind: cython.int[::1],
+    angle: cython.double[::1],
+    first: cython.Py_ssize_t,
+    end: cython.Py_ssize_t,
 ) -> cython.Py_ssize_t:
-    """The number of that of a kind whose angle is nearest to one given; -1 if there is none near it."""
+    """Of those from first to before end the number of that of a kind whose angle is nearest to one given.
+
+    -1 if there is none near it.
+    """
     i: cython.Py_ssize_t
     best: cython.Py_ssize_t = -1
     least: cython.double = APART
-    for i in range(kind.shape[0]):
+    for i in range(first, end):
         if kind[i] == wanted:
             off: cython.double = fabs(at - angle[i])
             off = off if off <= PI else fabs(2.0 * PI - off)

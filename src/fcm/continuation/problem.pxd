@@ -5,6 +5,7 @@ cdef class Problem:
     cdef public int margins
     cdef public int outputs
     cdef public int rank
+    cdef public int group
     cdef public bint coarse
     cdef public bint soft
     cdef public double boundless

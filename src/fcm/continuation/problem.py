@@ -24,6 +24,7 @@ class Problem:
     `report`.
     rank: 0; or the size of a smaller system to which that of Newton's method is condensed. Then jacobian is
     (n, 1), the derivative by the parameter alone; see `condense`.
+    group: margins of so many in a row belong together; one is never the same as one of another group.
     boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
     soft: whether the margins are labels: the problem is smooth while they stay, and may be where they change.
@@ -34,6 +35,7 @@ class Problem:
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.coarse, self.soft, self.boundless = False, False, BOUNDLESS
+        self.group = margins
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

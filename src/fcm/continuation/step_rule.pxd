@@ -1,6 +1,7 @@
 from fcm.continuation.front cimport Front
 
 cpdef bint good(Front front) except -1
+cdef bint kept(Front front) except -1
 cpdef bint clear(Front front, double step) except -1
 cpdef double next_step(Front front, double longest) except -1
 cpdef double unforeseen(Front front) except -1

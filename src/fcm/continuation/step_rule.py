@@ -36,15 +36,21 @@ def good(front: Front) -> cython.bint:
     """Whether the curve was where it was predicted, and went on as it did."""
     if front.step <= SHARP:
         return front.turn > 0.0
-    same: cython.bint = front.there.orientation == front.here.orientation
-    return same and front.missed < FAR and front.turn > COSINE and unforeseen(front) < MOST * UNEVEN
+    return kept(front) and front.missed < FAR and front.turn > COSINE and unforeseen(front) < MOST * UNEVEN
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def kept(front: Front) -> cython.bint:
+    """Whether the orientation is the same here and there: otherwise there may be the far side of a corner."""
+    return front.there.orientation == front.here.orientation
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
 def clear(front: Front, step: cython.double) -> cython.bint:
-    """Whether there is a good step of a length, and no margin changes its sign on it."""
-    return front.go(step) and good(front) and not crosses(front)
+    """Whether there is a good step of a length before a corner, and no margin changes its sign on it."""
+    return front.go(step) and kept(front) and good(front) and not crosses(front)
 
 
 @cython.ccall

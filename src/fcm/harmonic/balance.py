@@ -47,6 +47,7 @@ class Balance(Problem):
         rank: cython.int = rank_of(seen.modes, seen.ports, seen.count)
         Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs, rank)
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
+        self.group = laws[0].margins if laws else 0  # all contacts have as many
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest = np.zeros(2 * len(laws))
         self.force, self.now, self.rate = (np.zeros(self.unknowns) for _ in range(3))

@@ -21,6 +21,7 @@ class Level(Problem):
 
     def __init__(self, balance: Balance, omega: cython.double) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
+        self.group = balance.group
         self.boundless *= self.boundless  # as much again as the level may grow
         self.balance, self.omega = balance, omega
         self.z = np.zeros(balance.unknowns + 1)
