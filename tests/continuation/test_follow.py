@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.continuation import Mark, Problem, Status, all_branches, follow
+from fcm.continuation.front import Front
 
 STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
 CLOSE = 1e-10  # to which a point is on its curve
@@ -314,3 +315,15 @@ def test_a_curve_goes_on_from_any_stage_to_the_same_points():
         assert again.status is whole.status
         np.testing.assert_array_equal(again.z, whole.z)
         np.testing.assert_array_equal(again.mark, whole.mark)
+
+
+def test_a_margin_is_the_same_only_within_its_group():
+    """However near another of its kind is: here that of the other group, by its angle."""
+    problem = Problem(1, 4, 0)
+    problem.group = 2
+    front = Front(problem)
+    for place, angles in ((front.here, (1.0, 2.0, 1.1, 2.1)), (front.there, (1.2, 2.2, 1.0, 2.0))):
+        np.asarray(place.kind)[:] = (0, 1, 0, 1)
+        np.asarray(place.angle)[:] = angles
+        np.asarray(place.margin)[:] = np.arange(1.0, 5.0)
+    assert [front.margin(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.start import highest, level_curve, resonances
+from fcm.harmonic.start import highest, level_curve, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.response import trace
 from fcm.response.level import trace_levels
 from fcm.results.output import to_dataset, write_csv
 from fcm.scene import load_scene
+
+from ..harmonic.scenes import isola, isola_stuck, up_to, yang
 
 
 @pytest.mark.parametrize("harmonics", [1, 3])
@@ -62,3 +64,16 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
         assert (frequency in curve.unsure) != reached
     assert curve.unsure and curve.summary()["branches_unsure_at"] == curve.unsure
     assert not trace(load_scene("yang1998-n5")).curves[0].unsure
+
+
+@pytest.mark.parametrize(
+    ("scene", "frequency"), [(isola(), 1.22), (isola(), 1.5), (isola_stuck(), 1.5), (yang(5.0), 1.21)]
+)
+def test_what_is_not_followed_of_a_level_has_no_solution(scene, frequency):
+    """Beside the curve of as many harmonics, followed up to where nothing changes any more."""
+    system = System(scene, up_to(7))
+    whole = level_curve(system, frequency, (0.0, highest(system, frequency)))
+    passings = whole.z[whole.parameter == 1.0, :-1]
+    found = solutions(system, frequency)
+    assert found.complete and len(found.solutions) == len(passings)
+    assert np.array([z[:-1] for z in found.solutions]) == pytest.approx(passings, rel=1e-6, abs=1e-7)
