@@ -326,4 +326,4 @@ def test_a_margin_is_the_same_only_within_its_group():
         np.asarray(place.kind)[:] = (0, 1, 0, 1)
         np.asarray(place.angle)[:] = angles
         np.asarray(place.margin)[:] = np.arange(1.0, 5.0)
-    assert [front.margin(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
+    assert [front.here.margin_at(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
