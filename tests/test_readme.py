@@ -1,4 +1,4 @@
-"""README.md does what it says: every command of it is run, every number compared."""
+"""README.md and the pages of its guide do what they say: every command is run, every output compared."""
 
 import doctest
 import json
@@ -11,14 +11,24 @@ from pathlib import Path
 
 import pytest
 
+import fcm
+from fcm.compare.exact import exact_lines
+from fcm.report.convergence import greatest_error
+from fcm.response import trace
+
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
+PAGES = [README, *sorted((ROOT / ".github/guide").glob("*.md"))]
 SCENE = "shroud.toml"  # the name under which the README lets its scene be saved
 
 
-def blocks(kind):
+def text_of(pages=PAGES):
+    return "\n".join(page.read_text(encoding="utf-8") for page in pages)
+
+
+def blocks(kind, pages=PAGES):
     """The fenced blocks of a kind, in their order."""
-    return re.findall(rf"^```{kind}\n(.*?)^```", README.read_text(encoding="utf-8"), re.M | re.S)
+    return re.findall(rf"^```{kind}\n(.*?)^```", text_of(pages), re.M | re.S)
 
 
 @pytest.fixture(scope="module")
@@ -48,11 +58,11 @@ def run(command, folder):
 
 def commands():
     lines = [line for block in blocks("sh") for line in block.splitlines()]
-    return [line for line in lines if line and not line.startswith("#")]
+    return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
 
 
-def test_every_command_of_the_readme_runs(folder):
-    assert len(commands()) >= 5
+def test_every_command_runs(folder):
+    assert len(commands()) >= 20
     for command in commands():
         done = run(command, folder)
         assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
@@ -86,10 +96,8 @@ def cell(word, jump):
     return pytest.approx(float(word), rel=0.3 if "e-" in word else 0.02 if jump else 2e-5)
 
 
-def test_the_python_of_the_readme_prints_what_it_shows():
-    examples = doctest.DocTestParser().get_doctest(
-        "\n".join(blocks("pycon")), {}, "README.md", str(README), 0
-    )
+def test_the_python_prints_what_it_shows():
+    examples = doctest.DocTestParser().get_doctest("\n".join(blocks("pycon")), {}, "pages", None, 0)
     assert len(examples.examples) >= 5
     report = []
     failed, _tried = doctest.DocTestRunner(verbose=False).run(examples, out=report.append)
@@ -97,25 +105,43 @@ def test_the_python_of_the_readme_prints_what_it_shows():
 
 
 def test_the_errors_are_as_claimed(folder):
-    (claim,) = re.findall(r"moves no point by more than (\S+) of", README.read_text(encoding="utf-8"))
+    (claim,) = re.findall(r"moves no point by more than (\S+) of", text_of())
     curves = json.loads(run("fcm respond yang1998 --json", folder).stdout)["curves"]
     table, harmonic = (max(curve[name] for curve in curves) for name in ("table_error", "truncation_error"))
     assert 0 < table < float(claim) and harmonic > 100 * table  # "by far the larger error"
 
 
 def test_every_block_is_of_a_kind_that_is_tested():
-    kinds = re.findall(r"^```(\S+)$", README.read_text(encoding="utf-8"), re.M)
+    kinds = re.findall(r"^```(\S+)$", text_of(), re.M)
     assert set(kinds) <= {"sh", "toml", "text", "pycon"}
 
 
-def test_files_that_the_readme_shows_exist():
-    shown = re.findall(r"!\[.*?\]\((.*?)\)", README.read_text(encoding="utf-8"))
-    assert shown and all((ROOT / name).is_file() for name in shown)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_and_headings_that_a_page_names_exist(page):
+    for name, _, heading in re.findall(r"\]\(([^)#]+)(#([\w-]+))?\)", page.read_text(encoding="utf-8")):
+        assert (page.parent / name).is_file(), name
+        titles = re.findall(r"^#+ (.*)$", (page.parent / name).read_text("utf-8"), re.M) if heading else []
+        assert not heading or heading in {re.sub(r"[^\w -]", "", t).lower().replace(" ", "-") for t in titles}
+
+
+def test_the_readme_is_read_in_minutes():
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 240
+    assert all(f"]({page.relative_to(ROOT)})" in text_of([README]) for page in PAGES[1:])
+
+
+def test_the_table_of_methods_has_the_errors_of_the_methods():
+    """Those of `make convergence`, as it computes them."""
+    rows = re.findall(r"^\| .*\| `--harmonics (\d+)` \| (\S+) \|", text_of([README]), re.M)
+    scene = fcm.load_scene("yang1998-n5")
+    peaks = {dof: height for dof, (height, _) in exact_lines(scene)[0].peaks.items()}
+    for harmonics, shown in rows:
+        (curve,) = trace(scene, "closed-form", harmonics=int(harmonics)).curves
+        assert greatest_error(curve, peaks) == pytest.approx(float(shown), rel=0.05)
+    assert [int(harmonics) for harmonics, _ in rows] == [1, 3, 5, 9, 15]
 
 
 def test_bundled_scenes_are_named():
-    text = README.read_text(encoding="utf-8")
-    assert all(f"`{path.stem}`" in text for path in (ROOT / "src/fcm/scenes").glob("*.toml"))
+    assert all(f"`{path.stem}`" in text_of() for path in (ROOT / "src/fcm/scenes").glob("*.toml"))
 
 
 def test_python_of_this_test_is_the_one_with_fcm():
