@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from fcm.cli.report import aligned
+from fcm.cli.columns import aligned
 
 
 def _printed(text: str) -> None:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli.columns import aligned
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.messages import Messages
-from fcm.cli.report import aligned
 
 if TYPE_CHECKING:
     from fcm.scene.model import Scene

@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
+from fcm.cli.columns import aligned, number
 from fcm.cli.files import largest_file_option
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.report import aligned, number
 
 _MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.report import aligned, counted, number, short, swept
+from fcm.cli.columns import aligned, counted, number, short, swept
 
 if TYPE_CHECKING:
     from fcm.response import Response

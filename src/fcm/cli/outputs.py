@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import schedule, track
+from fcm.cli.curves import as_table
 from fcm.cli.messages import Messages
-from fcm.cli.report import as_table
 from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:

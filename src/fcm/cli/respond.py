@@ -12,17 +12,11 @@ from fcm.cli import balance, exact, nonlinear_mode, of_peaks, schedule
 from fcm.cli import cluster as cluster_option
 from fcm.cli import track as tracking
 from fcm.cli.about_scenes import about_scenes
+from fcm.cli.curves import all_lost_to_defects, branches_unsure, cost_and_error, incomplete, short_of_accuracy
 from fcm.cli.files import check_different, largest_file_option, output_option
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
-from fcm.cli.report import (
-    all_lost_to_defects,
-    branches_unsure,
-    cost_and_error,
-    incomplete,
-    short_of_accuracy,
-)
 from fcm.cli.time_limit import TimeLimit, seconds
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from fcm.cli.columns import aligned, number, swept
 from fcm.cli.messages import Messages
-from fcm.cli.report import aligned, number, swept
 
 if TYPE_CHECKING:
     from fcm.motion import Histories

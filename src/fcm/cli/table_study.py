@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from fcm.cli.columns import aligned
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages
 from fcm.files import replacing
@@ -29,10 +30,7 @@ def write_study(messages: Messages, path: Path, to_json: bool) -> None:
     if to_json:
         click.echo(json.dumps([row._asdict() for row in rows], indent=2))
     else:
-        columns = list(zip(*(line.split(",") for line in lines), strict=True))
-        widths = [max(map(len, column)) + 2 for column in columns]
-        for cells in zip(*columns, strict=True):
-            click.echo("".join(cell.rjust(width) for cell, width in zip(cells, widths, strict=True)))
+        click.echo(aligned([line.split(",") for line in lines], left=0))
     best = min((row for row in rows if row.nodes), key=lambda row: row.rms)
     messages.info(
         f"wrote {path} and {picture} in {time.perf_counter() - began:.1f} s; "

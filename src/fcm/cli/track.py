@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm.cli.columns import aligned, short
 from fcm.cli.messages import Messages
-from fcm.cli.report import aligned, short
 from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:

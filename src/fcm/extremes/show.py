@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.cli.report import aligned
+from fcm.cli.columns import aligned
 from fcm.extremes.row import Row
 from fcm.extremes.verdict import excess, faults
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import click
 
+from fcm.cli.columns import aligned
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 from fcm.plot.others import Points, draw_others
@@ -199,21 +200,7 @@ def others(messages: Messages, folder: Path) -> None:
     """Print the tables of FOLDER's results, and draw FOLDER/others.png."""
     shown = section(folder)
     for table in shown.tables:
-        click.echo(as_text(table) + "\n")
+        click.echo(aligned([table.columns, *table.rows], left=1) + "\n")
     click.echo("\n".join(shown.after))
     draw(folder, folder / "others.png")
     messages.info(f"wrote {folder / 'others.png'}")
-
-
-def as_text(table: Table) -> str:
-    """A table for the terminal.
-
-    >>> print(as_text(Table(("a", "bc"), [("10", "2")])))
-     a  bc
-    10   2
-    """
-    lines = [table.columns, *table.rows]
-    widths = [max(len(line[i]) for line in lines) for i in range(len(table.columns))]
-    return "\n".join(
-        "  ".join(c.rjust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines
-    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import netCDF4
 import pytest
 
-from fcm.cli.report import as_table
+from fcm.cli.curves import as_table
 
 
 def curve(peaks, jumps=(), edge=()):

@@ -1,0 +1,49 @@
+"""Columns of a table on a terminal, and what stands in their cells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fcm.cli.terminal import plain
+
+
+def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
+    """Columns of equal width: numbers to the right, the last ``left`` to the left."""
+    rows = [[plain(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    right = len(widths) - left
+    lines = (
+        "  ".join(
+            cell.rjust(width) if i < right else cell.ljust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in rows
+    )
+    return "\n".join(line.rstrip() for line in lines)
+
+
+def short(value: float | None) -> str:
+    """An error, two digits, or a dash where it is not known."""
+    return "-" if value is None else f"{value:.1e}"
+
+
+def counted(harmonics: Sequence[int]) -> str:
+    """Harmonics as a range and those beyond it.
+
+    >>> counted([1]), counted([1, 2, 3]), counted([1, 2, 3, 9])
+    ('1', '1-3', '1-3,9')
+    """
+    last = next(i for i in range(len(harmonics), 0, -1) if list(harmonics[:i]) == list(range(1, i + 1)))
+    first = "1" if last == 1 else f"1-{last}"
+    return ",".join([first, *(str(h) for h in harmonics[last:])])
+
+
+def number(value: float | None) -> str:
+    """Six digits, or a dash for a number that does not exist."""
+    return "-" if value is None else f"{value:#.6g}"
+
+
+def swept(curve: Mapping[str, Any]) -> list[str]:
+    """The values of the swept numbers of a curve of a summary."""
+    return [f"{value:.6g}" for value in curve["parameters"].values()]
