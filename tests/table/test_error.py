@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import fourier_coefficients
-from fcm.table.measure import REGIMES, disagreement, measure, regime, sample
+from fcm.table.error import REGIMES, disagreement, error_of, regime, sample
 
 BOUNDS = {"default": (2e-4, 5e-6), "fast": (1.5e-3, 6e-5)}  # greatest, rms
 COUNT = 60_000
@@ -79,19 +79,19 @@ def test_recorded_error_is_true_and_within_the_promise(name, request):
     assert table.error["points"] == 1_000_000
     assert table.error["max"] <= greatest
     assert table.error["rms"] <= rms
-    fresh = measure(table, 50_000, seed=7)
+    fresh = error_of(table, 50_000, seed=7)
     assert fresh["max"] <= 1.3 * table.error["max"]
     assert fresh["rms"] == pytest.approx(table.error["rms"], rel=0.1)
     assert set(fresh["regimes"]) == set(REGIMES)
 
 
 def test_error_is_nothing_where_no_table_is_needed(default):
-    error = measure(default, 20_000, seed=3)["regimes"]
+    error = error_of(default, 20_000, seed=3)["regimes"]
     assert all(error[name][k]["max"] < 1e-12 for name in ("open", "stick") for k in ("F_b", "F_s", "F_c"))
 
 
 def test_worst_point_is_where_the_error_is(default):
-    error = measure(default, 20_000, seed=3)["regimes"]["separation"]["F_b"]
+    error = error_of(default, 20_000, seed=3)["regimes"]["separation"]["F_b"]
     found = abs(default(*error["worst"])[0] - fourier_coefficients(*error["worst"])[0])
     assert found == pytest.approx(error["max"], rel=1e-9)
 
@@ -103,8 +103,8 @@ def test_sample_is_reproducible_and_in_every_regime():
 
 
 def test_error_that_is_not_true_is_found(default):
-    error = measure(default, 20_000, seed=1)
-    assert disagreement(error, error, measure(default, 20_000, seed=2)) == ""
+    error = error_of(default, 20_000, seed=1)
+    assert disagreement(error, error, error_of(default, 20_000, seed=2)) == ""
     assert "max" in disagreement({**error, "max": 0.5 * error["max"]}, error, error)
     assert "at other points" in disagreement(error, error, {**error, "max": 3.0 * error["max"]})
     assert "recorded" in disagreement({**error, "rms": 2.0 * error["rms"]}, error, error)

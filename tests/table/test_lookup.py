@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fcm import fourier_coefficients
 from fcm.contact import fourier_gradients
-from fcm.table.measure import sample
+from fcm.table.error import sample
 
 from ..program import python
 

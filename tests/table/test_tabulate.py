@@ -82,7 +82,7 @@ def test_interruption_leaves_the_old_file_and_says_what_remains(fcm, tmp_path, m
     def interrupt(*args, **kwargs):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(build, "measure", interrupt)
+    monkeypatch.setattr(build, "error_of", interrupt)
     done = fcm("tabulate", *SMALL)
     assert done.code == 3
     assert "interrupted at" in done.err and "nothing was written, table.nc is as it was" in done.err

@@ -144,7 +144,7 @@ def _build(
 
 def _verify(messages: Messages, path: Path, to_json: bool) -> None:
     from fcm.table import open_table
-    from fcm.table.measure import disagreement, measure, sample
+    from fcm.table.error import disagreement, error_of, sample
 
     table = open_table(path)
     began = time.perf_counter()
@@ -153,14 +153,14 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
         raise click.UsageError(f"{path} records no error that could be verified.")
     drawn = sample if table.part.whole else table.part.sample
     with Interruptible(messages, "the table was not verified") as progress:
-        again = measure(
+        again = error_of(
             table,
             recorded["points"],
             recorded["seed"],
             lambda share: progress(share / 2, "same points"),
             drawn,
         )
-        fresh = measure(
+        fresh = error_of(
             table,
             recorded["points"],
             recorded["seed"] + 1,

@@ -14,7 +14,7 @@ from __future__ import annotations
 from math import isfinite
 
 from fcm.continuation import Status
-from fcm.extremes.exact import Beside
+from fcm.extremes.beside import Beside
 from fcm.extremes.residual import BALANCED
 from fcm.extremes.row import Row
 

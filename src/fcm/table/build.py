@@ -10,9 +10,9 @@ import numpy as np
 from fcm.contact import fourier_coefficients
 from fcm.table import arrays, atlas, store
 from fcm.table.atlas import FloatArray
+from fcm.table.error import POINTS, error_of, sample
 from fcm.table.locate import Resolution
 from fcm.table.lookup import Table
-from fcm.table.measure import POINTS, measure, sample
 from fcm.table.nodes import PRESETS, Nodes, axes, problem, separation_nodes, slip_nodes
 from fcm.table.part import Part
 from fcm.table.vanishing import vanishing_variation
@@ -62,7 +62,7 @@ def build_table(
     stored = arrays.encode(*charts(part, lambda share: done(share * BUILT, "building")), part)
     table = Table(*arrays.decode(stored, part), part=part)  # with the rounding of the file
     done(BUILT, "measuring the error")
-    table.error = measure(
+    table.error = error_of(
         table,
         points,
         progress=lambda share: done(BUILT + share * (MEASURED - BUILT), "measuring the error"),

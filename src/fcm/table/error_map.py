@@ -10,7 +10,7 @@ import numpy as np
 from fcm.contact.fourier import fourier_coefficients
 from fcm.contact.surface import CELLS, COEFFICIENTS, Edges, Plane, boundaries, edges
 from fcm.table.atlas import FloatArray
-from fcm.table.measure import Interpolant
+from fcm.table.error import Interpolant
 
 ZOOMS = 4  # times that the worst point is looked for on a finer grid around it
 FINER = 10  # steps to each side of such a grid, together as wide as one step of the grid before

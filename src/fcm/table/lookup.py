@@ -22,7 +22,7 @@ class Table:
     resolution : tuple of int
         Nodes along u in separation, along u in slip, along x, along z.
     error : dict
-        The absolute error [-] measured when the table was built, see `fcm.table.measure`.
+        The absolute error [-] measured when the table was built, see `fcm.table.error`.
     part : Part
         The nodes that the table has; of one for a certain scene, not all.
     outside : int

@@ -2,7 +2,7 @@
 
 *rectilinear*: a grid of F on a box in n0_bar, b_bar, phi, as everybody would make it; *regimes*: the atlas.
 Each with linear interpolation (scipy's) and cubic splines (ours), beside the closed form. All are measured at
-the same points, those of `fcm.table.measure.sample` that lie in the box.
+the same points, those of `fcm.table.error.sample` that lie in the box.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from fcm.table import spline
 from fcm.table.atlas import FloatArray
 from fcm.table.build import charts
 from fcm.table.cubic import Cubic
+from fcm.table.error import sample
 from fcm.table.locate import NODES_BETWEEN, Resolution, locate
 from fcm.table.lookup import Table
-from fcm.table.measure import sample
 from fcm.table.nodes import PRESETS
 from fcm.table.part import Part
 

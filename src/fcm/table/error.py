@@ -74,7 +74,7 @@ def regime(n0_bar: FloatArray, b_bar: FloatArray, phi: FloatArray) -> npt.NDArra
     return np.where(n0_bar <= -b_bar, 0, code)
 
 
-def measure(
+def error_of(
     table: Interpolant,
     points: int = POINTS,
     seed: int = SEED,
