@@ -173,8 +173,8 @@ extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if
 	@mkdir -p build
 	$(BIN)/python -m fcm.extremes --known tests/extremes/passed.txt -o build/extremes.json
 
+# with what bench-others, calibration, extremes and study have left, if they were run
 report: $(REPORT)/index.html  ## errors, run times and what failed on a page, build/report/index.html; minutes
-	@# with what bench-others, calibration, extremes and study have left, if they were run
 
 $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py) \
 		build/convergence.txt build/flexibility.txt build/published.json \

@@ -124,6 +124,14 @@ def test_files_and_headings_that_a_page_names_exist(page):
         assert not heading or heading in {re.sub(r"[^\w -]", "", t).lower().replace(" ", "-") for t in titles}
 
 
+def test_modules_and_programs_that_a_page_names_exist():
+    modules = re.findall(r"`([a-z_]+/[a-z_/]+)`", text_of([ROOT / ".github/guide/work.md"]))
+    assert len(modules) > 20
+    assert all((ROOT / "src/fcm" / f"{name}.py").is_file() or (ROOT / name).is_dir() for name in modules)
+    programs = re.findall(r"\btests/[\w/]+\.py", text_of())
+    assert programs and all((ROOT / name).is_file() for name in programs)
+
+
 def test_the_readme_is_read_in_minutes():
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 240
     assert all(f"]({page.relative_to(ROOT)})" in text_of([README]) for page in PAGES[1:])

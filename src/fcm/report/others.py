@@ -132,6 +132,8 @@ def ahead(problems: Record, found: dict[str, Record]) -> list[str]:
     for name, record in found.items():
         done = sorted({r["name"] for r in record["results"] if r["name"] in left and not r["state"]})
         out += [f"{PACKAGES[name]} completes {scene}, and fcm does not" for scene in done]
+    if not found:
+        return []
     return out or ["In none of these measurements is another package ahead, in time, error or completeness."]
 
 

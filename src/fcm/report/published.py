@@ -34,8 +34,8 @@ COLUMNS = ("source", "quantity", "published", "obtained")
 ABOUT = (
     "Bundled scenes dry-friction, dry-friction-lift-off, beam and den-hartog, run when this page is made; "
     "tests/published asserts the same and more. The peaks of tmdsimpy, of the fundamental, are sampled at "
-    "1024 times a cycle, which may be off by 5e-6; frequencies and damping of the beam are printed to three "
-    "or four digits; the rigid limit is known in closed form.",
+    "1024 times a cycle, which may be off by 5e-6; damping and frequencies of the sliding beam are read "
+    "to 1 %; the rigid limit is known in closed form.",
 )
 
 
