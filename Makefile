@@ -236,8 +236,9 @@ $(OTHERS)/tmdsimpy/installed:  # a repository that no package index has, at one 
 	$(PYTHON) -m venv $(@D)
 	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy 'jax[cpu]'
 	rm -rf $(@D)/source
-	git clone --quiet $(TMDSIMPY) $(@D)/source
-	git -C $(@D)/source -c advice.detachedHead=false checkout --quiet $(TMDSIMPY_COMMIT)
+	git clone --quiet --no-checkout $(TMDSIMPY) $(@D)/source
+	git -C $(@D)/source update-ref --no-deref HEAD $(TMDSIMPY_COMMIT)
+	git -C $(@D)/source checkout --quiet HEAD -- tmdsimpy LICENSE.txt
 	@touch $@
 
 $(VENV)/installed-dev: $(VENV)/installed
