@@ -21,17 +21,15 @@ class Beside:
     """One point."""
 
     frequency: float  # [rad/s]
-    difference: (
-        float  # of the complex fundamentals, relative to the greatest; NaN if no exact motion is found
-    )
-    truncation: float  # the estimate of what the single harmonic leaves out, relative
+    difference: float  # of amplitudes, relative to the greatest; NaN if no exact motion is found
+    truncation: float  # the estimate of what the single harmonic leaves out of them, relative
 
 
 def beside_exact(scene: Scene, curve: Curve) -> list[Beside]:
     """Compare some stable points of a curve, away from its folds, with exact periodic solutions.
 
     The exact motion is found by shooting from the point itself, or else from the motion that begins at rest,
-    and its fundamental compared.
+    and half its peak-to-peak displacement compared, of which errors are estimated.
     """
     return [_beside(scene, curve, int(i)) for i in chosen(curve)]
 
@@ -53,10 +51,8 @@ def _beside(scene: Scene, curve: Curve, i: int) -> Beside:
     exact = _exact_near(scene, curve, i)
     if exact is None:
         return Beside(frequency, float("nan"), truncation)
-    ours = curve.fundamental[i] * np.exp(1j * curve.phase[i])
-    theirs = exact.fundamental * np.exp(1j * exact.phase)
-    size = float(np.abs(ours).max())
-    return Beside(frequency, float(np.abs(theirs - ours).max()) / (size if size > 0.0 else 1.0), truncation)
+    off, size = float(np.abs(exact.amplitude - curve.amplitude[i]).max()), float(curve.amplitude[i].max())
+    return Beside(frequency, off / (size if size > 0.0 else 1.0), truncation)
 
 
 def _exact_near(scene: Scene, curve: Curve, i: int) -> Measure | None:
