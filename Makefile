@@ -37,7 +37,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration flexibility published report convergence kept-modes demo picture paper figures test check tables \
+.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -130,13 +130,6 @@ calibration: $(VENV)/installed  ## estimated over true errors of hard curves; so
 	$(BIN)/python tests/harmonic/calibration.py > build/calibration.partial
 	@mv build/calibration.partial build/calibration.txt; cat build/calibration.txt
 
-flexibility: build/flexibility.txt  ## what the flexibility of the modes that are left out is worth
-	@cat $<
-
-build/flexibility.txt: tests/structure/kept_modes.py src/fcm/scenes/beam.toml $(SOLVER) $(VENV)/installed
-	@mkdir -p build
-	$(BIN)/python $< src/fcm/scenes/beam.toml w15 1 2 3 5 10 > $@
-
 published: build/published.json  ## the numbers that others have published, beside those obtained
 
 build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/fcm/scenes/*.toml) $(VENV)/installed
@@ -177,7 +170,7 @@ extremes: $(VENV)/installed  ## the stiff and extreme cases as a table; fails if
 report: $(REPORT)/index.html  ## errors, run times and what failed on a page, build/report/index.html; minutes
 
 $(REPORT)/index.html: $(COMPARED:%=$(REPORT)/%.png) $(wildcard src/fcm/report/*.py src/fcm/compare/tables.py) \
-		build/convergence.txt build/flexibility.txt build/published.json \
+		build/convergence.txt build/kept-modes.txt build/published.json \
 		$(wildcard build/calibration.txt build/extremes.json build/study.txt $(OTHERS)/*.json)
 	$(BIN)/python -m fcm.report evidence $(REPORT) $(COMPARED:%=--scene %) --results build
 
@@ -189,10 +182,12 @@ build/convergence.txt: src/fcm/report/convergence.py src/fcm/plot/convergence.py
 	@mkdir -p build
 	$(BIN)/python -m fcm.report convergence build/convergence.json --picture build/convergence.png > $@
 
-kept-modes: $(VENV)/installed  ## error of peaks against the number of modes kept of a blade, in build
+kept-modes: build/kept-modes.txt  ## error of peaks against the number of modes kept of a blade, in build
+	@cat $<
+
+build/kept-modes.txt: src/fcm/report/kept_modes.py src/fcm/report/plane_blade.py $(SOLVER) $(VENV)/installed
 	@mkdir -p build
-	$(BIN)/python -m fcm.report kept-modes build/kept-modes.json --picture build/kept-modes.png > build/kept-modes.txt
-	@cat build/kept-modes.txt
+	$(BIN)/python -m fcm.report kept-modes build/kept-modes.json --picture build/kept-modes.png > $@
 
 .SECONDARY: $(COMPARED:%=$(REPORT)/%.nc)
 

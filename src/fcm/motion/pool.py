@@ -111,7 +111,14 @@ class Pool:
             "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
-        kinds = {"states": np.int8, "goal": np.int8, "exits": np.intp, "owner": np.intp, "used": np.intp, "reached": np.intp}
+        kinds = {
+            "states": np.int8,
+            "goal": np.int8,
+            "exits": np.intp,
+            "owner": np.intp,
+            "used": np.intp,
+            "reached": np.intp,
+        }
         old, made = self._pool, {}
         for name, shape in shapes.items():
             made[name] = np.zeros((capacity, *shape), kinds.get(name, np.float64))
@@ -121,7 +128,12 @@ class Pool:
         self.owner, self.goal, self.row = made["owner"], made["goal"], made["row"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
         self.terms = made["terms"]
-        self.turn, self.reached, self.table, self.table_forced = made["turn"], made["reached"], made["table"], made["table_forced"]
+        self.turn, self.reached, self.table, self.table_forced = (
+            made["turn"],
+            made["reached"],
+            made["table"],
+            made["table_forced"],
+        )
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]
         self._pool = made

@@ -73,7 +73,9 @@ def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choi
     far = [j for j, gap in gaps.items() if abs(gap) > _known_room(system, segments, y, j)]
     room = rooms(system, segments, far) if far else {}
     return [
-        _choice(system, segments, j, gap, *room[j]) if j in room else Choice(j, gap, _row(system, j), 0.0, False)
+        _choice(system, segments, j, gap, *room[j])
+        if j in room
+        else Choice(j, gap, _row(system, j), 0.0, False)
         for j, gap in gaps.items()
     ]
 

@@ -42,7 +42,7 @@ STORED = (  # how a file of results becomes a section, what of it failed, the fi
     (extremes_table.section, extremes_table.failures, "extremes.json", "make extremes"),
     (published.section, published.failures, "published.json", "make published"),
 )
-RECORDED = (recorded.STUDY, recorded.CALIBRATION, recorded.FLEXIBILITY)
+RECORDED = (recorded.STUDY, recorded.CALIBRATION, recorded.KEPT_MODES)
 OTHERS = "bench-others"  # a folder of results
 
 

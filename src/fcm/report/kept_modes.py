@@ -19,7 +19,6 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 from fcm.plot.kept_modes import Kept, draw_kept_modes
 from fcm.plot.style import save
-from fcm.report.page import Section, Table
 from fcm.report.plane_blade import blade, blade_scene
 from fcm.response.sweep import trace
 from fcm.scene import scene_from_dict
@@ -52,28 +51,6 @@ def kept_modes(messages: Messages, output: Path, picture: Path, scene: Path | No
         save(draw_kept_modes(rows), partial_file, dpi=DPI)
     click.echo("\n".join("  ".join(f"{cell:>20s}" for cell in line) for line in (COLUMNS, *texts(rows))))
     messages.info(f"wrote {output} and {picture}")
-
-
-def section(numbers: Path, picture: str) -> Section:
-    """The part of a page on the file of numbers that the command wrote, and its picture beside the page."""
-    rows = [
-        Kept(one["modes"], *(tuple(one[key]) for key in ("with_flexibility", "without", "bound")))
-        for one in json.loads(numbers.read_text(encoding="utf-8"))
-    ]
-    return Section(
-        "Modes that are left out",
-        (
-            "A blade of 600 degrees of freedom with a contact at a corner of its tip, at preloads at which "
-            "it sticks, slips and is all but open. Greatest relative errors of its peaks, against those of "
-            f"{MANY} modes; the bounds are those that the run states, of a resonance's damping and of "
-            "receptances.",
-        ),
-        picture=picture,
-        caption="With the flexibility of the modes that are not kept a few modes are enough; without it, the "
-        "compliance of the blade beside its contact comes in with the inverse of their number.",
-        commands=("make kept-modes",),
-        tables=(Table(COLUMNS, texts(rows)),),
-    )
 
 
 def texts(rows: Sequence[Kept]) -> list[tuple[str, ...]]:
