@@ -23,7 +23,7 @@ from fcm.harmonic.balance import Balance
 from fcm.harmonic.record import Record
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray, Force
-from fcm.structure.linear import Linear, linear_of
+from fcm.structure.linear import Linear, amplitudes, linear_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear, Wave
 from fcm.structure.travelling import TravellingReceptance
@@ -54,10 +54,11 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     Of a sector of a ring it is told what digits are lost.
     """
     rounding = np.zeros_like(points.amplitude)
-    balance, springs = system.balance(), system.springs(stuck=True)
-    stiff = np.flatnonzero(_stiffness(balance, points.z[:, -1], springs) > STIFF)
+    springs = system.springs(stuck=True)
+    stiff = np.flatnonzero(_stiffness(system, points.z[:, -1], springs) > STIFF)
     if not stiff.size:
         return points, rounding
+    balance = system.balance()
     made = replace(
         points, X=points.X.copy(), mean=points.mean.copy(), force=points.force.copy(), z=points.z.copy(),
         amplitude=points.amplitude.copy(),
@@ -79,15 +80,24 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     return made, rounding
 
 
-def _stiffness(balance: Balance, omega: FloatArray, springs: FloatArray) -> FloatArray:
-    """The greatest k |G| of the contacts at frequencies."""
+def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatArray:
+    """The greatest k |G| of the contacts at frequencies (point,)."""
+    linear = system.linear
     if not springs.size:
         return np.zeros(omega.size)
-    found = np.empty(omega.size)
-    for i, w in enumerate(omega):
-        balance.seen.at(w)
-        found[i] = (np.abs(_receptance(balance).diagonal()) * springs).max()
+    if isinstance(linear, RingLinear):
+        balance = system.balance()
+        return np.array([_stiffest(balance, w, springs) for w in omega])
+    force = np.ones((omega.size, 1, linear.natural.size), dtype=np.complex128)
+    compliance = amplitudes(linear.natural, linear.damping, omega, np.ones(1), force)[:, 0]
+    found: FloatArray = (np.abs(compliance @ linear.ports**2) * springs).max(axis=1)
     return found
+
+
+def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
+    """The greatest k |G| at a frequency."""
+    balance.seen.at(omega)
+    return float((np.abs(_receptance(balance).diagonal()) * springs).max())
 
 
 def _receptance(balance: Balance) -> ComplexArray:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy
 
 import fcm
 
@@ -33,6 +32,8 @@ def fingerprint(*parts: Any) -> bytes:
 @cache
 def program(folder: Path) -> bytes:
     """Digest of the sources in a folder, as they are, and of what they are run by."""
+    import scipy  # 40 ms, which only results that are kept need
+
     versions = (
         fcm.__version__,
         platform.python_version(),
