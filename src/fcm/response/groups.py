@@ -11,7 +11,9 @@ import numpy as np
 from fcm.response.trace import Wanted, traced_curve
 from fcm.results.gist import Gist, without_points
 from fcm.results.jumps import Jump
-from fcm.results.result import DEFECT, Curve, NonlinearMode, Orbits, Peak, Resonance
+from fcm.results.nonlinear_mode import NonlinearMode, Resonance
+from fcm.results.orbits import Orbits
+from fcm.results.result import DEFECT, Curve, Peak
 from fcm.run import Lost, Report
 from fcm.scene.model import Scene
 

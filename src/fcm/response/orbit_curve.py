@@ -18,7 +18,8 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.response.groups import lost_curve
 from fcm.response.visit import Visitor
-from fcm.results.result import Curve, Orbits, Peak
+from fcm.results.orbits import Orbits
+from fcm.results.result import Curve, Peak
 from fcm.scene.model import Scene
 
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same

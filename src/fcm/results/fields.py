@@ -1,69 +1,22 @@
-"""What the variables of a response file are: dimensions, values, meanings and units."""
+"""The variables of a response file: of every point here, of every curve in `curve_fields`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.gist import gist_of
-from fcm.results.padded import Padded, by_fold, by_point
+from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
+from fcm.results.field import Field
+from fcm.results.meanings import CF_UNIT, CYCLE, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
+from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
-from fcm.results.scatter import PERCENTS, SWEEPS, Scatter, scatter
+from fcm.results.scatter import scatter
 from fcm.units import in_unit, is_rotation
-
-ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
-LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
-    ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
-    ("b_bar", "mu k_v b / (k_u a) of the loop", {"units": "1"}),
-    ("phi", "phase of the normal motion before the tangential, of the loop", {"units": "radian"}),
-    ("tangential_amplitude", "amplitude a of the tangential motion across the contact", {}),
-    ("spring_force", "k_u a, by which the loop's forces are divided", {}),
-)
-
-CYCLE = (  # of Curve.cycle
-    ("greatest_normal_force", "greatest normal force of the cycle"),
-    ("greatest_friction_force", "greatest friction force of the cycle"),
-    ("slip_path", "way of the slider in slip, in a cycle"),
-    ("dissipated_energy", "energy that friction takes in a cycle"),
-)
-
-EXACT = {  # meanings that differ where the curves are of exact periodic solutions
-    "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
-    "S separation",
-    "table_error": "0: no table was used",
-    "truncation_error": "0: no harmonic was left out",
-    "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle",
-}
-ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
-    "closure_error": (
-        (),
-        {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
-    ),
-    "repeats": (
-        (),
-        {
-            "long_name": "periods of the force after which the motion repeats, 0 if it is quasi-periodic or "
-            "irregular",
-            "units": "1",
-        },
-    ),
-    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle"}),
-    "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
-    "family_least": (
-        ("dof",),
-        {"long_name": "least amplitude over the residual friction of contacts that never slip"},
-    ),
-    "family_greatest": (
-        ("dof",),
-        {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
-    ),
-    "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
-}
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:
@@ -85,22 +38,6 @@ MODE: dict[str, tuple[Callable[[Curve], Any], tuple[str, ...], dict[str, str]]] 
     ),
 }
 
-LENGTHS = (
-    "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
-    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path", "peak_percentile", "tracked_amplitude", "optimum_peak",
-)  # fmt: skip
-CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
-FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
-
-
-class Field(NamedTuple):
-    """One variable of the file."""
-
-    dims: tuple[str, ...]
-    values: npt.NDArray[Any] | Padded
-    attrs: dict[str, str]
-
 
 def fields_of(response: Response) -> dict[str, Field]:
     """Every variable of the file, coordinates first."""
@@ -114,12 +51,12 @@ def fields_of(response: Response) -> dict[str, Field]:
         drawn = {"drawn": "true"} if key in response.drawn else {}
         out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"} | drawn)
     if response.curves or (response.histories is None and response.tracking is None):
-        out |= _gist_fields(response) if response.peaks_only else _point_fields(response)
-        out |= _curve_fields(response)
+        out |= gist_fields(response) if response.peaks_only else _point_fields(response)
+        out |= curve_fields(response)
         if any(c.sensitivity is not None for c in response.curves):
-            out |= _sensitivity_fields(response)
+            out |= sensitivity_fields(response)
         if found := scatter(response):
-            out |= _scatter_fields(found, response.frequency_unit)
+            out |= scatter_fields(found, response.frequency_unit)
     if response.tracking is not None:
         from fcm.results.tracked_fields import tracked_fields
 
@@ -244,124 +181,3 @@ def _of_loop(curve: Curve, column: int) -> FloatArray:
 
 def _of_cycle(curve: Curve, column: int) -> FloatArray:
     return curve.cycle[..., column]
-
-
-def _gist_fields(response: Response) -> dict[str, Field]:
-    """What is known of all points of each curve, where they are not written."""
-    gists = [curve.gist or gist_of(curve) for curve in response.curves]
-    of_all = {
-        "greatest_table_error": ("largest table_error of the curve", [one.table_error for one in gists]),
-        "greatest_truncation_error": (
-            "largest truncation_error of the curve",
-            [one.truncation_error for one in gists],
-        ),
-        "points": ("points that were computed", [one.points for one in gists]),
-    }
-    out = {
-        name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
-        for name, (meaning, values) in of_all.items()
-    }
-    if not response.complete:
-        reasons = np.array([curve.reason for curve in response.curves])
-        out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
-    return out
-
-
-def _curve_fields(response: Response) -> dict[str, Field]:
-    """One value or row for each curve: peaks, folds, whether it is complete."""
-    curves, unit = response.curves, response.frequency_unit
-    cf_unit = CF_UNIT[unit]
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
-    folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
-    complete = np.array([c.complete for c in curves], dtype=np.int8)
-    by_dof = ("curve", "dof")
-    return {
-        "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
-        "peak_frequency": Field(
-            by_dof,
-            in_unit(peaks[..., 1], unit),
-            {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
-        ),
-        "peak_error": Field(
-            by_dof,
-            peaks[..., 2],
-            {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
-        ),
-        "fold_frequency": Field(
-            ("curve", "fold"),
-            folds,
-            {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
-        ),
-        **_level_folds(curves),
-        "complete": Field(
-            ("curve",),
-            complete,
-            {"long_name": "1 where the curve reached the end of its range", "units": "1"},
-        ),
-    }
-
-
-def _scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
-    """Percentiles over the curves that differ in drawn numbers alone."""
-    of_dof, of_sweep = ("scatter", "percent", "dof"), ("scatter", "percent", "sweep_direction")
-    peak, frequency, jump = (
-        np.stack([getattr(one, x) for one in found]) for x in ("peak", "frequency", "jump")
-    )
-    at = {"units": CF_UNIT[unit]}
-    return {
-        "percent": Field(("percent",), np.array(PERCENTS), {"long_name": "percentage of curves below"}),
-        "sweep_direction": Field(("sweep_direction",), np.array(SWEEPS), {"long_name": "of a slow sweep"}),
-        "peak_percentile": Field(of_dof, peak, {"long_name": "percentile of the greatest amplitude"}),
-        "peak_frequency_percentile": Field(
-            of_dof, in_unit(frequency, unit), {"long_name": "percentile of its frequency"} | at
-        ),
-        "jump_percentile": Field(
-            of_sweep, in_unit(jump, unit), {"long_name": "percentile of the first jump's frequency"} | at
-        ),
-        "jump_share": Field(
-            ("scatter", "sweep_direction"),
-            np.stack([one.jumping for one in found]),
-            {"long_name": "share of curves that jump", "units": "1"},
-        ),
-    }
-
-
-def _sensitivity_fields(response: Response) -> dict[str, Field]:
-    """Derivatives of the peaks by the numbers of the scene; NaN where a curve has none."""
-    curves, dofs = response.curves, len(response.dofs)
-    numbers = next(c.sensitivity.numbers for c in curves if c.sensitivity is not None)
-    height, frequency = (np.full((len(curves), dofs, len(numbers)), np.nan) for _ in range(2))
-    values, kind = (
-        np.full((len(curves), len(numbers)), np.nan),
-        np.full((len(curves), dofs), "", dtype="<U16"),
-    )
-    for i, curve in enumerate(curves):
-        if curve.sensitivity is not None:
-            height[i], values[i] = curve.sensitivity.height, curve.sensitivity.values
-            frequency[i] = in_unit(curve.sensitivity.frequency, response.frequency_unit)
-            kind[i] = [one.value for one in curve.sensitivity.kind]
-    by = ("curve", "dof", "number")
-    return {
-        "number": Field(
-            ("number",), np.array(numbers), {"long_name": "number of the scene, by its key path"}
-        ),
-        "number_value": Field(("curve", "number"), values, {"long_name": "value of the number"}),
-        "sensitivity": Field(by, height, {"long_name": "derivative of the greatest amplitude by the number"}),
-        "frequency_sensitivity": Field(
-            by, frequency, {"long_name": "derivative of its frequency by the number"}
-        ),
-        "peak_kind": Field(
-            ("curve", "dof"),
-            kind,
-            {"long_name": "what the greatest amplitude is: smooth, corner, end of range, or unknown"},
-        ),
-    }
-
-
-def _level_folds(curves: Sequence[Curve]) -> dict[str, Field]:
-    """The folds of curves against the level of the forces; nothing for others."""
-    if all(curve.level is None for curve in curves):
-        return {}
-    text = "levels of the forces at the folds in order along the curve"
-    levels = by_fold(curves, lambda curve: np.array(curve.level_folds))
-    return {"fold_level": Field(("curve", "level_fold"), levels, {"long_name": text, "units": "1"})}

@@ -12,9 +12,12 @@ import numpy as np
 
 import fcm
 from fcm.files import replacing
-from fcm.results.fields import ORBIT_KINDS, Field, fields_of
+from fcm.results.field import Field
+from fcm.results.fields import fields_of
+from fcm.results.meanings import ORBIT_KINDS
+from fcm.results.orbits import Orbits
 from fcm.results.padded import CHUNK, Padded
-from fcm.results.result import Orbits, Response
+from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
 from fcm.units import in_unit, unit_of
 

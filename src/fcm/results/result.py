@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -13,6 +12,8 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.gist import Gist, gist_of, worst
 from fcm.results.jumps import Jump, jumps
+from fcm.results.nonlinear_mode import NonlinearMode
+from fcm.results.orbits import Orbits
 from fcm.results.tracked import Tracking
 from fcm.scene.model import Scene
 from fcm.units import in_unit
@@ -32,71 +33,6 @@ class Peak(NamedTuple):
     amplitude: float
     frequency: float  # [rad/s]
     error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
-
-
-@dataclass
-class Orbits:
-    """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
-
-    closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
-    sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
-    repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if it does not
-    cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
-    cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
-    family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
-    family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
-    jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
-    periods: int = 0  # of the motion that were computed to trace the curve
-    span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought
-
-
-class Resonance(NamedTuple):
-    """Of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
-
-    level: float  # of the scene's forces
-    frequency: float  # [rad/s] of the forces
-    modal_amplitude: float
-    amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
-
-
-@dataclass
-class NonlinearMode:
-    """What only the points of a nonlinear mode have; `frequency` of the curve is that of the mode."""
-
-    number: int
-    amplitude: FloatArray  # (point,) modal amplitude a, of modes of mass 1
-    damping: FloatArray  # (point,) ratio
-    force: FloatArray  # (point,) p that the scene's forces do on the mode
-    resonant_level: FloatArray  # (point,) of the scene's forces, with which the resonance has the amplitude
-    levels: tuple[float, ...]  # of the scene's forces, at which the response is predicted
-    flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
-    folds: list[float]  # modal amplitudes at which the curve turns back
-    resonances: list[Resonance]  # at these levels
-
-    def summary(self, frequency: FloatArray, unit: str, dofs: Iterable[str]) -> dict[str, Any]:
-        """As `fcm respond --json` prints it."""
-        top = int(self.damping.argmax())
-        return {
-            "number": self.number,
-            "frequency": in_unit(frequency[[0, -1]], unit).tolist(),
-            "damping": self.damping[[0, -1]].tolist(),
-            "modal_amplitude": self.amplitude[[0, -1]].tolist(),
-            "greatest_damping": {
-                "damping": float(self.damping[top]),
-                "frequency": float(in_unit(frequency[top], unit)),
-                "modal_amplitude": float(self.amplitude[top]),
-            },
-            "folds": self.folds,
-            "resonances": [
-                {
-                    "level": one.level,
-                    "frequency": float(in_unit(one.frequency, unit)),
-                    "modal_amplitude": one.modal_amplitude,
-                    "amplitude": {dof: one.amplitude[dof] for dof in dofs},
-                }
-                for one in self.resonances
-            ],
-        }
 
 
 @dataclass

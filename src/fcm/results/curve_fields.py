@@ -1,0 +1,136 @@
+"""Variables with one value or row for each curve: peaks, folds, derivatives of peaks, percentiles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.results.field import Field
+from fcm.results.gist import gist_of
+from fcm.results.meanings import CF_UNIT
+from fcm.results.padded import by_fold
+from fcm.results.result import Curve, Response
+from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
+from fcm.units import in_unit
+
+
+def gist_fields(response: Response) -> dict[str, Field]:
+    """What is known of all points of each curve, where they are not written."""
+    gists = [curve.gist or gist_of(curve) for curve in response.curves]
+    of_all = {
+        "greatest_table_error": ("largest table_error of the curve", [one.table_error for one in gists]),
+        "greatest_truncation_error": (
+            "largest truncation_error of the curve",
+            [one.truncation_error for one in gists],
+        ),
+        "points": ("points that were computed", [one.points for one in gists]),
+    }
+    out = {
+        name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
+        for name, (meaning, values) in of_all.items()
+    }
+    if not response.complete:
+        reasons = np.array([curve.reason for curve in response.curves])
+        out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
+    return out
+
+
+def curve_fields(response: Response) -> dict[str, Field]:
+    """One value or row for each curve: peaks, folds, whether it is complete."""
+    curves, unit = response.curves, response.frequency_unit
+    cf_unit = CF_UNIT[unit]
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
+    folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
+    complete = np.array([c.complete for c in curves], dtype=np.int8)
+    by_dof = ("curve", "dof")
+    return {
+        "peak_amplitude": Field(by_dof, peaks[..., 0], {"long_name": "greatest amplitude of the curve"}),
+        "peak_frequency": Field(
+            by_dof,
+            in_unit(peaks[..., 1], unit),
+            {"long_name": "frequency of the greatest amplitude", "units": cf_unit},
+        ),
+        "peak_error": Field(
+            by_dof,
+            peaks[..., 2],
+            {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
+        ),
+        "fold_frequency": Field(
+            ("curve", "fold"),
+            folds,
+            {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
+        ),
+        **_level_folds(curves),
+        "complete": Field(
+            ("curve",),
+            complete,
+            {"long_name": "1 where the curve reached the end of its range", "units": "1"},
+        ),
+    }
+
+
+def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
+    """Percentiles over the curves that differ in drawn numbers alone."""
+    of_dof, of_sweep = ("scatter", "percent", "dof"), ("scatter", "percent", "sweep_direction")
+    peak, frequency, jump = (
+        np.stack([getattr(one, x) for one in found]) for x in ("peak", "frequency", "jump")
+    )
+    at = {"units": CF_UNIT[unit]}
+    return {
+        "percent": Field(("percent",), np.array(PERCENTS), {"long_name": "percentage of curves below"}),
+        "sweep_direction": Field(("sweep_direction",), np.array(SWEEPS), {"long_name": "of a slow sweep"}),
+        "peak_percentile": Field(of_dof, peak, {"long_name": "percentile of the greatest amplitude"}),
+        "peak_frequency_percentile": Field(
+            of_dof, in_unit(frequency, unit), {"long_name": "percentile of its frequency"} | at
+        ),
+        "jump_percentile": Field(
+            of_sweep, in_unit(jump, unit), {"long_name": "percentile of the first jump's frequency"} | at
+        ),
+        "jump_share": Field(
+            ("scatter", "sweep_direction"),
+            np.stack([one.jumping for one in found]),
+            {"long_name": "share of curves that jump", "units": "1"},
+        ),
+    }
+
+
+def sensitivity_fields(response: Response) -> dict[str, Field]:
+    """Derivatives of the peaks by the numbers of the scene; NaN where a curve has none."""
+    curves, dofs = response.curves, len(response.dofs)
+    numbers = next(c.sensitivity.numbers for c in curves if c.sensitivity is not None)
+    height, frequency = (np.full((len(curves), dofs, len(numbers)), np.nan) for _ in range(2))
+    values, kind = (
+        np.full((len(curves), len(numbers)), np.nan),
+        np.full((len(curves), dofs), "", dtype="<U16"),
+    )
+    for i, curve in enumerate(curves):
+        if curve.sensitivity is not None:
+            height[i], values[i] = curve.sensitivity.height, curve.sensitivity.values
+            frequency[i] = in_unit(curve.sensitivity.frequency, response.frequency_unit)
+            kind[i] = [one.value for one in curve.sensitivity.kind]
+    by = ("curve", "dof", "number")
+    return {
+        "number": Field(
+            ("number",), np.array(numbers), {"long_name": "number of the scene, by its key path"}
+        ),
+        "number_value": Field(("curve", "number"), values, {"long_name": "value of the number"}),
+        "sensitivity": Field(by, height, {"long_name": "derivative of the greatest amplitude by the number"}),
+        "frequency_sensitivity": Field(
+            by, frequency, {"long_name": "derivative of its frequency by the number"}
+        ),
+        "peak_kind": Field(
+            ("curve", "dof"),
+            kind,
+            {"long_name": "what the greatest amplitude is: smooth, corner, end of range, or unknown"},
+        ),
+    }
+
+
+def _level_folds(curves: Sequence[Curve]) -> dict[str, Field]:
+    """The folds of curves against the level of the forces; nothing for others."""
+    if all(curve.level is None for curve in curves):
+        return {}
+    text = "levels of the forces at the folds in order along the curve"
+    levels = by_fold(curves, lambda curve: np.array(curve.level_folds))
+    return {"fold_level": Field(("curve", "level_fold"), levels, {"long_name": text, "units": "1"})}

@@ -1,0 +1,60 @@
+"""What the variables of a response file mean: names, meanings, units."""
+
+from __future__ import annotations
+
+ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
+LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
+    ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
+    ("b_bar", "mu k_v b / (k_u a) of the loop", {"units": "1"}),
+    ("phi", "phase of the normal motion before the tangential, of the loop", {"units": "radian"}),
+    ("tangential_amplitude", "amplitude a of the tangential motion across the contact", {}),
+    ("spring_force", "k_u a, by which the loop's forces are divided", {}),
+)
+
+CYCLE = (  # of Curve.cycle
+    ("greatest_normal_force", "greatest normal force of the cycle"),
+    ("greatest_friction_force", "greatest friction force of the cycle"),
+    ("slip_path", "way of the slider in slip, in a cycle"),
+    ("dissipated_energy", "energy that friction takes in a cycle"),
+)
+
+EXACT = {  # meanings that differ where the curves are of exact periodic solutions
+    "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
+    "S separation",
+    "table_error": "0: no table was used",
+    "truncation_error": "0: no harmonic was left out",
+    "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle",
+}
+ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
+    "closure_error": (
+        (),
+        {"long_name": "by which a period fails to close, relative to the motion", "units": "1"},
+    ),
+    "repeats": (
+        (),
+        {
+            "long_name": "periods of the force after which the motion repeats, 0 if it is quasi-periodic or "
+            "irregular",
+            "units": "1",
+        },
+    ),
+    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle"}),
+    "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
+    "family_least": (
+        ("dof",),
+        {"long_name": "least amplitude over the residual friction of contacts that never slip"},
+    ),
+    "family_greatest": (
+        ("dof",),
+        {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
+    ),
+    "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
+}
+
+LENGTHS = (
+    "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
+    "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
+    "harmonic_amplitude", "slip_path", "peak_percentile", "tracked_amplitude", "optimum_peak",
+)  # fmt: skip
+CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
+FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")

@@ -1,0 +1,59 @@
+"""What curves of a nonlinear mode have besides, and the resonances that they foretell."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from fcm.contact.limits import FloatArray
+from fcm.units import in_unit
+
+
+class Resonance(NamedTuple):
+    """Of a nonlinear mode with the scene's forces, by single nonlinear mode theory."""
+
+    level: float  # of the scene's forces
+    frequency: float  # [rad/s] of the forces
+    modal_amplitude: float
+    amplitude: dict[str, float]  # of each dof, half the peak-to-peak displacement
+
+
+@dataclass
+class NonlinearMode:
+    """What only the points of a nonlinear mode have; `frequency` of the curve is that of the mode."""
+
+    number: int
+    amplitude: FloatArray  # (point,) modal amplitude a, of modes of mass 1
+    damping: FloatArray  # (point,) ratio
+    force: FloatArray  # (point,) p that the scene's forces do on the mode
+    resonant_level: FloatArray  # (point,) of the scene's forces, with which the resonance has the amplitude
+    levels: tuple[float, ...]  # of the scene's forces, at which the response is predicted
+    flanks: FloatArray  # (point, level, 2) [rad/s] where they give the amplitude, below and above resonance
+    folds: list[float]  # modal amplitudes at which the curve turns back
+    resonances: list[Resonance]  # at these levels
+
+    def summary(self, frequency: FloatArray, unit: str, dofs: Iterable[str]) -> dict[str, Any]:
+        """As `fcm respond --json` prints it."""
+        top = int(self.damping.argmax())
+        return {
+            "number": self.number,
+            "frequency": in_unit(frequency[[0, -1]], unit).tolist(),
+            "damping": self.damping[[0, -1]].tolist(),
+            "modal_amplitude": self.amplitude[[0, -1]].tolist(),
+            "greatest_damping": {
+                "damping": float(self.damping[top]),
+                "frequency": float(in_unit(frequency[top], unit)),
+                "modal_amplitude": float(self.amplitude[top]),
+            },
+            "folds": self.folds,
+            "resonances": [
+                {
+                    "level": one.level,
+                    "frequency": float(in_unit(one.frequency, unit)),
+                    "modal_amplitude": one.modal_amplitude,
+                    "amplitude": {dof: one.amplitude[dof] for dof in dofs},
+                }
+                for one in self.resonances
+            ],
+        }

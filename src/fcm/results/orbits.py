@@ -1,0 +1,27 @@
+"""What curves of exact periodic solutions have besides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.results.jumps import Jump
+
+
+@dataclass
+class Orbits:
+    """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
+
+    closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
+    sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
+    repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if it does not
+    cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
+    cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
+    family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
+    family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
+    jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
+    periods: int = 0  # of the motion that were computed to trace the curve
+    span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought
