@@ -188,7 +188,8 @@ def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
         return True
     if not one.stable == middle.stable == other.stable:
         return False
-    if min(v.turn for v in verdicts) < TURN:
+    # what is unstable is no less so by a flip besides
+    if one.stable == 1.0 and min(v.turn for v in verdicts) < TURN:
         return False
     safe = max(v.growth for v in verdicts) < SAFE
     if not safe and not one.held == middle.held == other.held:
