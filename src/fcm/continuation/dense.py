@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
+import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 ACROSS = cython.declare(cython.int, 40)  # unknowns from which on pivots are sought along rows
@@ -62,6 +63,22 @@ class Solver:
         right = np.asarray(self.right)
         right[:] = lapack.dgetrs(*self.factors, right, trans=1)[0]
         return 0
+
+    def inverse(self) -> npt.NDArray[np.float64]:
+        """Of the matrix that was factored; right is lost."""
+        if self.size >= LARGE:
+            from scipy.linalg import lapack
+
+            # all columns at once, which is far faster than one after the other
+            return np.asarray(lapack.dgetrs(*self.factors, np.eye(self.size), trans=1)[0])
+        columns = np.zeros((self.size, self.size))
+        i: cython.Py_ssize_t
+        for i in range(self.size):
+            self.right[:] = 0.0
+            self.right[i] = 1.0
+            self.substitute()
+            columns[:, i] = self.right
+        return columns
 
     @cython.cfunc
     @cython.exceptval(check=False)
