@@ -87,7 +87,7 @@ def test_a_fold_at_a_corner_has_an_error_too():
 
 
 def test_an_unstable_closed_branch_has_the_error_of_the_exact_motion():
-    """Its peak lies beside a fold: a Newton step at once leads elsewhere, one that comes gradually does not."""
+    """Its peak lies beside a fold: Newton at once leads elsewhere, by and by to it."""
     system = System(scene("shroud", 10))
     found, truth = estimated(system, 0.0), Truth(system)
     path, amplitude = max(

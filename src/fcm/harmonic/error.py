@@ -24,7 +24,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
-CHANCE_AT_PEAKS = 0.05
+CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
@@ -100,7 +100,8 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         now * (1.0 + shift[tops, d]),
     )
     relative = np.abs(height - now) / np.where(now > 0.0, now, 1.0)
-    relative = np.maximum(relative, CHANCE_AT_PEAKS * np.median(relative))
+    told = relative[np.isfinite(relative)]
+    relative = np.maximum(relative, CHANCE_AT_PEAKS * np.median(told) if told.size else 0.0)
     error[tops[inside], d[inside]] = relative[inside]
     size = shown.amplitude.max(axis=1)
     return Errors(
