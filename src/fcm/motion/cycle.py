@@ -30,9 +30,8 @@ class Cycle:
     @property
     def states(self) -> tuple[str, ...]:
         """For each contact the sequence of its states, such as 'EPEN', as if the cycle repeated."""
-        lasting = np.flatnonzero(np.asarray(self.segments.length) > 0.0)
-        letters = self.letters
-        return tuple(_sequence([letters[i][j] for i in lasting]) for j in range(len(self.system.contacts)))
+        lasting = np.asarray(self.segments.states)[np.asarray(self.segments.length) > 0.0]
+        return tuple(_sequence([LETTERS[code] for code in codes]) for codes in lasting.T.tolist())
 
     def values(self, rows: FloatArray, times: FloatArray) -> FloatArray:
         """rows @ y at increasing times [s] from the start of the cycle: (time, row)."""

@@ -30,6 +30,7 @@ else:
 GRAZING = cython.declare(
     cython.double, 1e-12
 )  # an exit passed this slowly, relative to its terms, is touched
+FEW = cython.declare(cython.int, 4)  # rows that are sooner moved one by one
 DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
 _POWERS = cython.declare(cython.int, 8)
 _OPEN = cython.declare(cython.int, 0)
@@ -203,13 +204,13 @@ class Derivative:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
-        """The same by a part x of a step: by its matrix, or, of a large system, column by column."""
+        """The same by a part x of a step: by its matrix, or, where that is more work, row by row."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         j: cython.Py_ssize_t
         size: cython.double
-        if self.flows.terms.shape[1] == 0:
+        if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
             return
         size = x

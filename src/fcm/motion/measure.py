@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.motion.cycle import Cycle
 from fcm.motion.integrals import Integrals
-from fcm.motion.scan import Scan
+from fcm.motion.scan import Rows, Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
 from fcm.scene.model import FloatArray
@@ -57,21 +57,21 @@ Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of 
 
 def displaced(system: System, segments: Segments) -> Extremes:
     """The least and the greatest displacement of each degree of freedom."""
-    shapes = system.scene.modal.shapes
-    rows = np.zeros((shapes.shape[1], system.size - 2))
-    rows[:, system.q] = shapes.T
-    return extremes(system, segments, rows)
+    return _extremes(system, segments, system.displacements)
 
 
 def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
     """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
+    return _extremes(system, segments, Rows(rows))
+
+
+def _extremes(system: System, segments: Segments, rows: Rows) -> Extremes:
     steps = system.steps(segments)
     found = Scan(steps, rows)
     system.run(found, steps)
-    places = np.asarray(found.place)
-    return _placed(found.least, places[:, 2:]), _placed(found.greatest, places[:, :2])
-
-
-def _placed(values: FloatArray, places: FloatArray) -> list[Extreme]:
-    pairs = zip(np.asarray(values).tolist(), places.tolist(), strict=True)
-    return [Extreme(value, int(place[0]), place[1]) for value, place in pairs]
+    values = zip(np.asarray(found.least).tolist(), np.asarray(found.greatest).tolist(), strict=True)
+    least, greatest = list[Extreme](), list[Extreme]()
+    for (low, high), place in zip(values, np.asarray(found.place).tolist(), strict=True):
+        greatest.append(Extreme(high, int(place[0]), place[1]))
+        least.append(Extreme(low, int(place[2]), place[3]))
+    return least, greatest

@@ -1,12 +1,17 @@
 from fcm.motion.steps cimport Steps
 
+cdef class Rows:
+    cdef readonly Py_ssize_t count
+    cdef double[::1] entry
+    cdef Py_ssize_t[::1] column, first
+
 cdef class Scan:
     cdef readonly Steps steps
     cdef readonly double[::1] greatest, least
     cdef readonly double[:, ::1] place
-    cdef double[::1] _entry, _powers
-    cdef Py_ssize_t[::1] _column, _first
-    cdef double[:, ::1] _here, _there, _old, _new
+    cdef Rows _rows
+    cdef double[::1] _powers
+    cdef double[:, ::1] _there, _old, _new
     cdef int _go(self) noexcept nogil
     cdef void _scan_segment(self, Py_ssize_t slot) noexcept nogil
     cdef void _look(self, Py_ssize_t slot, double[:, ::1] out) noexcept nogil

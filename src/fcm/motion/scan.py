@@ -22,21 +22,29 @@ _ORDER = cython.declare(cython.int, 19)
 
 
 @cython.cclass
+class Rows:
+    """Rows (row, d - 2) without their zeros, of the state vector without its last two components."""
+
+    def __init__(self, rows: FloatArray) -> None:
+        places = np.nonzero(rows)
+        self.count = rows.shape[0]
+        self.entry, self.column = rows[places], places[1].copy()
+        self.first = np.searchsorted(places[0], np.arange(self.count + 1))
+
+
+@cython.cclass
 class Scan:
-    """`greatest` and `least` (row,), the extremes of rows @ y, y without its last two components.
+    """`greatest` and `least` (row,), the extremes of rows @ y.
 
     `place` (row, 4) is where they are: segment and position of the greatest, and of the least.
     """
 
-    def __init__(self, steps: Steps, rows: FloatArray) -> None:
-        self.steps, count, d = steps, rows.shape[0], steps.flows.size
-        places = np.nonzero(rows)
-        self._entry, self._column = rows[places], places[1].copy()
-        self._first = np.searchsorted(places[0], np.arange(count + 1))
-        self.greatest, self.least = np.full(count, -np.inf), np.full(count, np.inf)
-        self.place, self._powers = np.zeros((count, 4)), np.zeros(ORDER + 1)
-        self._here, self._there = np.zeros((1, d)), np.zeros((3, d))
-        self._old, self._new = np.zeros((3, count)), np.zeros((3, count))
+    def __init__(self, steps: Steps, rows: Rows) -> None:
+        self.steps, self._rows = steps, rows
+        self.greatest, self.least = np.full(rows.count, -np.inf), np.full(rows.count, np.inf)
+        self.place, self._powers = np.zeros((rows.count, 4)), np.zeros(ORDER + 1)
+        self._there = np.zeros((4, steps.flows.size))
+        self._old, self._new = np.zeros((3, rows.count)), np.zeros((3, rows.count))
 
     def go(self) -> int:
         """Go through all steps: 0 when done, -1 where a flow is missing."""
@@ -81,7 +89,7 @@ class Scan:
         while left > 0.0:
             length = min(left, 1.0)
             for i in range(self.steps.flows.size):
-                self._here[0, i] = self._there[0, i]
+                self._there[3, i] = self._there[0, i]
             if length == 1.0:
                 self.steps.flows.advance(slot, 0, self._there, 0)
             else:
@@ -92,7 +100,7 @@ class Scan:
                 if self._may_turn(r):
                     if not expanded:
                         self.steps.length = length
-                        self.steps.flows.taylor(slot, self._here, 0, self.steps.terms)
+                        self.steps.flows.taylor(slot, self._there, 3, self.steps.terms)
                         expanded = True
                     self._extremes(r)
                 self._note(r, length, self._new[0, r])
@@ -140,8 +148,8 @@ class Scan:
         """Of row r with row k of y."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        for i in range(self._first[r], self._first[r + 1]):
-            total += self._entry[i] * y[k, self._column[i]]
+        for i in range(self._rows.first[r], self._rows.first[r + 1]):
+            total += self._rows.entry[i] * y[k, self._rows.column[i]]
         return total
 
     @cython.cfunc

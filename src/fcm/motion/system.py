@@ -13,6 +13,7 @@ from fcm.motion.derivative import Derivative
 from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.march import March
+from fcm.motion.scan import Rows
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
 from fcm.scene.model import Contact, FloatArray, Scene
@@ -54,6 +55,9 @@ class System:
         loads = loads_of(scene)
         self.constant, self.square = modal.shapes @ loads.constant, modal.shapes @ loads.square
         self.static: FloatArray = modal.shapes @ loads.static  # modal
+        displacements = np.zeros((modal.shapes.shape[1], self.size - 2))
+        displacements[:, self.q] = modal.shapes.T
+        self.displacements = Rows(displacements)  # of the degrees of freedom
         self.flows = self._flows()
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
         self._along = Derivative(self.flows, 1)
