@@ -48,7 +48,7 @@ class Lookout:
     @cython.nogil
     @cython.exceptval(check=False)
     def begin(self, y: cython.double[:, ::1], left: cython.double) -> cython.bint:
-        """Begin a segment of at most so many steps at y, its powers known; whether it ends in its first step."""
+        """Begin a segment of at most so many steps at y, its powers known; whether its first step ends it."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         e: cython.Py_ssize_t

@@ -15,7 +15,7 @@ BLOCK = 16  # steps that are looked at together: a power of two
 LEADING = 8  # derivatives of an exit that may tell which combination follows
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
-SMALL = 64  # components up to which the Taylor coefficients of exp(A h x) are kept
+SMALL = 128  # components up to which the Taylor coefficients of exp(A h x) are kept
 FEWEST, MOST_BYTES = 8, 2**29  # flows that are kept at least, and the memory that they otherwise have
 
 
@@ -105,10 +105,10 @@ class Pool:
         n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
-            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (), "reached": (),
+            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
-            "terms": (ORDER + 1 if n <= SMALL else 0, n, n),
-            "table": (n, wide), "table_forced": (2, wide), "sizes": (n, n), "sizes_forced": (2, n),
+            "reached": (), "terms": (ORDER + 1 if n <= SMALL else 0, n, n), "sizes": (n, n),
+            "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
         kinds = {
