@@ -16,6 +16,7 @@ from fcm.continuation.problem import Problem
 
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
+SHARP = cython.declare(cython.double, 1e-4)  # a step this short may lead round a corner, so that it misses
 MISLED = cython.declare(cython.double, 0.5)  # of a step of a soft problem: one that misses by more is refused
 FLAT = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
 
@@ -87,7 +88,7 @@ class Front:
                 return True
             self.newton.z[:] = self.guess
             self.there.shift = NAN
-        if self.problem.soft:
+        if self.problem.soft and step > SHARP:
             return self.newton.correct(step, MISLED * step)
         return self.newton.correct(step)
 
