@@ -93,6 +93,17 @@ def test_a_limit_of_time_is_said():
     assert not curve.complete and curve.reason.startswith("not finished in 1e-09 s of processor time, at ")
 
 
+def test_sharp_resonances_take_few_periods_and_no_step_limit_changes_them():
+    scene = between(yang(), 1.0, 1.4)
+    light = replace(scene, modal=replace(scene.modal, damping=np.full(2, 1e-4)))
+    long, short = (curve_of(replace(light, max_step=step)) for step in (0.2, 0.02))
+    assert long.complete and short.complete and len(long.folds) == 4
+    assert long.folds == pytest.approx(short.folds, rel=1e-10)
+    for dof, (amplitude, *_) in long.peaks.items():
+        assert amplitude == pytest.approx(short.peaks[dof][0], rel=1e-9)
+    assert long.orbits.periods < 5 * long.points < 1000
+
+
 @pytest.mark.parametrize("n_0", [5.0, -5.0, 50.0])
 def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
     whole, alone = curve_of(yang(n_0)), curve_of(yang(n_0), only="peaks")
