@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.peak import Kind
+from fcm.harmonic.system import System
+from fcm.harmonic.whole import Amplitude, jacobian_of
+from fcm.response.optimum import optimise
 from fcm.response.sensitivity import add_sensitivities
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
+from fcm.scene.model import Aim, Optimum
 
 STEP = 1e-3  # of a number
 
@@ -116,3 +120,47 @@ def test_a_group_of_contacts_is_one_number():
     numbers = found.curves[0].sensitivity.numbers
     assert "contact.platform.gap" in numbers and "contact.platform.n_0" not in numbers
     assert len(set(numbers)) == len(numbers)
+
+
+def test_at_an_optimum_they_are_those_of_the_scene_with_the_numbers_chosen():
+    aimed = replace(oscillator()[0], optimum=Optimum(("contact.c.n_0",), ((8.0, 12.0),), (Aim("u"),)))
+    found = optimise(aimed, harmonics=1)
+    add_sensitivities(found, aimed)
+    given, _ = oscillator({"contact.c.n_0": found.tracking.optima[0].values["contact.c.n_0"]})
+    expected = trace(given, harmonics=1)
+    add_sensitivities(expected, given)
+    one, other = (each.curves[0].sensitivity for each in (found, expected))
+    assert one.values == pytest.approx(other.values)
+    assert one.height[0] == pytest.approx(other.height[0], rel=1e-6, abs=1e-6)
+    assert one.height[0][one.numbers.index("contact.c.n_0")] == pytest.approx(0.0, abs=1e-5)  # it is least
+
+
+def test_a_condensed_balance_has_the_jacobian_of_its_differences():
+    """Of many contacts on few modes, whose own Jacobian is never formed."""
+    dofs = [f"{name}{i}" for i in range(20) for name in "uv"]
+    shapes = np.random.default_rng(1).normal(size=(3, 40))
+    numbers = {"mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 1.0}
+    scene = scene_from_dict({
+        "modal": {"dofs": dofs, "frequency": [1.0, 2.0, 3.0], "damping": 0.01, "shapes": shapes},
+        "contact": [
+            {"name": f"c{i}", "tangential": f"u{i}", "normal": f"v{i}", **numbers}
+            for i in range(20)
+        ],
+        "force": [{"dof": "u0", "amplitude": 1.0}],
+        "response": {"frequency": [0.5, 4.0]},
+    })  # fmt: skip
+    balance = System(scene, (1, 2)).balance()
+    assert balance.rank > 0
+    z = np.append(0.5 * np.random.default_rng(2).normal(size=balance.unknowns), 1.3)
+    balance.evaluate(z)
+    found, direction = jacobian_of(balance), np.random.default_rng(3).normal(size=z.size)
+    amplitude = Amplitude(balance, 2)
+    amplitude.at(z)
+    ahead, size = [], []
+    for step in (1e-6, -1e-6):
+        balance.evaluate(z + step * direction)
+        balance.report(z + step * direction, direction)
+        ahead.append(np.array(balance.residual))
+        size.append(balance.output[2])
+    assert found @ direction == pytest.approx((ahead[0] - ahead[1]) / 2e-6, rel=1e-6, abs=1e-6)
+    assert amplitude.slopes @ direction == pytest.approx((size[0] - size[1]) / 2e-6, rel=1e-6)

@@ -19,7 +19,8 @@ from fcm.results.result import Response
 from fcm.results.tracked import Optimal, TrackedCurve, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
-from fcm.scene.draft import Number, number_of
+from fcm.scene.address import replaced
+from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.model import FloatArray, Scene
 from fcm.track.descent import Valley, descend
 from fcm.track.envelope import Least, Target
@@ -169,12 +170,13 @@ def _optimal(task: _Task, values: FloatArray, best: Least, harmonics: tuple[int,
     scene = task.scene
     assert scene.optimum is not None
     names = tuple(f"{'greatest' if aim.ends else 'peak'}.{aim.dof}" for aim in scene.optimum.minimise)
+    active = [(scene.modal.dofs[one.dof], float(one.z[-2])) for one in best.active]
     return Optimal(
         parameters=dict(scene.parameters),
         values={number.key: float(value) for number, value in zip(task.numbers, values, strict=True)},
         minimised=names,
         value=best.value,
-        active=tuple((scene.modal.dofs[one.dof], float(one.z[-2])) for one in best.active),
+        active=tuple(sorted(active, key=lambda pair: pair[1])),
         kind=best.kind,
         harmonics=harmonics,
     )
@@ -189,6 +191,24 @@ def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scen
         for a, x in number.values(float(value)).items()
     }
     return scene.draft.curve(scene, scene.parameters, every)
+
+
+def scenes_at(scene: Scene, optima: list[Optimal]) -> tuple[Scene, ...]:
+    """The scenes of the curves of `optimise`, with the numbers chosen as if they had been given."""
+    numbers = [number for key in optima[0].values if (number := number_of(scene, key)) is not None]
+    free = scene
+    for number in numbers:
+        free = number.freed(free)
+    found = []
+    for curve, one in zip(free.each_curve(), optima, strict=True):
+        assert curve.draft is not None
+        parts = curve.draft.fixed(curve).parts
+        for number, value in zip(numbers, one.values.values(), strict=True):
+            for address, number_there in number.values(value).items():
+                parts = replaced(parts, address, number_there)
+        there = with_values(curve, numbers, np.array(list(one.values.values())))
+        found.append(replace(there, draft=Draft(parts, ()), parameters={}, curves=()))
+    return tuple(found)
 
 
 def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:

@@ -9,6 +9,7 @@ from fcm.harmonic.peak import Kind
 from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.reduction.put_back import unknowns
 from fcm.response.around import check_no_ring
+from fcm.response.optimum import scenes_at
 from fcm.results.result import Curve, Response
 from fcm.run import Progress
 from fcm.scene.model import FloatArray, Scene
@@ -23,7 +24,9 @@ REMARKS = {
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
     """Give every curve that has peaks their sensitivities; the scene is that of the response."""
     check_no_ring(scene, "sensitivities")
-    scenes = scene.each_curve() if response.curves else ()
+    scenes = tuple(scene.each_curve()) if response.curves else ()
+    if response.tracking is not None and response.tracking.optima:
+        scenes = scenes_at(scene, response.tracking.optima)
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
         if progress is not None:
             progress(i / len(scenes), "sensitivities")
