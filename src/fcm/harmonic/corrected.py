@@ -15,6 +15,7 @@ EVERY = 16  # points from one that is displaced to the next, before it is known 
 OFF = 0.3  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
 STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
+UNSETTLED = 2e-3  # a displacement at a top, relative, that is worth to be settled
 TOGETHER = 8  # points, within which tops of degrees of freedom lie together
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
 
@@ -68,13 +69,13 @@ class Corrected:
     def settled(self, tops: Indices) -> FloatArray:
         """By which amplitudes (dof,) at their tops change when the displacement there is settled, a factor.
 
-        One where no displacement is known; of tops that lie together the middle one speaks for all.
+        One where no displacement is known, or a small one; of tops that lie together the middle one speaks for all.
         """
         factor = np.ones(len(tops))
         unique = np.unique(tops)
         for group in np.split(unique, np.flatnonzero(np.diff(unique) > TOGETHER) + 1):
             i = int(group[len(group) // 2])
-            if self.linear[i] or np.isnan(self.change[i]).any():
+            if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
             there = np.isin(tops, group)
             now = self.amplitude[i] * (1.0 + self.change[i, 1:])
