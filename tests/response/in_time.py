@@ -28,9 +28,9 @@ def in_time(
             context.Process(target=_send, args=(work, case, seconds, send), daemon=True).start()
             send.close()
             running[receive] = case
-        for receive in wait(list(running)):
-            assert isinstance(receive, Connection)
-            case, result = running.pop(receive), _received(receive)
+        for ready in wait(list(running)):
+            assert isinstance(ready, Connection)
+            case, result = running.pop(ready), _received(ready)
             done += 1
             print(f"\r{done} of {count}", end="", file=sys.stderr, flush=True)
             yield case, result
