@@ -12,7 +12,6 @@ from fcm.scene.model import FloatArray
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
 POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
 BLOCK = 16  # steps that are looked at together: a power of two
-LEADING = 8  # derivatives of an exit that may tell which combination follows
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
 SMALL = 128  # components up to which the Taylor coefficients of exp(A h x) are kept

@@ -8,6 +8,7 @@ steady again: so it jumps where a slow sweep of the structure itself does, and t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import takewhile
 from typing import Any
@@ -205,4 +206,5 @@ class Visitor:
             return
         orbit = shoot(system, found.state)
         if orbit is not None:
-            self._take(first_point(self.problem, orbit))
+            with suppress(SimulationError):  # resonant but for rounding: no motion is determined
+                self._take(first_point(self.problem, orbit))
