@@ -173,3 +173,17 @@ def test_flows_that_were_used_longest_ago_make_room(monkeypatch):
     assert measure(little.cycles[-1]).amplitude == pytest.approx(
         whole.measures(last=1)[0].amplitude, rel=1e-15
     )
+
+
+@pytest.mark.parametrize(("n_0", "omega"), [(90.0, 1.2), (40.0, 0.9)])
+def test_a_stuck_contact_is_bounded_from_its_limits(n_0, omega):
+    """The bound is below both distances from the limits of friction on dense samples, by little."""
+    cycle = simulate(yang(n_0), omega, 3).cycles[-1]
+    system = cycle.system
+    assert cycle.states == ("E",)
+    times = np.linspace(0.0, cycle.duration, 20_001)
+    values = cycle.values(np.eye(system.size), times)
+    mu = system.contacts[0].mu
+    f, n = values[:, system.f][:, 0], n_0 + values[:, system.n][:, 0]
+    room = min((mu * n - f).min(), (mu * n + f).min())
+    assert room - 0.02 * mu * n.max() < cycle.segments.held(0) <= room

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import INFINITY, fabs
+from cython.cimports.libc.math import fabs
 
 from fcm.motion.events import workspace
 from fcm.motion.pool import BLOCK, ORDER
@@ -21,6 +21,7 @@ else:
     from fcm.motion.flow import Flows
 
 DEPTH = cython.declare(cython.double, 1e-13)  # an exit that is passed by less, relative to its size, is not
+UNSEEN = cython.declare(cython.double, 1e300)  # bound of what no step has been looked at for
 _ORDER = cython.declare(cython.int, 19)
 _BLOCK = cython.declare(cython.int, 16)
 _WHOLE = cython.declare(cython.int, 4)  # BLOCK is 2**4 steps
@@ -59,7 +60,7 @@ class Lookout:
         for i in range(self.flows.size):
             self._here[0, i] = self.there[0, i] = y[0, i]
         for i in range(self.flows.contacts):
-            self.slack[i] = INFINITY
+            self.slack[i] = UNSEEN
         for e in range(self.flows.exits[self.slot]):
             self._floors[e] = 0.0
             self._marked[e] = 1
