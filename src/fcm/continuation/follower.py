@@ -230,8 +230,8 @@ class Follower:
         return None
 
     def aim(self, step: float, longer: bool) -> None:
-        """Choose the next step; whether it may be longer than it was to be."""
-        self.step = min(step, self.max_step) if longer else min(self.step, step)
+        """Make the next step at most that long, or at least."""
+        self.step = min(max(self.step, step), self.max_step) if longer else min(self.step, step)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -50,7 +50,7 @@ class Follower(Protocol):
         """Keep the corner that is here, and turn into the direction that the curve has beyond."""
 
     def aim(self, step: float, longer: bool) -> None:
-        """Choose the next step; whether it may be longer than it was to be."""
+        """Make the next step at most that long, or at least."""
 
 
 def growth(error: float) -> float:
@@ -102,7 +102,7 @@ class Soft:
         if front.step <= SHARP:
             return follower.good() and (same or front.turn > STRAIGHT)
         near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
-        return same and near and front.turn > GENTLY
+        return follower.good() or (same and near and front.turn > GENTLY)
 
     def smooth(self, follower: Follower) -> object:
         """Go on to the place there."""

@@ -112,4 +112,4 @@ def _crossing(problem: OrbitProblem, path: Path, first: int, before: Sample, aft
 
 def _excess(point: Sample) -> float:
     """By how much the greatest multiplier is beyond where stability ends, on a logarithmic scale."""
-    return float(np.log(max(abs(point.multipliers[0]), 1e-300))) - np.log1p(STABLE)
+    return float(np.log(max(abs(point.multipliers[0]), 1e-300)) - np.log1p(STABLE))
