@@ -181,11 +181,12 @@ def root(
             low, before = at, growths[k]
         elif low < at < high:
             high, after = at, growths[k]
-    bend = 2.0 * HIGH * abs(after - before) / (high - low) * front.here.output[k]
-    if looks and after * after < bend:
-        return high
-    if looks and before * before < bend:
-        return low
+    if looks:  # for peaks: there is an output
+        bend = 2.0 * HIGH * abs(after - before) / (high - low) * front.here.output[k]
+        if after * after < bend:
+            return high
+        if before * before < bend:
+            return low
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high or not front.put(at, kind == MARGIN, False):
