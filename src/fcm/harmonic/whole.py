@@ -90,7 +90,7 @@ def _weights(X: ComplexArray, harmonics: FloatArray, samples: int) -> ComplexArr
     """W (harmonic,) of a displacement X (harmonic,)."""
     if harmonics.size == 1:
         size = np.abs(X)
-        return np.conj(X) / np.where(size > 0.0, size, 1.0)  # type: ignore[no-any-return]
+        return np.asarray(np.conj(X) / np.where(size > 0.0, size, 1.0), dtype=np.complex128)
     theta, waves = _sampled(tuple(harmonics.tolist()), samples)
     wave = (waves @ X).real
     at = theta[[wave.argmax(), wave.argmin()]]
