@@ -31,7 +31,8 @@ ABOUT = (
     "forces with steps sixteen times shorter; a peak of the other packages is taken from a polynomial "
     "through five of their points, which alone errs by some 1e-7. What is said of fcm is what its steps do; "
     "that the others come to the same peaks with more samples says that these are right. Processor "
-    "time, compilation not counted; that of fcm has every branch, the estimated errors and the stability in it, that of the others has not.",
+    "time, compilation not counted; that of fcm has every branch, the estimated errors and the stability in "
+    "it, that of the others has not.",
     "pyHarm-os gets the law of the paper as a plug-in of compiled code; tmdsimpy has it, differentiated by "
     "JAX. Both have what fcm has not: pyHarm-os any element in a structure of many parts, tmdsimpy rough "
     "contacts and sliding in a plane.",
