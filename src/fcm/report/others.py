@@ -60,7 +60,7 @@ class Row(NamedTuple):
         return (
             str(self.harmonics), self.package, str(self.samples or "exact"),
             f"{self.finished} of {self.asked}", str(self.points), f"{self.seconds:.3g}", greatest, middle,
-            f"{self.folds_right} of {self.finished}", f"{self.ratio:.3g}",
+            f"{self.folds_right} of {self.finished}", f"{self.ratio:.3g}" if self.finished else "-",
         )  # fmt: skip
 
 
@@ -112,7 +112,7 @@ def _random_row(package: str, results: list[Record], asked: dict[str, Record]) -
     reasons = [r["state"].partition(":")[0].partition(" at ")[0] for r in results if r["state"]]
     often = max(set(reasons), key=reasons.count, default="")
     return (
-        package, f"{len(done)} of {len(asked)}", "-" if package == OURS else f"{same}",
+        package, f"{len(done)} of {len(results)}", "-" if package == OURS else f"{same}",
         f"{median(r['seconds'] for r in results):.2g}" if results else "-",
         f"{often} ({reasons.count(often)})" if often else "",
     )  # fmt: skip
