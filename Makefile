@@ -7,6 +7,7 @@ OTHERS := build/bench-others
 DEMO   := build/demo
 PAPER  := build/paper
 REPORT := build/report
+DESIGN := build/design
 
 # Beside what fcm is measured: where TMDSimPy comes from, and the processor time [s] that a curve may take.
 TMDSIMPY        ?= https://github.com/tmd-lab/tmdsimpy
@@ -37,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
+.PHONY: help design kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -55,6 +56,21 @@ paper: $(PAPER)/index.html  ## the figures of the paper on a page, build/paper/i
 
 $(PAPER)/index.html: $(FIGURES) $(wildcard src/fcm/report/*_figures.py) $(addprefix src/fcm/report/,paper.py page.py rows.py made.py)
 	$(BIN)/python -m fcm.report paper $(PAPER)
+
+# $(call design,ARGUMENTS): run the program in the folder of the design
+define design
+	cd $(DESIGN) && $(abspath $(BIN))/fcm $(1)
+
+endef
+
+design: $(VENV)/installed  ## the preload to choose for a blade on ten contacts, with its scatter, in build/design; minutes
+	@mkdir -p $(DESIGN)
+	$(call design,respond blade --sensitivity -o blade.nc)
+	$(call design,plot peak blade.nc --dof 40y -o preload.png)
+	$(call design,plot response blade.nc --dof 40y -o least.png)
+	$(call design,plot sensitivity blade.nc --dof 40y -o sensitivity.png)
+	$(call design,respond blade-scatter -o scatter.nc)
+	$(call design,plot response scatter.nc --dof 40y --band 5 95 -o scatter.png)
 
 figures: $(FIGURES)  ## the pictures of that page only
 

@@ -18,9 +18,9 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.curves import Track, passed, whole
 from fcm.track.envelope import Least, Piece, Target, gaps, least, pieces_of
-from fcm.track.follow import Way, land
+from fcm.track.follow import land
 from fcm.track.seeds import moved, special_points
-from fcm.track.spot import Spot
+from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 

@@ -84,7 +84,7 @@ def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
     """The least value of each row of c as of `_least`."""
     h, wave = np.array(harmonics), c[:, 1:]
     if h.size == 1:
-        return c[:, 0].real - np.abs(wave[:, 0])  # type: ignore[no-any-return]
+        return c[:, 0].real - np.abs(wave[:, 0])
     theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
     at = theta[(wave @ np.exp(1j * np.outer(h, theta))).real.argmin(axis=1)]
     for _ in range(REFINED):

@@ -189,7 +189,7 @@ class Tracked(Problem):
     def _aside(self, y: FloatArray, adjoint: FloatArray) -> FloatArray:
         """What changes along the tangent, (unknown + 2,), at a place on it."""
         look = self._look(y)
-        return look.growth - np.append(adjoint @ look.jacobian, adjoint @ look.by_s)  # type: ignore[no-any-return]
+        return look.growth - np.append(adjoint @ look.jacobian, adjoint @ look.by_s)
 
     def is_top(self, z: FloatArray) -> bool:
         """Whether a peak is one, and not a trough: whether growth falls along the response."""
@@ -225,5 +225,5 @@ def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
         t = np.full(row.size, np.inf)
     size = float(np.linalg.norm(t))
     if size < ASKEW * float(np.linalg.norm(row)):
-        return t / size  # type: ignore[no-any-return]
-    return np.linalg.svd(matrix)[2][-1]
+        return t / size
+    return np.linalg.svd(matrix)[2][-1]  # type: ignore[no-any-return]
