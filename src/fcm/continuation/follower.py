@@ -9,6 +9,7 @@ import cython
 import numpy as np
 
 from fcm.continuation import events
+from fcm.continuation.back import BACK, earlier
 from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Mark, Path, Status
 from fcm.continuation.place import Place
@@ -69,6 +70,7 @@ class Follower:
     first: cython.double[::1]  # point,
     head: cython.double[::1]  # and its tangent
     interior: cython.bint
+    attempts: int  # to go back from where no step leads on
     soft: Soft | None
     progress: Progress | None
 
@@ -85,7 +87,7 @@ class Follower:
         self.max_step, self.progress = max_step, progress
         self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
         self.stops = np.array(self.values)
-        self.trail = Trail(problem.unknowns + 1)
+        self.trail, self.attempts = Trail(problem.unknowns + 1), 0
         self.greatest = np.zeros(problem.outputs)
         self.most = self.greatest
         self.soft = Soft(self.front, self.trail) if problem.soft else None
@@ -129,11 +131,21 @@ class Follower:
             if watch is not None and self.soft is not None and self.soft.repeated == 0:
                 watch(self.stage())
             status = self.advance()
+            if status is Status.STALLED and self.taken_back():
+                continue
             if status is not None:
                 return self.path(status)
             if self.progress is not None and count % 16 == 0:
                 self.progress(abs(here.z[self.n] - self.first[self.n]) / (self.high - self.low))
         return self.path(Status.TOO_LONG)
+
+    def taken_back(self) -> bool:
+        """Whether the curve can be gone on with from an earlier point, by other steps."""
+        if self.soft is not None or self.attempts == len(BACK):
+            return False
+        self.attempts += 1
+        self.step = min(FIRST, self.max_step)
+        return earlier(self.front, self.trail, BACK[self.attempts - 1])
 
     @cython.cfunc
     def advance(self) -> object:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fcm.continuation.follow import Progress
+from fcm.harmonic.beside import beside
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.start import Found
@@ -51,26 +53,35 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
 
     Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from
     its true place than the accuracy (relative), the harmonics that would do most are added, and all is
-    traced again, from starts of its own: a branch of few harmonics may not exist with more. Whether the
+    traced again, from starts of its own: a branch of few harmonics may not exist with more. What is beside
+    its stable peaks with more is a start, too, as the level of the forces may not lead to it. Whether the
     branches are complete is another question, see their status.
     """
-    looked: tuple[Found, ...] = ()
-    for _ in range(ROUNDS):
-        found = estimated(system, accuracy, progress, looked)
+    found = estimated(system, accuracy, progress)
+    for _ in range(ROUNDS - 1):
         if found.reached or found.work > WORK:
             return found
         more = enlarged(found, accuracy)
-        if more == system.harmonics:
+        if more == found.system.harmonics:
             return found
-        system, looked = system.with_harmonics(more), found.traced.looked
+        shown = [one.amplitude for one in found.shown]
+        near = beside(found.system, found.traced.branches.paths, shown, more)
+        then = estimated(system.with_harmonics(more), accuracy, progress, found.traced.looked, near)
+        if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
+            return found
+        found = then
     return found
 
 
 def estimated(
-    system: System, accuracy: float, progress: Progress | None = None, fewer: tuple[Found, ...] = ()
+    system: System,
+    accuracy: float,
+    progress: Progress | None = None,
+    fewer: tuple[Found, ...] = (),
+    near: Sequence[FloatArray] = (),
 ) -> Accurate:
-    """The response of a system, with its errors; fewer as of `traced`."""
-    response = traced(system, progress, fewer)
+    """The response of a system, with its errors; fewer and near as of `traced`."""
+    response = traced(system, progress, fewer, near)
     paths = response.branches.paths
     shown = tuple(reported(system, path) for path in paths)
     errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))

@@ -69,7 +69,8 @@ class Corrected:
     def settled(self, tops: Indices) -> FloatArray:
         """By which amplitudes (dof,) at their tops change when the displacement there is settled, a factor.
 
-        One where no displacement is known, or a small one; of tops that lie together the middle one speaks for all.
+        One where no displacement is known, or a small one; of tops that lie together the middle one speaks
+        for all.
         """
         factor = np.ones(len(tops))
         unique = np.unique(tops)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from fcm.harmonic.drift import undetermined
 from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, resonances, solutions
 from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
 
 
 @dataclass(frozen=True)
@@ -22,16 +24,22 @@ class Traced:
     looked: tuple[Found, ...]
 
 
-def traced(system: System, progress: Progress | None = None, fewer: tuple[Found, ...] = ()) -> Traced:
+def traced(
+    system: System,
+    progress: Progress | None = None,
+    fewer: tuple[Found, ...] = (),
+    near: Sequence[FloatArray] = (),
+) -> Traced:
     """Trace the branches through all solutions at the ends of the range and at the resonances inside it.
 
-    fewer: what was found there with fewer harmonics, if anything.
+    fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
+    elsewhere, whose branches are traced too.
     """
     span = system.scene.frequency_range
     exact = system.with_harmonics(system.harmonics)  # no table is asked for solutions to start from
     reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
     looked = tuple(solutions(exact, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
-    starts = [z for found in looked for z in found.solutions]
+    starts = [*(z for found in looked for z in found.solutions), *near]
     branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
     return Traced(_steady(system, branches), looked)
 
