@@ -102,7 +102,13 @@ class Soft:
         if front.step <= SHARP:
             return follower.good() and (same or front.turn > STRAIGHT)
         near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
-        return follower.good() or (same and near and front.turn > GENTLY)
+        return not self.turned_twice() and (follower.good() or (same and near and front.turn > GENTLY))
+
+    def turned_twice(self) -> bool:
+        """Whether the parameter went against the direction at both ends: there are two folds between."""
+        here, there = self.front.here, self.front.there
+        went = there.z[-1] - here.z[-1]
+        return bool(went * here.tangent[-1] < 0.0 and went * there.tangent[-1] < 0.0)
 
     def smooth(self, follower: Follower) -> object:
         """Go on to the place there."""
