@@ -1,8 +1,6 @@
-"""Frequencies in the unit of a scene, and the unit of a degree of freedom."""
+"""Frequencies in the unit of a scene."""
 
 from __future__ import annotations
-
-import re
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +8,6 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
-_ROTATION = re.compile(r"\d+[: _]?r[xyz]|\d+:[456]", re.IGNORECASE)
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 
@@ -34,21 +31,3 @@ def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
         rounded = np.round(value * power) / power
         same = rounded * scale == exact
     return np.where(same, rounded, value)
-
-
-def is_rotation(dof: str) -> bool:
-    """Whether a degree of freedom is that of a node about an axis, by its name.
-
-    >>> [is_rotation(dof) for dof in ("40rz", "40:6", "40z", "tip")]
-    [True, True, False, False]
-    """
-    return _ROTATION.fullmatch(dof) is not None
-
-
-def unit_of(dof: str, length: str) -> str:
-    """The unit of a displacement where lengths have one: a rotation is in radians.
-
-    >>> unit_of("40z", "mm"), unit_of("40rz", "mm"), unit_of("40rz", "")
-    ('mm', 'rad', '')
-    """
-    return "rad" if length and is_rotation(dof) else length

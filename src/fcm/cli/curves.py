@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import aligned, counted, number, short, swept
-from fcm.units import is_rotation, unit_of
+from fcm.rotation import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 

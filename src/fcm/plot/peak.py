@@ -14,7 +14,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
-from fcm.units import unit_of
+from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

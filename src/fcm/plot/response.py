@@ -22,7 +22,7 @@ from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
-from fcm.units import unit_of
+from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,7 +16,8 @@ from fcm.results.meanings import CF_UNIT, CYCLE, EXACT, FORCES, LENGTHS, LOOP, O
 from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
-from fcm.units import in_unit, is_rotation
+from fcm.rotation import is_rotation
+from fcm.units import in_unit
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:

@@ -19,7 +19,8 @@ from fcm.results.orbits import Orbits
 from fcm.results.padded import CHUNK, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
-from fcm.units import in_unit, unit_of
+from fcm.rotation import unit_of
+from fcm.units import in_unit
 
 if TYPE_CHECKING:
     import xarray
