@@ -43,11 +43,11 @@ CALIBRATION = Recorded(
 )  # fmt: skip
 KEPT_MODES = Recorded(
     "Modes that are left out", "make kept-modes", "kept-modes.txt",
-    "A blade of 600 degrees of freedom with a contact at a corner of its tip, at preloads at which it sticks, slips "
-    "and is all but open. Greatest relative errors of its peaks, against those of 300 modes; the bounds are those "
-    "that the run states, of a resonance's damping and of receptances.",
-    "kept-modes.png", "With the flexibility of the modes that are not kept a few modes are enough; without it, the "
-    "compliance of the blade beside its contact comes in with the inverse of their number.",
+    "A blade of 600 degrees of freedom with a contact at a corner of its tip, at preloads at which it sticks "
+    "or slips, or is all but open. Greatest relative errors of its peaks, against those of 300 modes; bounds "
+    "are those that the run states, of a resonance's damping and of receptances.",
+    "kept-modes.png", "With the flexibility of the modes that are not kept a few modes are enough; without "
+    "it the compliance of the blade beside its contact comes in with the inverse of their number.",
 )  # fmt: skip
 
 
