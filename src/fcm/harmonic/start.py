@@ -8,7 +8,7 @@ can change what it does. Every passing of the level 1 is a solution.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to the
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
+FINER = 0.25  # of that, where a curve has gone back on itself
 FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
 UNKNOWNS = 64  # or as many as make this many unknowns
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
@@ -98,11 +99,25 @@ def level_curve(
         level = max(low, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            path = follow(Level(system.balance(), omega), start, whole, True, step, stations)
+            for longest in (step, FINER * step):
+                path = follow(Level(system.balance(), omega), start, whole, True, longest, stations)
+                if not _back(path, low):
+                    break
+            else:
+                path = replace(path, status=Status.STALLED)
             if path.z.shape[0]:
                 return path
     assert path is not None
     return path
+
+
+def _back(path: Path, low: float) -> bool:
+    """Whether a curve that began above the lowest level has gone all its way back.
+
+    None does: where all is linear there is one solution.
+    """
+    levels = path.parameter
+    return bool(levels.size and levels[0] > low and levels[-1] <= low)
 
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
