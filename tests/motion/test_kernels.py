@@ -11,7 +11,7 @@ from scipy.linalg import expm
 from fcm.motion import simulate
 from fcm.motion.combination import made
 from fcm.motion.cycle import Cycle
-from fcm.motion.events import first_descent_of
+from fcm.motion.first_descent import first_descent_of
 from fcm.motion.measure import extremes, measure
 from fcm.motion.system import System
 

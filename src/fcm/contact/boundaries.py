@@ -8,15 +8,15 @@ smooth but for b = 1 at phi = 0 and pi, where ell_1 or ell_2 is a cone.
 import cython
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
     from cython.cimports.fcm.contact.cycle import UNKNOWN, Cycle
-    from cython.cimports.fcm.contact.law import Law
 else:
+    from fcm.contact.coefficient_law import CoefficientLaw
     from fcm.contact.cycle import UNKNOWN, Cycle
-    from fcm.contact.law import Law
 
 
 @cython.cclass
-class Boundaries(Law):
+class Boundaries(CoefficientLaw):
     """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, laid out as coefficients and their gradients."""
 
     def __init__(self) -> None:
@@ -31,7 +31,7 @@ class Boundaries(Law):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `Law`."""
+        """See `CoefficientLaw`."""
         i: cython.Py_ssize_t
         if self.cycle.place(n0_bar, b_bar, phi) == UNKNOWN:
             self.unknown(gradient, out, at)

@@ -1,5 +1,5 @@
 from fcm.contact.cycle cimport Cycle
-from fcm.contact.law cimport Law
+from fcm.contact.coefficient_law cimport CoefficientLaw
 
 cdef class Integrals(Cycle):
     cdef bint light, gradient
@@ -17,7 +17,7 @@ cdef class Integrals(Cycle):
     cdef void _stick_gradient(self) noexcept nogil
     cdef void _slipped(self) noexcept nogil
 
-cdef class ClosedForm(Law):
+cdef class ClosedForm(CoefficientLaw):
     cdef Integrals integrals
     cdef void evaluate(
         self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at

@@ -9,11 +9,11 @@ brought into it.
 import cython
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
     from cython.cimports.fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
-    from cython.cimports.fcm.contact.law import Law
 else:
+    from fcm.contact.coefficient_law import CoefficientLaw
     from fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
-    from fcm.contact.law import Law
 
 LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
 
@@ -190,7 +190,7 @@ class Integrals(Cycle):
 
 @cython.final
 @cython.cclass
-class ClosedForm(Law):
+class ClosedForm(CoefficientLaw):
     """The closed form as a law."""
 
     def __init__(self) -> None:
@@ -205,7 +205,7 @@ class ClosedForm(Law):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `Law`."""
+        """See `CoefficientLaw`."""
         if self.integrals.sum(n0_bar, b_bar, phi, gradient) == UNKNOWN:
             self.unknown(gradient, out, at)
             return

@@ -1,10 +1,10 @@
 from fcm.continuation.newton cimport Newton
 from fcm.harmonic.balance cimport Balance
-from fcm.harmonic.between cimport Between
+from fcm.harmonic.homotopy cimport Homotopy
 
 cdef class Lifted:
     cdef public Balance balance
-    cdef public Between between
+    cdef public Homotopy homotopy
     cdef public Newton newton
     cdef public double enough
     cdef public double[::1] found

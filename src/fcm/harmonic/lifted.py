@@ -8,7 +8,7 @@ from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.newton import Newton
 from fcm.harmonic.balance import Balance
-from fcm.harmonic.between import Between
+from fcm.harmonic.homotopy import Homotopy
 
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
@@ -27,8 +27,8 @@ class Lifted:
 
     def __init__(self, balance: Balance, fewer: list[int], more: list[int], enough: cython.double) -> None:
         self.balance, self.enough = balance, enough
-        self.between = Between(balance)
-        self.newton = Newton(self.between)
+        self.homotopy = Homotopy(balance)
+        self.newton = Newton(self.homotopy)
         width, wide = 2 + 4 * len(fewer), 2 + 4 * len(more)
         block = [0, 1, *(2 + 4 * more.index(h) + i for h in fewer for i in range(4))]
         place = np.arange(0, balance.contacts * wide, wide)[:, None] + np.array(block)
@@ -67,15 +67,15 @@ class Lifted:
     @cython.exceptval(-1, check=False)
     def corrected(self) -> cython.bint:
         """Move the guess to the curve: at once, or gradually."""
-        self.between.taken = 0.0
+        self.homotopy.taken = 0.0
         self.newton.z[:] = self.guess
         if self.nearly() and self.newton.moved <= FAR and self.onward():
             return True
         self.newton.z[:] = self.guess
-        self.between.evaluate(self.guess)
-        self.between.removed[:] = self.between.residual
+        self.homotopy.evaluate(self.guess)
+        self.homotopy.removed[:] = self.homotopy.residual
         for part in GRADUAL:
-            self.between.taken = 1.0 - part
+            self.homotopy.taken = 1.0 - part
             if not self.newton.correct(1.0) or self.newton.moved > FAR:
                 return False
         return self.away() <= FAR and self.onward()

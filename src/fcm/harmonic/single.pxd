@@ -1,10 +1,10 @@
-from fcm.contact.law cimport Law as Coefficients
+from fcm.contact.coefficient_law cimport CoefficientLaw
 from fcm.harmonic.law cimport Law
 
 cdef class SingleHarmonic(Law):
-    cdef public Coefficients coefficients
-    cdef public Coefficients exact
-    cdef public Coefficients coarse
+    cdef public CoefficientLaw coefficients
+    cdef public CoefficientLaw exact
+    cdef public CoefficientLaw coarse
     cdef double[::1] numbers
     cdef double[:, ::1] slopes
     cdef double limit(self, double[::1] x, Py_ssize_t first, double sign) noexcept

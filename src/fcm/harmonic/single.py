@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import atan2, hypot, sqrt
 
-from fcm.contact.law import Law as Coefficients
+from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.harmonic.law import Law
 
 PI = cython.declare(cython.double, 3.141592653589793)
@@ -23,8 +23,8 @@ class SingleHarmonic(Law):
 
     def __init__(
         self,
-        exact: Coefficients,
-        coarse: Coefficients,
+        exact: CoefficientLaw,
+        coarse: CoefficientLaw,
         mu: cython.double,
         k_u: cython.double,
         k_v: cython.double,

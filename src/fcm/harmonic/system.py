@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fcm.contact.closed_form import ClosedForm
-from fcm.contact.law import Law as Coefficients
+from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.displacement import Displacements
@@ -38,7 +38,7 @@ class System:
     table: Table | None = None
     corrected: bool = True
     linear: Linear = field(init=False)
-    coarse: Coefficients = field(init=False)  # the table's
+    coarse: CoefficientLaw = field(init=False)  # the table's
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))

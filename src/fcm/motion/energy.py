@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.balance import Powers
 from fcm.motion.cycle import Cycle
 from fcm.motion.motion import Motion
+from fcm.motion.powers import Powers
 from fcm.motion.state import entry
 from fcm.motion.system import System
 from fcm.scene.model import Contact, FloatArray

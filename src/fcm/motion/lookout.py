@@ -10,14 +10,14 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.motion.events import workspace
+from fcm.motion.first_descent import workspace
 from fcm.motion.pool import BLOCK, ORDER
 
 if cython.compiled:
-    from cython.cimports.fcm.motion.events import first_descent
+    from cython.cimports.fcm.motion.first_descent import first_descent
     from cython.cimports.fcm.motion.flow import Flows
 else:
-    from fcm.motion.events import first_descent
+    from fcm.motion.first_descent import first_descent
     from fcm.motion.flow import Flows
 
 DEPTH = cython.declare(cython.double, 1e-13)  # an exit that is passed by less, relative to its size, is not

@@ -1,5 +1,5 @@
 from fcm.contact.closed_form cimport ClosedForm
-from fcm.contact.law cimport Law
+from fcm.contact.coefficient_law cimport CoefficientLaw
 from fcm.table.cubic cimport Cubic
 from fcm.table.locate cimport Place
 
@@ -7,7 +7,7 @@ cdef class Frame:
     cdef const double[:, ::1] low, high, here
     cdef bint within(self, Place place) noexcept nogil
 
-cdef class Tabulated(Law):
+cdef class Tabulated(CoefficientLaw):
     cdef Cubic cubic
     cdef Place place
     cdef Frame frame

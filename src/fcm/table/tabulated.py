@@ -6,12 +6,12 @@ from cython.cimports.libc.math import isfinite
 
 if cython.compiled:
     from cython.cimports.fcm.contact.closed_form import ClosedForm
-    from cython.cimports.fcm.contact.law import Law
+    from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
     from cython.cimports.fcm.table.cubic import Cubic
     from cython.cimports.fcm.table.locate import Place
 else:
     from fcm.contact.closed_form import ClosedForm
-    from fcm.contact.law import Law
+    from fcm.contact.coefficient_law import CoefficientLaw
     from fcm.table.cubic import Cubic
     from fcm.table.locate import Place
 
@@ -51,7 +51,7 @@ class Frame:
 
 @cython.final
 @cython.cclass
-class Tabulated(Law):
+class Tabulated(CoefficientLaw):
     """Look-up in splines over the nodes of a table, or of a frame of them, and then the closed form outside.
 
     Not to be used by two threads at a time: each makes its own from the same splines, which costs nothing.
@@ -71,7 +71,7 @@ class Tabulated(Law):
         out: cython.double[::1],
         at: cython.Py_ssize_t,
     ) -> None:
-        """See `Law`."""
+        """See `CoefficientLaw`."""
         n0: float = min(max(n0_bar, -FARTHEST), FARTHEST)
         if not (n0_bar == n0_bar and isfinite(b_bar) and isfinite(phi)):
             self.unknown(gradient, out, at)

@@ -1,4 +1,4 @@
-"""A problem on the way to another: the residual at some point is taken away by and by."""
+"""The way from a guess to a solution: F(z) - taken F(guess) = 0, which the guess solves with taken = 1."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from fcm.continuation.problem import Problem
 
 
 @cython.cclass
-class Between(Problem):
-    """A problem of which a part of the residual that it has at some point is taken away."""
+class Homotopy(Problem):
+    """A problem of which the part `taken` of the residual at a guess, `removed`, is taken away."""
 
     def __init__(self, inner: Problem) -> None:
         Problem.__init__(self, inner.unknowns, 0, 0, inner.rank)

@@ -1,4 +1,4 @@
-cdef class Law:
+cdef class CoefficientLaw:
     cdef void evaluate(
         self, double n0_bar, double b_bar, double phi, bint gradient, double[::1] out, Py_ssize_t at
     ) noexcept nogil

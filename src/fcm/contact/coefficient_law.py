@@ -11,7 +11,7 @@ NAN = cython.declare(cython.double, float("nan"))
 
 
 @cython.cclass
-class Law:
+class CoefficientLaw:
     """Base class; a subclass defines `evaluate`."""
 
     def evaluate(
