@@ -1,0 +1,107 @@
+"""What ``fcm respond`` is asked to calculate: curves, levels, a mode, tracked points, an optimum, motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from fcm.cli import exact, nonlinear_mode, of_peaks, schedule, track
+from fcm.cli.messages import Messages
+from fcm.cli.respond_options import Asked
+
+if TYPE_CHECKING:
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+
+
+def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep: Any) -> Response:
+    """The response that is asked for, with its sensitivities and the motion of its schedule.
+
+    Sweeps of curves run at a place, and what of them is finished is kept.
+    """
+    response = _response(messages, scene, asked, {"jobs": asked.jobs, "place": place, "keep": keep})
+    if asked.sensitivity:
+        of_peaks.added(messages, response, scene)
+    if scene.schedule and asked.level is None and asked.track is None:
+        response.histories = schedule.simulated(messages, scene, response)
+    return response
+
+
+def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
+    if asked.track is not None:
+        return _tracked(messages, scene, asked)
+    if asked.mode is not None:
+        return _mode(scene, asked)
+    if scene.optimum is not None:
+        options = {**run, **_balanced(asked), "table": _opened(asked.table)}
+        return track.optimised(messages, scene, asked.method, options)
+    if asked.method == "exact" and (scene.has_range or asked.at):
+        options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
+        return exact.traced(messages, scene, asked.at, options)
+    if asked.level is not None:
+        return _levels(scene, asked)
+    if scene.has_range:
+        return _traced(messages, scene, asked, {**run, **_balanced(asked)})
+    from fcm.response import Response
+
+    return Response.without_curves(scene)
+
+
+def _tolerance(asked: Asked) -> float | None:
+    return None if asked.keep_all else asked.tolerance
+
+
+def _balanced(asked: Asked) -> dict[str, Any]:
+    """What a balance is to do."""
+    return {
+        "tolerance": _tolerance(asked),
+        "harmonics": asked.harmonics,
+        "accuracy": asked.accuracy,
+        "peaks_only": asked.peaks_only,
+    }
+
+
+def _tracked(messages: Messages, scene: Scene, asked: Asked) -> Response:
+    assert asked.track is not None and asked.over is not None  # --track needs the others
+    assert asked.low is not None and asked.high is not None
+    span = asked.low, asked.high
+    return track.tracked(messages, scene, asked.track, asked.over, span, asked.harmonics, asked.accuracy)
+
+
+def _mode(scene: Scene, asked: Asked) -> Response:
+    assert asked.mode is not None and asked.level is not None  # --mode needs --level
+    chosen = {
+        "harmonics": asked.harmonics,
+        "accuracy": asked.accuracy,
+        "force_levels": asked.force_levels or (1.0,),
+    }
+    return nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
+
+
+def _levels(scene: Scene, asked: Asked) -> Response:
+    from fcm.response.level import trace_levels
+
+    assert asked.level is not None and asked.at is not None  # --level needs --at
+    return trace_levels(scene, asked.at, asked.level, harmonics=asked.harmonics)
+
+
+def _traced(messages: Messages, scene: Scene, asked: Asked, options: dict[str, Any]) -> Response:
+    from fcm.response import trace
+    from fcm.run.progress import part
+
+    table, share = _opened(asked.table), 0.5 if scene.schedule else 1.0
+    shown = part(messages.progress, 0.0, share)
+    response = trace(scene, method=asked.method, table=table, progress=shown, **options)
+    messages.clear()
+    if outside := getattr(table, "outside", 0):
+        messages.info(
+            f"{asked.table}: {outside} look-ups outside the part it holds were answered by the closed form"
+        )
+    return response
+
+
+def _opened(table: str | None) -> Any:
+    if table is None:
+        return None
+    from fcm.table import open_table
+
+    return open_table(table)

@@ -1,0 +1,55 @@
+"""What ``fcm respond`` says before and after a calculation; the exit code of one that stopped early."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli import schedule, track
+from fcm.cli.curves import all_lost_to_defects, branches_unsure, cost_and_error, incomplete, short_of_accuracy
+from fcm.cli.guard import DEFECT, NOT_COMPLETED
+from fcm.cli.messages import Messages
+from fcm.cli.respond_options import Asked
+
+if TYPE_CHECKING:
+    from fcm.scene.model import Scene
+
+MANY_POINTS = 30_000  # some seconds, and files of 10 MB and more
+
+
+def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
+    """What is going to be computed; without being asked where that is a great deal."""
+    from fcm.scene.rules import least_points
+
+    count = len(scene.each_curve())
+    method = asked.method if asked.mode is None else f"nonlinear mode {asked.mode}"
+    messages.detail(f"{scene.title or scene.name}: curves to trace: {count}, method: {method}")
+    in_steps = asked.at is None and asked.mode is None and scene.has_range
+    if in_steps and (points := least_points(scene)) > MANY_POINTS:
+        curves = f"{count} curve{'s' * (count > 1)}"
+        messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
+
+
+def close(messages: Messages, result: dict[str, Any], defects: list[str]) -> None:
+    """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
+    for text in dict.fromkeys(defects):
+        messages.detail(text)
+    for text in result["left_out"]:
+        messages.info(f"left out: {text}")
+    if result["curves"]:
+        messages.info(cost_and_error(result))
+    elif "tracked" in result:
+        messages.info(f"{len(result['tracked']['curves'])} tracked curves in {result['seconds']:.2f} s")
+    if short := short_of_accuracy(result):
+        messages.warning(short)
+    if unsure := branches_unsure(result):
+        messages.warning(unsure)
+    histories = result.get("histories", [])
+    if histories:
+        messages.info(schedule.cost_and_error(histories))
+    if stopped := " and ".join(
+        filter(None, (incomplete(result), track.incomplete(result), schedule.incomplete(histories)))
+    ):
+        messages.error(f"error: {stopped}; what was traced is reported and written")
+        click.get_current_context().exit(DEFECT if all_lost_to_defects(result) else NOT_COMPLETED)

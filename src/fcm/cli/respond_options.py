@@ -1,0 +1,154 @@
+"""The options of ``fcm respond``: how they are written, and what was asked for with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+
+from fcm.cli import balance, exact
+from fcm.cli.about_scenes import about_scenes
+from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.time_limit import seconds
+from fcm.cli.track import track_options
+
+
+def _a_step(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:
+    if value is None:
+        return None
+    from fcm.scene.rules import step_fault
+
+    if fault := step_fault(value):
+        raise click.BadParameter(f"{fault}.")
+    return value
+
+
+OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
+    output_option("-o", "--output", endings=(".nc",), help="Write the curves, and the motion, as netCDF."),
+    output_option("--csv", endings=(".csv",), help="Write the curves as CSV; without any, the motion."),
+    output_option("--history-csv", endings=(".csv",), help="Write the motion of the schedule as CSV."),
+    click.option("--json", "to_json", is_flag=True, help="Print the summary as JSON instead of a table."),
+    click.option(
+        "--method", type=click.Choice(["table", "closed-form", "exact"]), default="table", show_default=True,
+        help="Harmonic balance with coefficients of a table or in closed form, or exact periodic solutions.",
+    ),
+    click.option(
+        "--harmonics", metavar="H", callback=balance.harmonics,
+        help="Harmonics of the balance: up to a number from 1 to 50, or some such as 1,2,3,9.  "
+        "[default: the scene's, or as --accuracy]",
+    ),
+    click.option(
+        "--accuracy", type=float, metavar="E", callback=balance.accuracy,
+        help="As many harmonics as it takes for peaks and folds that are right to this, relative.  "
+        "[default: the scene's, or 0.01]",
+    ),
+    click.option(
+        "--level", metavar="FROM:TO", callback=balance.level,
+        help="Follow the level of the forces instead, all amplitudes times this, at the frequency --at; "
+        "static loads stay.",
+    ),
+    click.option(
+        "--mode", type=click.IntRange(min=1), metavar="N",
+        help="Follow the nonlinear mode N instead: its frequency and damping against its modal amplitude, "
+        "over the span --level.",
+    ),
+    click.option(
+        "--force-level", "force_levels", type=click.FloatRange(min=0.0, min_open=True), multiple=True,
+        metavar="L",
+        help="With --mode: predict the response near the resonance for the scene's forces times this; again "
+        "for more.  [default: 1]",
+    ),
+    click.option(
+        "--at", multiple=True, metavar="F", callback=exact.frequencies,
+        help="Visit these frequencies by an upward and a downward sweep; a number or FROM:TO:COUNT, again "
+        "for more. With --method exact.",
+    ),
+    track_options,
+    click.option(
+        "--only", type=click.Choice(["peaks"]),
+        help="Peaks, folds and jumps alone, near those of the balance. With --method exact.",
+    ),
+    click.option(
+        "--table", type=click.Path(), metavar="FILE", help="A table of your own.  [default: the shipped one]"
+    ),
+    click.option(
+        "--max-step", type=float, metavar="X", callback=_a_step,
+        help="Longest step along a curve, relative to its extent.  [default: the scene's]",
+    ),
+    click.option(
+        "--jobs", type=click.IntRange(min=0), default=0, metavar="N",
+        help="Processes for sweeps of many curves; 0 for one on each core.  [default: 0]",
+    ),
+    click.option(
+        "--cluster", metavar="ADDRESS",
+        help="Instead, the workers of the dask.distributed scheduler there, as in tcp://127.0.0.1:8786.",
+    ),
+    click.option(
+        "--time-limit", type=float, metavar="SECONDS", callback=seconds,
+        help="Stop after so long, and keep what is finished, as Ctrl-C does; --resume goes on.",
+    ),
+    click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE."),
+    click.option(
+        "--leave-out-tolerance", "tolerance", type=click.FloatRange(min=0.0), default=1e-5, show_default=True,
+        metavar="X", help="Greatest relative change of the response by what is left out.",
+    ),
+    click.option(
+        "--peaks-only", is_flag=True, help="Write peaks, folds and errors of each curve, not its points."
+    ),
+    click.option(
+        "--sensitivity", is_flag=True,
+        help="Derivatives of every peak, its height and its frequency, by the numbers of the scene.",
+    ),
+    click.option("--keep-all", is_flag=True, help="Leave nothing out."),
+    largest_file_option,
+    about_scenes,
+    click.option(
+        "--compare",
+        is_flag=True,
+        help="Run the scene by every method: error against run time, instead of curves.",
+    ),
+]  # fmt: skip
+
+
+def respond_options(command: Any) -> Any:
+    """All options of the command."""
+    for option in reversed(OPTIONS):
+        command = option(command)
+    return command
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a command line asks for; each option by its name."""
+
+    output: Path | None
+    csv: Path | None
+    history_csv: Path | None
+    to_json: bool
+    method: str
+    harmonics: tuple[int, ...] | None
+    accuracy: float | None
+    level: tuple[float, float] | None
+    mode: int | None
+    force_levels: tuple[float, ...]
+    at: tuple[float, ...] | None
+    track: str | None
+    over: str | None
+    low: float | None
+    high: float | None
+    only: str | None
+    table: str | None
+    max_step: float | None
+    jobs: int
+    cluster: str | None
+    time_limit: float | None
+    resume: bool
+    tolerance: float
+    peaks_only: bool
+    sensitivity: bool
+    keep_all: bool
+    largest_file: int
+    compare: bool
