@@ -1,9 +1,7 @@
 """The derivative of the motion by its start and by the frequency.
 
-Across a segment it is the exponential of the segment's matrix. The frequency acts on the forces alone, which
-may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t) are t cos(omega t) and
--t sin(omega t), and that of the columns of the forces is known with the flow. Across a transition whose
-instant moves with the start or with the frequency it is the saltation matrix
+Along a flow it is moved as in `along`. Across a transition whose instant moves with the start or with the
+frequency it is the saltation matrix
 
     S = R + (F+ - R F-) g / (g F-),    F = A y at the transition,
 
@@ -16,30 +14,24 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.motion.pool import ORDER
-
 if cython.compiled:
+    from cython.cimports.fcm.motion.along import Along
     from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.segments import Segments
-    from cython.cimports.fcm.motion.series import needed
 else:
+    from fcm.motion.along import Along
     from fcm.motion.flow import Flows
     from fcm.motion.segments import Segments
-    from fcm.motion.series import needed
 
-GRAZING = cython.declare(
-    cython.double, 1e-12
-)  # an exit passed this slowly, relative to its terms, is touched
-FEW = cython.declare(cython.int, 4)  # rows that are sooner moved one by one
-DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
-_POWERS = cython.declare(cython.int, 8)
+# an exit passed this slowly, relative to its terms, is touched
+GRAZING = cython.declare(cython.double, 1e-12)
 _OPEN = cython.declare(cython.int, 0)
 _POSITIVE = cython.declare(cython.int, 2)
 _NEGATIVE = cython.declare(cython.int, 3)
 
 
 @cython.cclass
-class Derivative:
+class Derivative(Along):
     """Of a motion by x = (q, q', f) at its start, or along directions of x, and by the frequency.
 
     Row k < unknowns of `columns` is the derivative of the state vector by the component k of x, or along
@@ -48,13 +40,9 @@ class Derivative:
     """
 
     def __init__(self, flows: Flows, directions: int = 0) -> None:
-        self.flows = flows
-        self.unknowns, self.at, self.position = directions or 2 * flows.modes + flows.contacts, 0, 0.0
-        self.columns = np.zeros((self.unknowns + 2, flows.size))
-        self.rate = np.zeros(flows.size)
-        self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
-        self._rates, self._room = np.zeros((2, flows.size)), np.zeros((self.unknowns, flows.linear))
-        self._matrix = np.zeros((flows.linear, flows.linear))
+        Along.__init__(self, flows, directions or 2 * flows.modes + flows.contacts)
+        self.at, self.position = 0, 0.0
+        self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 
     def begins(self, segments: Segments) -> None:
         """Put the derivative at the start of the segments."""
@@ -122,7 +110,7 @@ class Derivative:
                 return self.at
             self.flows.refresh(slot)
             if self.at == last:
-                self._follow(slot, position - self.position)
+                self.follow(slot, position - self.position)
                 self.position = position
                 self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0)
                 for i in range(self.flows.size):
@@ -131,120 +119,10 @@ class Derivative:
             new = self.flows.find(segments.states, self.at + 1)
             if new < 0:
                 return self.at + 1
-            self._follow(slot, segments.length[self.at] - self.position)
+            self.follow(slot, segments.length[self.at] - self.position)
             self._across(segments, self.at, slot, new)
             self.at += 1
             self.position = 0.0
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.void:
-        """Along a flow, to a position in steps."""
-        whole: cython.longlong = cython.cast(cython.longlong, position)
-        x: cython.double = position - whole
-        j: cython.int
-        while whole >> _POWERS:
-            self._whole(slot, _POWERS - 1)
-            whole -= 1 << (_POWERS - 1)
-        for j in range(_POWERS):
-            if whole >> j & 1:
-                self._whole(slot, j)
-        self._part(slot, x)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
-        """By 2**j steps."""
-        n: cython.Py_ssize_t = self.flows.linear
-        u: cython.Py_ssize_t = self.unknowns
-        i: cython.Py_ssize_t
-        sine: cython.double = self.columns[u + 1, n]
-        cosine: cython.double = self.columns[u + 1, n + 1]
-        h: cython.double = self.flows.step[slot] * (1 << j)
-        self.flows.reach(slot, j)
-        self._times(self.flows.power[slot, j])
-        self.flows.advance(slot, j, self.columns, u)
-        self.flows.advance(slot, j, self.columns, u + 1)
-        for i in range(n):
-            self.columns[u, i] += self.flows.forced[slot, j, 2, i] * sine
-            self.columns[u, i] += self.flows.forced[slot, j, 3, i] * cosine
-        self.columns[u, n] += h * self.columns[u + 1, n + 1]
-        self.columns[u, n + 1] -= h * self.columns[u + 1, n]
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _times(self, matrix: cython.double[:, ::1]) -> cython.void:
-        """Multiply the derivatives by the start by the matrix of a flow."""
-        n: cython.Py_ssize_t = self.flows.linear
-        k: cython.Py_ssize_t
-        i: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        x: cython.double
-        if n >= DENSE:
-            with cython.gil:
-                columns = np.asarray(self.columns)[: self.unknowns, :n]
-                np.matmul(columns, matrix, out=np.asarray(self._room))
-                columns[:] = self._room
-            return
-        for k in range(self.unknowns):
-            for i in range(n):
-                self._room[0, i] = 0.0
-            for p in range(n):
-                x = self.columns[k, p]
-                if x != 0.0:
-                    for i in range(n):
-                        self._room[0, i] += matrix[p, i] * x
-            for i in range(n):
-                self.columns[k, i] = self._room[0, i]
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
-        """The same by a part x of a step: by its matrix, or, where that is more work, row by row."""
-        n: cython.Py_ssize_t = self.flows.linear
-        i: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        size: cython.double
-        if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
-            self.flows.part(slot, x, self.columns, 0, self.unknowns)
-            return
-        size = x
-        for p in range(n):
-            for i in range(n):
-                self._matrix[p, i] = self.flows.terms[slot, 0, p, i]
-        for j in range(1, orders + 1):
-            for p in range(n):
-                for i in range(n):
-                    self._matrix[p, i] += size * self.flows.terms[slot, j, p, i]
-            size *= x
-        self._times(self._matrix)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
-        """By a part x < 1 of a step."""
-        u: cython.Py_ssize_t = self.unknowns
-        orders: cython.Py_ssize_t = needed(x)
-        h: cython.double = x * self.flows.step[slot]
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        self._fraction(slot, x, orders)
-        for i in range(self.flows.size):
-            self._grades[0, i], self._terms[0, i] = self.columns[u, i], self.columns[u + 1, i]
-        self.flows.extend(slot, self._terms, orders, h, self._terms, False)
-        self.flows.extend(slot, self._grades, orders, h, self._terms, True)
-        for j in range(orders - 1, -1, -1):
-            for i in range(self.flows.size):
-                self._grades[j, i] += self._grades[j + 1, i]
-                self._terms[j, i] += self._terms[j + 1, i]
-        for i in range(self.flows.size):
-            self.columns[u, i], self.columns[u + 1, i] = self._grades[0, i], self._terms[0, i]
 
     @cython.cfunc
     @cython.nogil

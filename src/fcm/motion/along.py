@@ -1,0 +1,150 @@
+"""The motion and its derivatives along one flow, to any position in steps.
+
+Along it the derivative by the start is the exponential of the flow's matrix. The frequency acts on the
+forces alone, which may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t)
+are t cos(omega t) and -t sin(omega t), and that of the columns of the forces is known with the flow.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+
+from fcm.motion.pool import ORDER
+
+if cython.compiled:
+    from cython.cimports.fcm.motion.flow import Flows
+    from cython.cimports.fcm.motion.series import needed
+else:
+    from fcm.motion.flow import Flows
+    from fcm.motion.series import needed
+
+FEW = cython.declare(cython.int, 4)  # rows that are sooner moved one by one
+DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS
+_POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
+
+
+@cython.cclass
+class Along:
+    """`follow` moves the rows of `columns` (unknowns + 2, size) along a flow.
+
+    Row k < unknowns is a derivative of the state vector by its start; the row after them that by the
+    frequency, at a fixed time; the last row is the state vector itself.
+    """
+
+    def __init__(self, flows: Flows, unknowns: cython.Py_ssize_t) -> None:
+        self.flows, self.unknowns = flows, unknowns
+        self.columns = np.zeros((unknowns + 2, flows.size))
+        self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
+        self._room = np.zeros((unknowns, flows.linear))
+        self._matrix = np.zeros((flows.linear, flows.linear))
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.void:
+        """Along a flow, to a position in steps."""
+        whole: cython.longlong = cython.cast(cython.longlong, position)
+        x: cython.double = position - whole
+        j: cython.int
+        while whole >> _POWERS:
+            self._whole(slot, _POWERS - 1)
+            whole -= 1 << (_POWERS - 1)
+        for j in range(_POWERS):
+            if whole >> j & 1:
+                self._whole(slot, j)
+        self._part(slot, x)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+        """By 2**j steps."""
+        n: cython.Py_ssize_t = self.flows.linear
+        u: cython.Py_ssize_t = self.unknowns
+        i: cython.Py_ssize_t
+        sine: cython.double = self.columns[u + 1, n]
+        cosine: cython.double = self.columns[u + 1, n + 1]
+        h: cython.double = self.flows.step[slot] * (1 << j)
+        self.flows.reach(slot, j)
+        self._times(self.flows.power[slot, j])
+        self.flows.advance(slot, j, self.columns, u)
+        self.flows.advance(slot, j, self.columns, u + 1)
+        for i in range(n):
+            self.columns[u, i] += self.flows.forced[slot, j, 2, i] * sine
+            self.columns[u, i] += self.flows.forced[slot, j, 3, i] * cosine
+        self.columns[u, n] += h * self.columns[u + 1, n + 1]
+        self.columns[u, n + 1] -= h * self.columns[u + 1, n]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _times(self, matrix: cython.double[:, ::1]) -> cython.void:
+        """Multiply the derivatives by the start by the matrix of a flow."""
+        n: cython.Py_ssize_t = self.flows.linear
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        x: cython.double
+        if n >= DENSE:
+            with cython.gil:
+                columns = np.asarray(self.columns)[: self.unknowns, :n]
+                np.matmul(columns, matrix, out=np.asarray(self._room))
+                columns[:] = self._room
+            return
+        for k in range(self.unknowns):
+            for i in range(n):
+                self._room[0, i] = 0.0
+            for p in range(n):
+                x = self.columns[k, p]
+                if x != 0.0:
+                    for i in range(n):
+                        self._room[0, i] += matrix[p, i] * x
+            for i in range(n):
+                self.columns[k, i] = self._room[0, i]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
+        """The same by a part x of a step: by its matrix, or, where that is more work, row by row."""
+        n: cython.Py_ssize_t = self.flows.linear
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        size: cython.double
+        if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
+            self.flows.part(slot, x, self.columns, 0, self.unknowns)
+            return
+        size = x
+        for p in range(n):
+            for i in range(n):
+                self._matrix[p, i] = self.flows.terms[slot, 0, p, i]
+        for j in range(1, orders + 1):
+            for p in range(n):
+                for i in range(n):
+                    self._matrix[p, i] += size * self.flows.terms[slot, j, p, i]
+            size *= x
+        self._times(self._matrix)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
+        """By a part x < 1 of a step."""
+        u: cython.Py_ssize_t = self.unknowns
+        orders: cython.Py_ssize_t = needed(x)
+        h: cython.double = x * self.flows.step[slot]
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        self._fraction(slot, x, orders)
+        for i in range(self.flows.size):
+            self._grades[0, i], self._terms[0, i] = self.columns[u, i], self.columns[u + 1, i]
+        self.flows.extend(slot, self._terms, orders, h, self._terms, False)
+        self.flows.extend(slot, self._grades, orders, h, self._terms, True)
+        for j in range(orders - 1, -1, -1):
+            for i in range(self.flows.size):
+                self._grades[j, i] += self._grades[j + 1, i]
+                self._terms[j, i] += self._terms[j + 1, i]
+        for i in range(self.flows.size):
+            self.columns[u, i], self.columns[u + 1, i] = self._grades[0, i], self._terms[0, i]
