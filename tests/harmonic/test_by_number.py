@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.continuation.newton import Newton
-from fcm.harmonic.by_number import output_rate, rates_of, residual_rate
+from fcm.harmonic.by_number import growth_of, rates_of
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.scene import load_scene
@@ -57,8 +57,9 @@ def test_a_solution_moves_with_every_number_of_the_scene_as_its_differences_do(h
     problem.evaluate(z)
     jacobian = np.array(problem.jacobian)[:, :-1]
     for key in KEYS:
-        direction = np.append(-np.linalg.solve(jacobian, residual_rate(system, z, key)), 0.0)
-        rate = reported(problem, z, direction)[1] + output_rate(system, z, key)
+        residual, displacement = rates_of(system, key).at(problem, z)
+        direction = np.append(-np.linalg.solve(jacobian, residual), 0.0)
+        rate = reported(problem, z, direction)[1] + growth_of(problem, displacement)
         expected = by_differences(scene, harmonics, key, z)
         assert rate == pytest.approx(expected, rel=1e-6, abs=1e-9 * abs(expected).max()), key
 

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.contact.pieces import friction, piece_at
 from fcm.contact.sequence import Sequence, word
 
 
@@ -37,7 +38,7 @@ class Loop:
 
     def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
         """State letter at each angle theta [rad]."""
-        return np.array(list(self.sequence))[self._region(np.asarray(theta, dtype=np.float64))]
+        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
 
     def displacement(self, theta: npt.ArrayLike) -> FloatArray:
         """u / a [-] at each angle theta [rad]."""
@@ -59,18 +60,11 @@ class Loop:
         0.5
         """
         angle = np.asarray(theta, dtype=np.float64)
-        region = self._region(angle)
-        state = np.array(list(self.sequence))[region]
-        load = self.normal_load(angle)
-        stick = np.sin(angle) - np.nan_to_num(self.slip_motion)[region]
-        stick = np.clip(stick, -load, load)  # at an event, a rounding error may put it past the limit
-        return np.select([state == "E", state == "P", state == "N"], [stick, load, -load], 0.0)
+        stick = np.sin(angle) - np.nan_to_num(self.slip_motion)[self._piece(angle)]
+        return friction(self.states(angle), stick, self.slip_limit(angle))
 
-    def _region(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        if self._since.size == 0:
-            return np.zeros(theta.shape, dtype=np.intp)
-        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
-        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
+    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
+        return piece_at(theta, self.angles, self._since)
 
 
 def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:

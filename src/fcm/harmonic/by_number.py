@@ -33,45 +33,6 @@ LEAST_MU = 1e-9  # in the place of no friction at all, to see what the first of 
 ARRAYS = ("natural", "damping", "ports", "dofs", "force", "square", "load", "flexibility", "counted")
 
 
-def residual_rate(system: System, z: FloatArray, address: str) -> FloatArray:
-    """Derivative of the balance's residual (unknown,) by a number of the scene at fixed z (unknown + 1,).
-
-    Parameters
-    ----------
-    address : str
-        The number as in [sweep], "contact.shroud.n_0"; with several, of all of them moved together.
-
-    Raises
-    ------
-    SceneError
-        If there is no such number.
-    ValueError
-        If it changes what rigid-body motions a structure has.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import fcm
-    >>> system = System(fcm.load_scene("yang1998-n5"))
-    >>> z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
-    >>> residual_rate(system, z, "force.u.amplitude")[2:].round(4).tolist()
-    [0.0618, -1.1225, 0.0618, -1.1377]
-    """
-    return rates_of(system, address).at(system.balance(), z)[0]
-
-
-def output_rate(system: System, z: FloatArray, address: str) -> FloatArray:
-    """Derivative of the amplitude of each degree of freedom (dof,) by a number at fixed z; see above.
-
-    Of a displacement that is made up of those of contacts, which are unknowns, only what the combination
-    changes. Together with the derivatives by the unknowns it is right at solutions.
-    """
-    balance = system.balance()
-    X = rates_of(system, address).at(balance, z)[1]
-    balance.report(z, np.zeros(z.size))
-    return growth_of(balance, X)
-
-
 @dataclass(frozen=True)
 class Rates:
     """Rates of a number's system: of mu, k_u, k_v, n_0 (contact, 4), and of the structure's arrays."""
@@ -81,7 +42,11 @@ class Rates:
     system: System
 
     def at(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
-        """Rates of the residual (unknown,) and of the displacements X (harmonic, dof) that are reported."""
+        """Rates of the residual (unknown,) and of the displacements X (harmonic, dof) reported, at fixed z.
+
+        Of a displacement that is made up of those of contacts, which are unknowns, only what the combination
+        changes. Together with the derivatives by the unknowns it is right at solutions.
+        """
         balance.evaluate(z)
         force = self._layout(np.asarray(balance.force))
         d_force = self._layout(self._forces(balance, z))
@@ -185,7 +150,30 @@ def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
 
 
 def rates_of(system: System, address: str) -> Rates:
-    """The rates of a system when a number moves by one of its unit; ones of several add up."""
+    """The rates of a system when a number moves by one of its unit; ones of several add up.
+
+    Parameters
+    ----------
+    address : str
+        The number as in [sweep], "contact.shroud.n_0"; with several, of all of them moved together.
+
+    Raises
+    ------
+    SceneError
+        If there is no such number.
+    ValueError
+        If it changes what rigid-body motions a structure has.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import fcm
+    >>> system = System(fcm.load_scene("yang1998-n5"))
+    >>> z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
+    >>> by_amplitude = rates_of(system, "force.u.amplitude")
+    >>> by_amplitude.at(system.balance(), z)[0][2:].round(4).tolist()
+    [0.0618, -1.1225, 0.0618, -1.1377]
+    """
     number = number_of(system.scene, address)
     assert number is not None
     contact = np.zeros((len(system.scene.contacts), 4))

@@ -14,7 +14,7 @@ from fcm.continuation import Path, Problem, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.scene.model import FloatArray
 
-RESTARTS = 12
+RESTARTS = 12  # of a curve, on its way past corners
 ON = (1e-6, 1e-5, 1e-4, 1e-3, 3e-3)  # of the parameter's unit, by which the curve is taken up further on
 NEAR = 30.0  # times as far the solution may be: further away it is another
 PATIENCE = 12  # calls of the progress, of 16 steps each, within which the parameter has to move

@@ -20,7 +20,7 @@ from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
-MOST_ITERATIONS = 25
+MOST_ITERATIONS = 25  # of Newton's method
 RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
 STABLE = 1e-7  # by which a multiplier may exceed 1
 FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess

@@ -26,7 +26,7 @@ from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray
 
 FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
-MOST_PERIODS = 8
+MOST_PERIODS = 8  # of the force, after which a steady motion may repeat
 NEAR = 0.1  # distance, relative to the motion, of a simulated state from the steady one that it belongs to
 NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
 AGAIN = 1e-6  # difference of two states, relative to the motion, below which they are the same

@@ -34,7 +34,7 @@ import scipy.linalg
 from fcm.structure.eigen import FloatArray, Modes, System
 
 ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
-MOST_BLOCKS = 4
+MOST_BLOCKS = 4  # of vectors, each by a further solution with the stiffness
 INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
 
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from fcm.contact.periodic.coefficients import ComplexArray, FloatArray, one_motion
 from fcm.contact.periodic.cycle import Cycle
 from fcm.contact.periodic.measures import Measures
+from fcm.contact.pieces import friction, piece_at
 
 # A state shorter than this [rad], or a slip that moves w by less of its greatest extent, is rounding.
 INVISIBLE = 1e-14
@@ -71,7 +72,7 @@ class PeriodicLoop:
 
     def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
         """State letter at each angle theta [rad]."""
-        return np.array(list(self.sequence))[self._region(np.asarray(theta, dtype=np.float64))]
+        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
 
     def force(self, theta: npt.ArrayLike) -> FloatArray:
         """Friction force f [force] at each angle theta [rad].
@@ -80,17 +81,12 @@ class PeriodicLoop:
         0.5
         """
         angle = np.asarray(theta, dtype=np.float64)
-        region = self._region(angle)
-        state, limit = np.array(list(self.sequence))[region], self.slip_limit(angle)
-        stick = self.k_u * (self.displacement(angle) - np.nan_to_num(self.slip_motion)[region])
-        stick = np.clip(stick, -limit, limit)  # at an event, a rounding error may put it past the limit
-        return np.select([state == "E", state == "P", state == "N"], [stick, limit, -limit], 0.0)
+        slid = np.nan_to_num(self.slip_motion)[self._piece(angle)]
+        stick = self.k_u * (self.displacement(angle) - slid)
+        return friction(self.states(angle), stick, self.slip_limit(angle))
 
-    def _region(self, theta: FloatArray) -> npt.NDArray[np.intp]:
-        if self._since.size == 0:
-            return np.zeros(theta.shape, dtype=np.intp)
-        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
-        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
+    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
+        return piece_at(theta, self.angles, self._since)
 
 
 def periodic_loop(
