@@ -16,15 +16,7 @@ from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
 
 from ..motion.cases import one_mode, two_contacts, yang
-
-
-def between(scene, low, high, **changes):
-    return replace(scene, frequency_range=(low, high), **changes)
-
-
-def curve_of(scene, **options):
-    (curve,) = trace_exact(scene, **options).curves
-    return curve
+from .curves import between, curve_of
 
 
 @pytest.mark.parametrize(("scene", "omega"), [(yang(), 1.3), (two_contacts(), 1.7)], ids=["yang", "two"])

@@ -15,15 +15,7 @@ from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
 
 from ..motion.cases import one_mode, two_contacts, yang
-
-
-def between(scene, low, high, **changes):
-    return replace(scene, frequency_range=(low, high), **changes)
-
-
-def curve_of(scene, **options):
-    (curve,) = trace_exact(scene, **options).curves
-    return curve
+from .curves import between, curve_of
 
 
 @pytest.fixture(scope="module")

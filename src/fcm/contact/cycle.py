@@ -18,7 +18,7 @@ from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, 
 
 PI = cython.declare(cython.double, 3.141592653589793)
 LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
-FARTHEST = cython.declare(cython.double, 1e304)
+FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
 SHRINK = cython.declare(cython.double, 2.0**-32)
 
 # what a contact does over a cycle

@@ -35,11 +35,10 @@ FIRST = cython.declare(cython.double, 1e-3)  # the first step
 SHORTEST = cython.declare(cython.double, 1e-9)  # a step that is still too long then leads nowhere
 PAST = cython.declare(cython.double, 1e-3)  # of a step that ends at a margin, by which it goes past
 BEFORE = cython.declare(cython.double, 1e-6)  # of the way to a corner: up to here the curve is smooth
-BEYOND = cython.declare(
-    cython.double, 1e-7
-)  # length past a corner at which the curve's new direction is looked for
+# length past a corner at which the curve's new direction is looked for
+BEYOND = cython.declare(cython.double, 1e-7)
 TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less than BEYOND
-NEAR = cython.declare(cython.double, 1e-4)
+NEAR = cython.declare(cython.double, 1e-4)  # a corner no further away is gone to at once
 NEARER = cython.declare(cython.double, 0.9)  # a corner further away is approached by this share of the way
 AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
 LONGEST = 20_000  # steps

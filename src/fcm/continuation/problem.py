@@ -10,7 +10,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-BOUNDLESS = cython.declare(cython.double, 1e9)
+BOUNDLESS = cython.declare(cython.double, 1e9)  # `boundless` where a problem says nothing else
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-HALVINGS = cython.declare(cython.int, 40)
+HALVINGS = cython.declare(cython.int, 40)  # of a piece, to where the parameter is a value
 NAN = cython.declare(cython.double, float("nan"))
 
 

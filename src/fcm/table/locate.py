@@ -26,7 +26,7 @@ HUGE_B = cython.declare(cython.double, constants.HUGE_B)
 SIN_FOLD_Z = cython.declare(cython.double, sin(constants.FOLD_Z))
 SIN_FOLD_U = cython.declare(cython.double, sin(constants.FOLD_U))
 NEAR = cython.declare(cython.double, 1e-14)  # u this close to an end is moved away: du/dn0 is infinite there
-TINY = cython.declare(cython.double, 1e-300)
+TINY = cython.declare(cython.double, 1e-300)  # a divisor is at least that: none is 0
 
 
 @cython.final
