@@ -162,6 +162,13 @@ def test_without_a_whole_curve_there_is_nothing_to_compare(fcm, scene):
         (["--jobs", "2"], "--jobs is of no use with --compare"),
         (["--keep-all"], "--keep-all is of no use with --compare"),
         (["--resume", "-o", "c.nc"], "--resume is of no use with --compare"),
+        (["--harmonics", "3"], "--harmonics is of no use with --compare"),
+        (["--accuracy", "1e-3"], "--accuracy is of no use with --compare"),
+        (["--track", "folds"], "--track is of no use with --compare"),
+        (["--to", "1"], "--to is of no use with --compare"),
+        (["--mode", "1"], "--mode is of no use with --compare"),
+        (["--level", "0:2"], "--level is of no use with --compare"),
+        (["--sensitivity"], "--sensitivity is of no use with --compare"),
     ],
 )
 def test_options_without_meaning_are_refused(fcm, scene, options, said):
