@@ -25,7 +25,7 @@ def beyond(harmonics: list[int]) -> list[int]:
 
 @cython.cclass
 class Finer:
-    """`at` a point z of the balance fills x, the unknowns of the finer motion; contact as in `Sequence`.
+    """`at` a point z of the balance fills x, the unknowns of the finer motion; contact as in `Transitions`.
 
     shift is the greatest amplitude that was added, relative to the greatest that there was.
     """

@@ -1,8 +1,8 @@
-from fcm.harmonic.sequence cimport Sequence
+from fcm.harmonic.transitions cimport Transitions
 from fcm.harmonic.stiffness cimport Stiffness
 
 cdef class Monodromy:
-    cdef readonly Sequence sequence
+    cdef readonly Transitions transitions
     cdef readonly Stiffness stiffness
     cdef readonly int modes, contacts, size, memories
     cdef double[:, ::1] port, X, term, work, A, E, F

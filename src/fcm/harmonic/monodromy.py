@@ -25,12 +25,12 @@ from fcm.harmonic.propagator import Propagator
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import STICK, TWO_PI
-    from cython.cimports.fcm.harmonic.sequence import Sequence
     from cython.cimports.fcm.harmonic.stiffness import Stiffness
+    from cython.cimports.fcm.harmonic.transitions import Transitions
 else:
     from fcm.contact.periodic.cycle import STICK, TWO_PI
-    from fcm.harmonic.sequence import Sequence
     from fcm.harmonic.stiffness import Stiffness
+    from fcm.harmonic.transitions import Transitions
 
 REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
@@ -44,16 +44,16 @@ ORDER = cython.declare(cython.int, 10)  # of its series there: 0.25^11 / 11! is 
 
 @cython.cclass
 class Monodromy:
-    """`follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
+    """`follow` transitions: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
-    Velocities are by the angle. Followed is what the sequence has looked at last.
+    Velocities are by the angle. Followed is the motion that they looked at last.
     """
 
     def __init__(
-        self, stiffness: Stiffness, sequence: Sequence, propagator: Propagator | None = None
+        self, stiffness: Stiffness, transitions: Transitions, propagator: Propagator | None = None
     ) -> None:
         modes, contacts = stiffness.modes, stiffness.contacts
-        self.modes, self.contacts, self.stiffness, self.sequence = modes, contacts, stiffness, sequence
+        self.modes, self.contacts, self.stiffness, self.transitions = modes, contacts, stiffness, transitions
         self.size = 2 * modes + contacts
         self.state = np.zeros(contacts, dtype=np.intc)
         self.port = np.zeros((2, self.size))
@@ -66,7 +66,7 @@ class Monodromy:
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
         """Fill the matrix for a frequency."""
-        s: Sequence = self.sequence
+        s: Transitions = self.transitions
         i: cython.int
         e: cython.int
         length: cython.double
@@ -96,7 +96,7 @@ class Monodromy:
         out: cython.double[:, ::1] = made
         out[:row, :] = self.X[:row, :columns]
         for c in range(self.contacts):
-            if self.sequence.remembers[c]:
+            if self.transitions.remembers[c]:
                 for i in range(columns):
                     out[row, i] = self.X[2 * self.modes + c, i]
                 row += 1
@@ -109,12 +109,12 @@ class Monodromy:
         i: cython.int
         c: cython.int
         self.memories = 0
-        self.state[:] = self.sequence.state
+        self.state[:] = self.transitions.state
         self.X[:, :] = 0.0
         for i in range(2 * self.modes):
             self.X[i, i] = 1.0
         for c in range(self.contacts):
-            if self.sequence.remembers[c]:
+            if self.transitions.remembers[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1
         return self.stiffness.assemble(self.state)
@@ -123,22 +123,22 @@ class Monodromy:
     @cython.exceptval(-1, check=False)
     def happen(self, e: cython.int) -> cython.int:
         """An event: what the slider remembers of the disturbance, and the new state."""
-        c: cython.int = self.sequence.whose[e]
+        c: cython.int = self.transitions.whose[e]
         k: cython.Py_ssize_t
         row: cython.Py_ssize_t = 2 * self.modes + c
         mu: cython.double = self.stiffness.contact[c, 0]
         k_u: cython.double = self.stiffness.contact[c, 1]
         k_v: cython.double = self.stiffness.contact[c, 2]
-        if self.sequence.into[e] == STICK:
+        if self.transitions.into[e] == STICK:
             self.stiffness.displacement(2 * c, self.X, self.port[0])
             self.stiffness.displacement(2 * c + 1, self.X, self.port[1])
-            weight: cython.double = self.sequence.along[e] * mu * k_v / k_u
+            weight: cython.double = self.transitions.along[e] * mu * k_v / k_u
             for k in range(self.size):
                 self.X[row, k] = self.port[0, k] + weight * self.port[1, k]
         else:
             for k in range(self.size):
                 self.X[row, k] = 0.0
-        self.state[c] = self.sequence.into[e]
+        self.state[c] = self.transitions.into[e]
         return 0
 
     @cython.cfunc

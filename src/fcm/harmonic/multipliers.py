@@ -14,10 +14,10 @@ import numpy.typing as npt
 
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
-from fcm.harmonic.sequence import Sequence
 from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, either, even
 from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
+from fcm.harmonic.transitions import Transitions
 from fcm.scene.model import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -44,17 +44,17 @@ class Multipliers:
         stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
-        self.fine = Monodromy(stiffness, Sequence(contact, finer))
-        self.plain = Monodromy(stiffness, Sequence(contact, harmonics), self.fine.propagator)
+        self.fine = Monodromy(stiffness, Transitions(contact, finer))
+        self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
-        return self._values(self.fine, z[-1]) if self.see(self.fine.sequence, self.finer.x) else None
+        return self._values(self.fine, z[-1]) if self.see(self.fine.transitions, self.finer.x) else None
 
-    def see(self, sequence: Sequence, x: FloatArray) -> bool:
-        """Let a sequence look at the motion x; false where a number is not finite."""
-        return bool(sequence.look(x))
+    def see(self, transitions: Transitions, x: FloatArray) -> bool:
+        """Let transitions look at the motion x; false where a number is not finite."""
+        return bool(transitions.look(x))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""
@@ -62,7 +62,7 @@ class Multipliers:
 
     def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
         """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
-        fine, plain, omega = self.fine.sequence, self.plain.sequence, float(z[-1])
+        fine, plain, omega = self.fine.transitions, self.plain.transitions, float(z[-1])
         self.finer.at(z)
         if not (self.see(plain, z) and self.see(fine, self.finer.x)):
             return UNKNOWN
@@ -101,11 +101,11 @@ class Multipliers:
 
     def _resting(self, omega: float) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""
-        sequence = self.fine.sequence
-        sequence.yielding = False
-        self.see(sequence, self.finer.x)
-        values = self._values(self.fine, omega) if sequence.moving else []
-        sequence.yielding = True
+        transitions = self.fine.transitions
+        transitions.yielding = False
+        self.see(transitions, self.finer.x)
+        values = self._values(self.fine, omega) if transitions.moving else []
+        transitions.yielding = True
         return UNKNOWN if values is None else Spectrum.of(values).verdict()
 
 

@@ -16,13 +16,13 @@ from fcm.harmonic.propagator import Propagator
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import STICK, TWO_PI
     from cython.cimports.fcm.harmonic.monodromy import Monodromy
-    from cython.cimports.fcm.harmonic.sequence import Sequence
     from cython.cimports.fcm.harmonic.stiffness import Stiffness
+    from cython.cimports.fcm.harmonic.transitions import Transitions
 else:
     from fcm.contact.periodic.cycle import STICK, TWO_PI
     from fcm.harmonic.monodromy import Monodromy
-    from fcm.harmonic.sequence import Sequence
     from fcm.harmonic.stiffness import Stiffness
+    from fcm.harmonic.transitions import Transitions
 
 
 class BySeries(Propagator):
@@ -44,12 +44,12 @@ class RingMonodromy(Monodromy):
     def __init__(
         self,
         stiffness: Stiffness,
-        sequence: Sequence,
+        transitions: Transitions,
         part: cython.double,
         turn: npt.NDArray[np.float64],
         source: npt.NDArray[np.intp],
     ) -> None:
-        Monodromy.__init__(self, stiffness, sequence, BySeries())
+        Monodromy.__init__(self, stiffness, transitions, BySeries())
         self.part, self.turn, self.source = part, turn, source
         self.memory = np.zeros(self.contacts, dtype=np.intc)
         self.first, self.start = 0, 0.0
@@ -58,7 +58,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
         """Fill the matrix for a frequency."""
-        s: Sequence = self.sequence
+        s: Transitions = self.transitions
         i: cython.int
         e: cython.int
         self.stiffness.at(omega)
@@ -83,7 +83,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(check=False)
     def widest(self) -> cython.void:
         """Begin in the middle of the widest gap between events, so that none is at the ends."""
-        s: Sequence = self.sequence
+        s: Transitions = self.transitions
         i: cython.int
         widest: cython.double = -1.0
         self.first, self.start = 0, 0.0
@@ -99,7 +99,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
         """The disturbances to be followed, and the states at the start."""
-        s: Sequence = self.sequence
+        s: Transitions = self.transitions
         i: cython.int
         c: cython.int
         self.memories = 0

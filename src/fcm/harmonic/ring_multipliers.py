@@ -17,10 +17,10 @@ from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.multipliers import Multipliers, far_above
 from fcm.harmonic.ring_monodromy import RingMonodromy
-from fcm.harmonic.sequence import Sequence
 from fcm.harmonic.spectrum import Verdict
 from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
+from fcm.harmonic.transitions import Transitions
 from fcm.scene.model import FloatArray
 from fcm.scene.ring import Ring
 from fcm.structure.ring import RingLinear
@@ -84,7 +84,7 @@ class RingMultipliers(Multipliers):
         self.adrift = int(np.count_nonzero(linear.adrift))
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), of_one, harmonics)
         self.fine, self.plain = (
-            RingMonodromy(stiffness, Sequence(contact, numbers), 2.0 * np.pi / n, near.turn, source)
+            RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.turn, source)
             for numbers in (finer, harmonics)
         )
         self.ring = ring
@@ -97,17 +97,17 @@ class RingMultipliers(Multipliers):
         """As `Multipliers._values`; None where modes are missing, or there are too many."""
         return None if self.unknown else Multipliers._values(self, monodromy, omega)
 
-    def see(self, sequence: Sequence, x: FloatArray) -> bool:
+    def see(self, transitions: Transitions, x: FloatArray) -> bool:
         """As `Multipliers.see`, with the unknowns of one sector."""
-        count = (sequence.width - 2) // 4
-        blocks = np.asarray(x)[: self.contacts * sequence.width].reshape(self.contacts, sequence.width)
+        count = (transitions.width - 2) // 4
+        blocks = np.asarray(x)[: self.contacts * transitions.width].reshape(self.contacts, transitions.width)
         turn = self.turns[count]
         pairs = np.ascontiguousarray(blocks[:, 2:]).view(np.complex128).reshape(self.contacts, count, 2)
         turned = pairs[None] * turn[:, None, :, None]  # (sector, contact, harmonic, direction)
-        whole = np.empty((len(turn), self.contacts, sequence.width))
+        whole = np.empty((len(turn), self.contacts, transitions.width))
         whole[..., :2] = blocks[:, :2]
         whole[..., 2:] = turned.reshape(len(turn), self.contacts, 2 * count).view(np.float64)
-        return bool(sequence.look(whole.ravel()))
+        return bool(transitions.look(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""

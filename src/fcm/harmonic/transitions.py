@@ -18,8 +18,8 @@ FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside 
 
 
 @cython.cclass
-class Sequence:
-    """`look` at a motion finds its events; number `order[i]` is the i-th of them.
+class Transitions:
+    """`look` at a motion finds its events, changes of a state; number `order[i]` is the i-th of them.
 
     Parameters
     ----------

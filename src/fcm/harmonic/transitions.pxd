@@ -3,7 +3,7 @@ from fcm.contact.periodic.motion cimport Motion
 
 cdef int FREE
 
-cdef class Sequence:
+cdef class Transitions:
     cdef readonly Motion motion
     cdef readonly Cycle cycle
     cdef readonly int contacts, width, events, moving, held
