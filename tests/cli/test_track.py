@@ -51,6 +51,22 @@ def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
     assert fcm("plot", "peak", "folds.nc", "--folds", "-o", "folds.svg").code == 0
 
 
+def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
+    """Two of three cusps that lie close together move too far by more harmonics to be found again."""
+    done = fcm("respond", "yang1998", *FOLDS, "4", "--to", "10", "-o", "folds.nc", "--json")
+    (curve,) = json.loads(done.out)["tracked"]["curves"]
+    told = [one["error"] for one in curve["errors"]]
+    assert [one["place"] for one in curve["errors"]].count("cusp") == len(curve["turns"])
+    assert None in told and all(0.0 < one < 0.01 for one in told if one is not None)
+    with netCDF4.Dataset("folds.nc") as data:
+        known = np.ma.filled(data["tracked_error_told"][0], np.nan)
+        error = np.ma.filled(data["tracked_error"][0], np.nan)
+    assert (known == 0.0).sum() == told.count(None) and (known == 1.0).sum() + told.count(None) == len(told)
+    assert error[known == 1.0].tolist() == [one for one in told if one is not None]
+    assert np.isnan(error[known != 1.0]).all()
+    assert "cannot tell" in fcm("respond", "yang1998", *FOLDS, "4", "--to", "10").out
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [

@@ -74,6 +74,34 @@ def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     assert turns == pytest.approx(np.sort([value for value in expected if value > 0.0]), abs=2e-6)
 
 
+def test_the_error_of_folds_is_what_twelve_harmonics_change(scene, folds):
+    """At an end, and at a cusp, where it is of the number, too."""
+    curve = folds.curves[0]
+    more = track(scene, "folds", PRELOAD, (-5.0, -3.0), harmonics=12).tracking.curves[0]
+    (i,), (k,) = (np.flatnonzero(one.turn) for one in (curve, more))
+    end, turn, other = curve.errors
+    assert (end.place, turn.place, turn.point, other.point) == ("end", "cusp", i, curve.number.size - 1)
+    assert turn.number == pytest.approx(abs(more.number[k] - curve.number[i]), rel=0.1)
+    assert turn.relative == pytest.approx(abs(more.frequency[k] / curve.frequency[i] - 1.0), rel=0.1)
+    _, paths = run(scene, -20.0, tuple(range(1, 13)))
+    exact = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in paths]).max()
+    assert end.relative == pytest.approx(abs(exact / curve.frequency[0] - 1.0), rel=0.1)
+
+
+def test_the_error_of_peaks_is_what_twelve_harmonics_change(scene):
+    curve = track(scene, "peaks", PRELOAD, (4.0, 10.0), harmonics=1).tracking.curves[0]
+    assert [one.place for one in curve.errors] == ["end, greatest", "least", "end"]
+    for one in curve.errors:
+        system, paths = run(scene, curve.number[one.point], tuple(range(1, 13)))
+        exact = recorded(system, paths).amplitude[:, 0].max()
+        assert one.relative == pytest.approx(abs(exact / curve.amplitude[one.point, 0] - 1.0), rel=0.1)
+
+
+def test_where_nothing_slips_or_opens_nothing_is_left_out(scene):
+    curves = track(scene, "slip", PRELOAD, (60.0, 100.0), harmonics=1).tracking.curves
+    assert max(one.relative for curve in curves for one in curve.errors) < 1e-8
+
+
 @pytest.mark.parametrize(("harmonics", "to"), [((1,), 100.0), ((1, 2), 10.0)])
 def test_tracked_peaks_are_those_of_ordinary_runs(scene, harmonics, to):
     tracking = track(scene, "peaks", PRELOAD, (-20.0, to), harmonics=harmonics).tracking

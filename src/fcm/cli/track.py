@@ -110,7 +110,7 @@ def as_table(result: Mapping[str, Any], unit: str) -> str:
     parts = [_optimum(one, unit) for one in result.get("optimum", [])]
     tracked = result["tracked"]
     if tracked["what"] != "optimum":
-        parts += [_curves(tracked, unit), _turns(tracked, unit)]
+        parts += [_curves(tracked, unit), _turns(tracked, unit), _errors(tracked, unit)]
     return "\n\n".join(filter(None, parts))
 
 
@@ -148,6 +148,23 @@ def _turns(tracked: Mapping[str, Any], unit: str) -> str:
         for turn in curve["turns"]:
             rows.append([f"{turn['number']:.8g}", f"{turn['frequency']:.8g}", turn["kind"]])
     return aligned(rows, left=1) if len(rows) > 1 else ""
+
+
+def _errors(tracked: Mapping[str, Any], unit: str) -> str:
+    """What the harmonics left out would change, where it was looked for; at turns that of the number, too."""
+    rows = [["what", f"at {plain(tracked['over'])}", unit, "error", "of the number", "place"]]
+    for curve in tracked["curves"]:
+        for one in curve["errors"]:
+            told = one["error"] is not None
+            number = short(one["error_of_number"]) if told and "error_of_number" in one else ""
+            error = short(one["error"]) if told else "cannot tell"
+            where = [f"{one[key]:.6g}" for key in ("number", "frequency")]
+            rows.append([plain(curve["what"]), *where, error, number, one["place"]])
+    if not any(row[4] for row in rows[1:]):
+        rows = [[*row[:4], row[5]] for row in rows]
+    of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"
+    title = f"relative error of the {of} by the harmonics left out, estimated:"
+    return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
 
 
 def incomplete(result: Mapping[str, Any]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -12,13 +12,15 @@ from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.trace import ResponseError, Wanted, wanted_of
 from fcm.results.result import Response
-from fcm.results.tracked import TrackedCurve, Tracking
+from fcm.results.tracked import TrackedCurve, TrackedError, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import Scene
 from fcm.track.curves import Track, Tracks, tracks
+from fcm.track.error import change, places
 from fcm.track.onset import KINDS
+from fcm.track.spot import Way
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
@@ -71,8 +73,9 @@ def track(
     tracking = Tracking(over, what, span, chosen, [])
     for i, one in enumerate(curves):
         shown = None if progress is None else part(progress, i / len(curves), (i + 1.0) / len(curves))
-        found = _tracked(one, number, span, what, chosen, shown)
-        _add(tracking, one, found)
+        system, line = System(one, chosen), along(number)
+        found = tracks(system, line, span, conditions_of(one, what), (), _named(number, shown))
+        _add(tracking, one, found, Way(system, line, span, (), one.max_step))
     response = Response.without_curves(scene)
     response.tracking, response.method = tracking, "tracked"
     response.seconds = time.perf_counter() - begin
@@ -102,12 +105,8 @@ def needed(
     return tuple(sorted(found))
 
 
-def _tracked(
-    scene: Scene, number: Number, span: tuple[float, float], what: str, harmonics: tuple[int, ...],
-    progress: Progress | None,
-) -> Tracks:  # fmt: skip
-    shown = None if progress is None else lambda share: progress(share, number.key)
-    return tracks(System(scene, harmonics), along(number), span, conditions_of(scene, what), (), shown)
+def _named(number: Number, progress: Progress | None) -> Callable[[float], None] | None:
+    return None if progress is None else lambda share: progress(share, number.key)
 
 
 def conditions_of(scene: Scene, what: str) -> list[Condition]:
@@ -125,15 +124,24 @@ def _is_shown(scene: Scene, name: str) -> bool:
     return not scene.reported or name in scene.reported
 
 
-def _add(tracking: Tracking, scene: Scene, found: Tracks) -> None:
-    """The curves of one scene to those of all."""
+def _add(tracking: Tracking, scene: Scene, found: Tracks, way: Way) -> None:
+    """The curves of one scene to those of all, with their errors."""
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
     tracking.problems += [f"{where}: {text}" if where else text for text in found.problems]
-    tracking.curves += [as_curve(scene, one) for one in found.curves]
+    tracking.curves += [as_curve(scene, one, errors(way, one)) for one in found.curves]
 
 
-def as_curve(scene: Scene, one: Track) -> TrackedCurve:
-    """A track in the words of its scene."""
+def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
+    """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
+    told = []
+    for point, place in places(one).items():
+        by = change(way, one, point)
+        told.append(TrackedError(point, place, by.relative, by.number if one.spots[point].turn else np.nan))
+    return tuple(told)
+
+
+def as_curve(scene: Scene, one: Track, told: tuple[TrackedError, ...] = ()) -> TrackedCurve:
+    """A track in the words of its scene, with its errors as far as they were estimated."""
     corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
     stopped = [ending for ending in one.endings if not ending.whole]
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
@@ -149,6 +157,7 @@ def as_curve(scene: Scene, one: Track) -> TrackedCurve:
         closings=tuple(one.turns()),
         complete=one.whole,
         reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
+        errors=told,
     )
 
 

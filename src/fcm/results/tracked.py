@@ -13,6 +13,20 @@ from fcm.units import in_unit
 
 
 @dataclass(frozen=True)
+class TrackedError:
+    """What the harmonics left out would change at a point of a curve, estimated; NaN where it cannot be told.
+
+    relative is of the amplitude of a peak, else of the frequency; number, at a turn alone, is by how much
+    the number would be another there.
+    """
+
+    point: int
+    place: str  # "end", "cusp", "least", ...; several with commas
+    relative: float
+    number: float = np.nan
+
+
+@dataclass(frozen=True)
 class TrackedCurve:
     """One curve, points in the order along it; frequencies in rad/s."""
 
@@ -27,6 +41,7 @@ class TrackedCurve:
     closings: tuple[tuple[int, str], ...]  # points where it turns, and what they are
     complete: bool
     reason: str
+    errors: tuple[TrackedError, ...] = ()
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -43,6 +58,17 @@ class TrackedCurve:
                     "kind": kind,
                 }
                 for i, kind in self.closings
+            ],
+            "errors": [
+                {
+                    "place": one.place,
+                    "number": float(self.number[one.point]),
+                    "frequency": float(in_unit(self.frequency[one.point], unit)),
+                    "error": one.relative,
+                    "of": "amplitude" if self.what.startswith("peak of ") else "frequency",
+                    **({"error_of_number": one.number} if self.turn[one.point] else {}),
+                }
+                for one in self.errors
             ],
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),

@@ -67,10 +67,43 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
             {"long_name": "onset at which the response has a corner there, if it has"},
         ),
     }
+    if tracking.what != "optimum":
+        out |= _errors(tracking)
     for key in curves[0].parameters:
         values = np.array([curve.parameters[key] for curve in curves])
         out[f"track_{key}"] = (("track",), values, {"long_name": f"{key} of the curve"})
     return out
+
+
+def _errors(tracking: Tracking) -> dict[str, Parts]:
+    """What the harmonics left out would change, where that was looked at."""
+    told = [np.full((3, curve.number.size), np.nan) for curve in tracking.curves]
+    for out, curve in zip(told, tracking.curves, strict=True):
+        for one in curve.errors:
+            out[:, one.point] = one.relative, one.number, float(np.isfinite(one.relative))
+    relative, number, known = (_padded([one[i] for one in told]) for i in range(3))
+    of = "amplitude" if tracking.what == "peaks" else "frequency"
+    dims, by = ("track", "tracked"), "by the harmonics left out"
+    return {
+        "tracked_error": (
+            dims,
+            relative,
+            {
+                "long_name": f"estimated relative error of the {of} {by}, at ends, turns, extremes",
+                "units": "1",
+            },
+        ),
+        "tracked_number_error": (
+            dims,
+            number,
+            {"long_name": f"estimated error of {tracking.key} {by}, at turns"},
+        ),
+        "tracked_error_told": (
+            dims,
+            known,
+            {"long_name": "1 where the error was estimated, 0 where it was tried and cannot be told"},
+        ),
+    }
 
 
 def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
