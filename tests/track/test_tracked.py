@@ -16,6 +16,9 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
+from fcm.track.curves import Track
+from fcm.track.spot import Ending, Spot
+from fcm.track.tracked import Condition, Kind
 
 PRELOAD = "contact.shroud.n_0"
 
@@ -63,6 +66,36 @@ def test_the_window_closes_where_two_folds_of_ordinary_runs_meet(scene, folds):
     near, far = width(least + 0.01), width(least + 0.04)
     assert far / near == pytest.approx(8.0, rel=0.05)
     assert width(least - 1e-4) == 0.0
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e4])  # of the frequency, as in other units
+@pytest.mark.parametrize("skew", [0.0, 1e-3, 1.0])  # of the frequency by the number, along the window
+@pytest.mark.parametrize(("kind", "closes"), [("cusp", True), ("isola", False)])
+def test_a_turn_of_folds_is_told_by_what_the_frequency_does(kind, closes, skew, unit):
+    """Folds by x of x^3 + s x + w = 0: s = -3 x^2, w = 2 x^3; and of x^2 + w^2 - s = 0: x = 0, s = w^2."""
+    spots = []
+    for x in (-0.3, -0.1, 0.0, 0.2, 0.4):
+        rate = np.array([1.0, 6.0 * x * x, -6.0 * x]) if closes else np.array([0.0, 1.0, 2.0 * x])
+        place = np.array([x, 2.0 * x**3, -3.0 * x * x]) if closes else np.array([0.0, x, x * x])
+        for one in (place, rate):
+            one[1] = unit * (one[1] + skew * one[2])
+        spots.append(Spot(place, rate, turn=x == 0.0))
+    z, none = np.array([spot.z for spot in spots]), np.zeros((len(spots), 0))
+    ends = (Ending.SPAN, Ending.SPAN)
+    curve = Track(Condition(Kind.FOLD), tuple(spots), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends)
+    assert curve.turns() == [(2, kind)]
+
+
+def test_at_a_cusp_no_branch_is_born(scene, folds):
+    """One branch on both sides of each, with two folds more on one of them."""
+    for curve in folds.curves:
+        for i, kind in curve.closings:
+            counts = []
+            for value in (curve.number[i] - 0.01, curve.number[i] + 0.01):
+                _, paths = run(scene, value)
+                counts.append((len(paths), sum(len(path.where(Mark.FOLD)) for path in paths)))
+            (one, less), (other, more) = sorted(counts, key=lambda pair: pair[1])
+            assert (kind, one, other, more - less) == ("cusp", 1, 1, 2)
 
 
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):

@@ -21,7 +21,7 @@ SEEDS = 13  # values of the number, evenly spaced, at which ordinary curves are 
 MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
 SAME = 1e-5  # in the problem's scale: points nearer than this are one
 BESIDE = 0.1  # of a chord: what is nearer to it lies on the curve
-CUSP = 1e-3  # of the direction: a frequency that changes less where the number turns back
+CUSP = 1e-3  # of the frequency's rate beside a turn: at the turn it is less where it turns back, too
 
 BoolArray = npt.NDArray[np.bool_]
 
@@ -44,14 +44,23 @@ class Track:
         return all(ending.whole for ending in self.endings)
 
     def turns(self) -> list[tuple[int, str]]:
-        """Points at which the number turns back, and what they are: a cusp, or the birth of an isola."""
-        found = []
-        for i, spot in enumerate(self.spots):
-            if spot.turn:
-                size = np.abs(spot.direction[-2]) / max(np.linalg.norm(spot.direction), 1e-300)
-                cusp = spot.switch or size < CUSP
-                found.append((i, "cusp" if cusp else "isola"))
-        return found
+        """Points at which the number turns back, and what they are."""
+        other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
+        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.spots) if spot.turn]
+        return [(i, self._turn_of_fold(i) if fold else other) for i in turns]
+
+    def _turn_of_fold(self, i: int) -> str:
+        """A cusp where two folds meet with one tangent; an isola where the frequency passes on.
+
+        Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
+        omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
+        response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
+        """
+        beside = [self.spots[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.spots)]
+        if self.spots[i].switch and len(beside) == 2:
+            return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
+        still = abs(self.spots[i].direction[-2]) < CUSP * max(map(abs, beside), default=0.0)
+        return "cusp" if still else "isola"
 
 
 @dataclass(frozen=True)
