@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import netCDF4
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -12,6 +13,7 @@ from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.response.optimum import optimise
 from fcm.response.track import track
+from fcm.results.output import write_netcdf
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
@@ -96,6 +98,26 @@ def test_at_a_cusp_no_branch_is_born(scene, folds):
                 counts.append((len(paths), sum(len(path.where(Mark.FOLD)) for path in paths)))
             (one, less), (other, more) = sorted(counts, key=lambda pair: pair[1])
             assert (kind, one, other, more - less) == ("cusp", 1, 1, 2)
+
+
+def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_path):
+    def stop_at(limit):
+        def progress(share, _):
+            if share > limit:
+                raise KeyboardInterrupt
+
+        return track(scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1, progress=progress)
+
+    kept = stop_at(0.2)
+    (curve,), (problem,) = kept.tracking.curves, kept.tracking.problems
+    assert problem.startswith("interrupted") and not kept.complete
+    assert np.array_equal(curve.frequency, folds.curves[0].frequency)
+    write_netcdf(kept, tmp_path / "kept.nc")
+    with netCDF4.Dataset(tmp_path / "kept.nc") as data:
+        assert np.array_equal(data["tracked_number"][0], curve.number)
+        assert np.ma.filled(data["tracked_error_told"][0], np.nan) == pytest.approx(np.nan, nan_ok=True)
+    with pytest.raises(KeyboardInterrupt):
+        stop_at(-1.0)
 
 
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):

@@ -11,7 +11,7 @@ from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.trace import ResponseError, Wanted, wanted_of
-from fcm.results.result import Response
+from fcm.results.result import INTERRUPTED, Response
 from fcm.results.tracked import TrackedCurve, TrackedError, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
@@ -25,6 +25,7 @@ from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
 WHAT = ("folds", "peaks", *KINDS)
+STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
 
 
 def track(
@@ -51,7 +52,7 @@ def track(
     Returns
     -------
     Response
-        Without curves of its own; `tracking` holds the others.
+        Without curves of its own; `tracking` holds the others. Interrupted, it has those that are finished.
 
     Raises
     ------
@@ -59,6 +60,8 @@ def track(
         If what is asked for, or the span, is wrong.
     SceneError
         If there is no such number.
+    KeyboardInterrupt
+        If no curve is finished then.
     """
     if what not in WHAT:
         raise ResponseError(f"track {what!r} is not one of {', '.join(WHAT)}")
@@ -75,7 +78,11 @@ def track(
         shown = None if progress is None else part(progress, i / len(curves), (i + 1.0) / len(curves))
         system, line = System(one, chosen), along(number)
         found = tracks(system, line, span, conditions_of(one, what), (), _named(number, shown))
-        _add(tracking, one, found, Way(system, line, span, (), one.max_step))
+        stopped = _add(tracking, one, found, Way(system, line, span, (), one.max_step))
+        if stopped and not tracking.curves:
+            raise KeyboardInterrupt
+        if stopped:
+            break
     response = Response.without_curves(scene)
     response.tracking, response.method = tracking, "tracked"
     response.seconds = time.perf_counter() - begin
@@ -124,11 +131,24 @@ def _is_shown(scene: Scene, name: str) -> bool:
     return not scene.reported or name in scene.reported
 
 
-def _add(tracking: Tracking, scene: Scene, found: Tracks, way: Way) -> None:
-    """The curves of one scene to those of all, with their errors."""
+def _add(tracking: Tracking, scene: Scene, found: Tracks, way: Way) -> bool:
+    """The curves of one scene to those of all, with their errors; whether that was interrupted.
+
+    After an interruption nothing is estimated any more.
+    """
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
-    tracking.problems += [f"{where}: {text}" if where else text for text in found.problems]
-    tracking.curves += [as_curve(scene, one, errors(way, one)) for one in found.curves]
+    problems, stopped = list(found.problems), found.interrupted
+    for one in found.curves:
+        told: tuple[TrackedError, ...] = ()
+        try:
+            told = () if stopped else errors(way, one)
+        except KeyboardInterrupt:
+            stopped = True
+        tracking.curves.append(as_curve(scene, one, told))
+    if stopped:
+        problems.append(STOPPED)
+    tracking.problems += [f"{where}: {text}" if where else text for text in problems]
+    return stopped
 
 
 def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:

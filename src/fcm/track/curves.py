@@ -69,6 +69,7 @@ class Tracks:
 
     curves: tuple[Track, ...]
     problems: tuple[str, ...] = ()
+    interrupted: bool = False  # so that there may be more
 
 
 def tracks(
@@ -81,11 +82,24 @@ def tracks(
 ) -> Tracks:
     """The curves of conditions, from ordinary curves at some values of s, and at more seeds.
 
-    An onset that comes and goes between two such values is first met by the highest peak.
+    An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
+    returns the curves that are finished.
     """
     values = sorted({*np.linspace(*span, SEEDS).tolist(), *seeds})
     way = Way(system, line, span, tuple(values[1:-1]), system.scene.max_step)
-    made = _Made(way)
+    made, stopped = _Made(way), False
+    try:
+        _follow_all(made, values, conditions, progress)
+    except KeyboardInterrupt:
+        stopped = True
+    return Tracks(tuple(made.curves), tuple(made.problems), stopped)
+
+
+def _follow_all(
+    made: _Made, values: list[float], conditions: list[Condition], progress: Progress | None
+) -> None:
+    """From ordinary curves at some values."""
+    system, line = made.way.system, made.way.line
     for number, value in enumerate(values):
         if progress is not None:
             progress(number / len(values))
@@ -95,8 +109,7 @@ def tracks(
         made.from_points([(condition, np.append(z, value)) for condition, z in points])
     onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
     if onsets:
-        made.from_points(_met_by_peaks(way, onsets))
-    return Tracks(tuple(made.curves), tuple(made.problems))
+        made.from_points(_met_by_peaks(made.way, onsets))
 
 
 class _Made:
