@@ -99,11 +99,10 @@ def level_curve(
         level = max(low, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            for longest in (step, FINER * step):
-                path = follow(Level(system.balance(), omega), start, whole, True, longest, stations)
-                if not _back(path, low):
-                    break
-            else:
+            path = follow(Level(system.balance(), omega), start, whole, True, step, stations)
+            if _back(path, low):
+                path = follow(Level(system.balance(), omega), start, whole, True, FINER * step, stations)
+            if _back(path, low):
                 path = replace(path, status=Status.STALLED)
             if path.z.shape[0]:
                 return path
