@@ -76,7 +76,7 @@ class Solver:
         for i in range(self.size):
             self.right[:] = 0.0
             self.right[i] = 1.0
-            self.substitute()
+            self.solve()
             columns[:, i] = self.right
         return columns
 
