@@ -158,8 +158,9 @@ AS_PYTHON = """
 import sys, warnings
 warnings.simplefilter("ignore")
 import numpy as np
-from fcm.contact.periodic import crossings, cycle, forces, integrals, measures, motion
-assert all(m.__file__.endswith(".py") for m in (crossings, cycle, forces, integrals, measures, motion))
+from fcm.contact.periodic import crossings, cycle, forces, integrals, measures, motion, slider
+kernels = crossings, cycle, forces, integrals, measures, motion, slider
+assert all(m.__file__.endswith(".py") for m in kernels)
 import fcm
 data = np.load(sys.argv[1])
 found = []

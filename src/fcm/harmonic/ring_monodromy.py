@@ -14,12 +14,14 @@ import numpy.typing as npt
 from fcm.harmonic.propagator import Propagator
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import STICK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
+    from cython.cimports.fcm.contact.periodic.slider import STICK
     from cython.cimports.fcm.harmonic.monodromy import Monodromy
     from cython.cimports.fcm.harmonic.stiffness import Stiffness
     from cython.cimports.fcm.harmonic.transitions import Transitions
 else:
-    from fcm.contact.periodic.cycle import STICK, TWO_PI
+    from fcm.contact.periodic.cycle import TWO_PI
+    from fcm.contact.periodic.slider import STICK
     from fcm.harmonic.monodromy import Monodromy
     from fcm.harmonic.stiffness import Stiffness
     from fcm.harmonic.transitions import Transitions

@@ -13,9 +13,9 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs, sqrt
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 else:
-    from fcm.contact.periodic.cycle import NEGATIVE, POSITIVE, SEPARATION, STICK
+    from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 
 
 @cython.cclass

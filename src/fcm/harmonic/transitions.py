@@ -8,11 +8,13 @@ import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
+    from cython.cimports.fcm.contact.periodic.cycle import STUCK, TWO_PI, Cycle
     from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, STUCK, TWO_PI, Cycle
+    from fcm.contact.periodic.cycle import STUCK, TWO_PI, Cycle
     from fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+    from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 
 FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside those of a cycle
 

@@ -1,26 +1,13 @@
-from fcm.contact.periodic.crossings cimport Crossings
-from fcm.contact.periodic.events cimport Events
+from fcm.contact.periodic.slider cimport Slider
 
-cdef int STICK, POSITIVE, NEGATIVE, SEPARATION, STUCK
+cdef int STUCK
 cdef double TWO_PI
 
-cdef class Cycle(Events):
-    cdef readonly Crossings crossings
-    cdef readonly int pieces
+cdef class Cycle(Slider):
     cdef readonly double overlap, greatest_lower, least_upper
-    cdef readonly int[::1] state, event, cause
-    cdef readonly double[::1] begin, rest
     cdef int[::1] order
-    cdef int slipping, span, span_cause
-    cdef double span_begin, w
     cdef int solve(self, int behaviour, double start) noexcept nogil
     cdef bint far_inside(self, double start) noexcept nogil
     cdef void sort_cuts(self) noexcept nogil
-    cdef void add(self, int state, int event, double theta, double rest, int cause) noexcept nogil
     cdef int never_open(self, double start) noexcept nogil
     cdef void march(self, int first, int kind) noexcept nogil
-    cdef void close(self) noexcept nogil
-    cdef bint pushes(self, int side) noexcept nogil
-    cdef void advance(self, int end, double theta, int kind) noexcept nogil
-    cdef void slip(self, int side, int end, double theta) noexcept nogil
-    cdef double slip_begin(self, int side, int end, double theta) noexcept nogil

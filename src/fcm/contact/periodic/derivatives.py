@@ -11,11 +11,13 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
     from cython.cimports.fcm.contact.periodic.integrals import CONTACT, SLIPS, STICKS, Integrals
+    from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI
+    from fcm.contact.periodic.cycle import TWO_PI
     from fcm.contact.periodic.integrals import CONTACT, SLIPS, STICKS, Integrals
+    from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 
 PI = cython.declare(cython.double, 3.141592653589793)
 

@@ -13,11 +13,13 @@ import numpy as np
 from cython.cimports.libc.math import sin
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
+    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI, Cycle
     from cython.cimports.fcm.contact.periodic.motion import FORCE, REACH
+    from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 else:
-    from fcm.contact.periodic.cycle import POSITIVE, SEPARATION, STICK, TWO_PI, Cycle
+    from fcm.contact.periodic.cycle import TWO_PI, Cycle
     from fcm.contact.periodic.motion import FORCE, REACH
+    from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)

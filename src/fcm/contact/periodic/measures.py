@@ -14,14 +14,7 @@ from cython.cimports.libc.math import fabs
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.crossings import Crossings
-    from cython.cimports.fcm.contact.periodic.cycle import (
-        NEGATIVE,
-        POSITIVE,
-        SEPARATION,
-        STICK,
-        TWO_PI,
-        Cycle,
-    )
+    from cython.cimports.fcm.contact.periodic.cycle import TWO_PI, Cycle
     from cython.cimports.fcm.contact.periodic.events import BOTTOM, TOP
     from cython.cimports.fcm.contact.periodic.motion import (
         FORCE,
@@ -34,16 +27,10 @@ if cython.compiled:
         UPPER,
         UPPER_RATE,
     )
+    from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 else:
     from fcm.contact.periodic.crossings import Crossings
-    from fcm.contact.periodic.cycle import (
-        NEGATIVE,
-        POSITIVE,
-        SEPARATION,
-        STICK,
-        TWO_PI,
-        Cycle,
-    )
+    from fcm.contact.periodic.cycle import TWO_PI, Cycle
     from fcm.contact.periodic.events import BOTTOM, TOP
     from fcm.contact.periodic.motion import (
         FORCE,
@@ -56,6 +43,7 @@ else:
         UPPER,
         UPPER_RATE,
     )
+    from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 
 LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and BOTTOM
 GREATEST_LOAD = cython.declare(cython.int, 11)
