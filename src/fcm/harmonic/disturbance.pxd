@@ -1,0 +1,12 @@
+from fcm.harmonic.stiffness cimport Stiffness
+
+cdef class Disturbances:
+    cdef readonly Stiffness stiffness
+    cdef readonly int modes, contacts, size, memories
+    cdef double[:, ::1] X, term, work, A, E, F
+    cdef int[::1] state
+    cdef readonly object propagator
+    cdef int propagate(self, double length) except -1
+    cdef int jump(self, double length) noexcept
+    cdef void product(self, double[:, ::1] left, double[:, ::1] right, double factor) noexcept
+    cdef int apply(self, double h) except -1
