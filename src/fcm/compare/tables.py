@@ -99,6 +99,7 @@ def steps(summary: Summary) -> Rows:
         if one["corrected"] and not one["left_out"]:
             continue  # the same once more
         name = one["method"] if one["corrected"] else f"{one['method']}, as it is"
+        name += "" if one["complete"] else ", not complete"
         curve = MEASURES.index("curve")
         errors = [shown(one["against"][reference])[curve] for reference in against]
         seconds = f"{one['processor_seconds']:.3f}"

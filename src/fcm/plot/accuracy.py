@@ -38,11 +38,12 @@ QUANTITIES = {
 
 
 class Mark(NamedTuple):
-    """One run: processor time [s], error, and whether the error is only known to be below that."""
+    """One run: processor time [s], error, whether that is only a limit, and whether its curves are complete."""
 
     seconds: float
     error: float
     below: bool
+    complete: bool
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,8 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
         shown = run["against"][reference]
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
-            mark = Mark(float(run["processor_seconds"]), float(error or below), error is None)
+            seconds, complete = float(run["processor_seconds"]), bool(run["complete"])
+            mark = Mark(seconds, float(error or below), error is None, complete)
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
     return Panel(reference, one["own_error"][quantity], float(one["max_step"]), lines)
@@ -121,6 +123,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         marker, colour = LOOK.get(method, OTHER)
         label = method if corrected else f"{method}, as it is"
         x, y = [mark.seconds for mark in marks], [mark.error for mark in marks]
+        label += "" if all(mark.complete for mark in marks) else ", not complete"
         fill = colour if corrected else "white"
         style = "-" if corrected else "--"
         axes.plot(
