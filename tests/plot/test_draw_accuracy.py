@@ -14,7 +14,8 @@ def run(method, step, error, corrected=True, left_out=True):
     shown = {"errors": {"curve": error}, "below": {} if error else {"curve": 1e-7}}
     return {
         "method": method, "corrected": corrected, "left_out": left_out, "max_step": step,
-        "complete": corrected, "processor_seconds": 0.1 / step, "against": {"exact": shown, "closed form": shown},
+        "complete": corrected,
+        "processor_seconds": 0.1 / step, "against": {"exact": shown, "closed form": shown},
     }  # fmt: skip
 
 

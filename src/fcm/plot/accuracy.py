@@ -38,7 +38,7 @@ QUANTITIES = {
 
 
 class Mark(NamedTuple):
-    """One run: processor time [s], error, whether that is only a limit, and whether its curves are complete."""
+    """One run: processor time [s], error, whether that is only a limit, whether its curves are complete."""
 
     seconds: float
     error: float
