@@ -149,7 +149,9 @@ def test_an_exact_curve_that_takes_too_long_is_given_up(fcm, quick, monkeypatch)
 
 def test_without_a_whole_curve_there_is_nothing_to_compare(fcm, scene):
     """An undamped resonance of the open contact."""
-    scene.write_text(scene.read_text().replace("0.05, 0.05", "0, 0").replace("n_0 = 5.0", "n_0 = -1e20"))
+    scene.write_text(
+        scene.read_text().replace("damping = 0.05", "damping = 0").replace("n_0 = 5.0", "n_0 = -1e20")
+    )
     run = fcm("respond", scene, "--compare", "-o", "c.nc")
     assert run.code == 3 and "no curve is complete, so there is nothing to compare" in run.err
 

@@ -7,6 +7,8 @@ import pytest
 
 from fcm.cli.curves import as_table
 
+from ..oscillator import oscillator
+
 
 def curve(peaks, jumps=(), edge=()):
     found = {
@@ -54,29 +56,8 @@ def test_a_jump_to_no_stable_part_is_explained():
     assert "land on" not in settled
 
 
-SCENE = """
-[units]
-length = "mm"
-force = "N"
-[modal]
-dofs = ["u", "v"]
-frequency = [1.0, 10.0]
-damping = 0.05
-shapes = [[0.707, 0.707], [1.0, -0.5]]
-[[contact]]
-name = "c"
-tangential = "u"
-normal = "v"
-mu = 0.4
-k_u = 1.0
-k_v = 1.0
-n_0 = 5.0
-[[force]]
-dof = "u"
-amplitude = 1.0
-[response]
-frequency = [0.5, RANGE]
-"""
+UNITS = '[units]\nlength = "mm"\nforce = "N"\n'
+SCENE = UNITS + oscillator("[response]\nfrequency = [0.5, RANGE]\n", damping=0.05)
 
 
 @pytest.mark.parametrize("end, edge", [("1.1", True), ("1.8", False)])

@@ -42,7 +42,7 @@ def untimed(value):
 
 @pytest.mark.parametrize("text", [None, STIFF])
 def test_the_same_peaks_and_folds_and_summary_as_with_all_points(fcm, scene, text):
-    scene.write_text((text or scene.read_text().replace("0.05, 0.05", "0.01, 0.01")) + SWEEP)
+    scene.write_text((text or scene.read_text().replace("damping = 0.05", "damping = 0.01")) + SWEEP)
     full = fcm("respond", scene, "-o", "full.nc", "--json")
     only = fcm("respond", scene, "-o", "only.nc", "--json", "--peaks-only")
     assert full.code == only.code == 0

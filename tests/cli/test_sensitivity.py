@@ -59,7 +59,7 @@ def test_only_of_peaks_of_a_balance(fcm, scene, args):
 
 def test_a_hidden_degree_of_freedom_has_none(fcm, scene):
     scene.write_text(scene.read_text() + "output = []\n")
-    scene.write_text(scene.read_text().replace('normal     = "v"', "normal     = { u = 0.5, v = 1.0 }"))
+    scene.write_text(scene.read_text().replace('normal = "v"', "normal = { u = 0.5, v = 1.0 }"))
     done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, "--json")
     curve = json.loads(done.out)["curves"][0]
     assert done.code == 0 and list(curve["sensitivity"]) == list(curve["peak"])

@@ -8,36 +8,17 @@ import netCDF4
 import numpy as np
 import pytest
 
-HEAD = """
-title = "a sweep"
-[modal]
-dofs = ["u", "v"]
-frequency = [1.0, 10.0]
-damping = 0.01
-shapes = [[0.707, 0.707], [1.0, -0.5]]
-[[contact]]
-name = "shroud"
-tangential = "u"
-normal = "v"
-mu = 0.4
-k_u = 1.0
-k_v = 1.0
-n_0 = 5.0
-[[force]]
-dof = "u"
-amplitude = 1.0
-"""
-SWEEP = (
-    HEAD
-    + """
+from ..oscillator import oscillator
+
+TITLE = 'title = "a sweep"'
+SWEEP = TITLE + oscillator("""
 [response]
 frequency = [1.1, 1.4]
 max_step = 0.5
 [sweep]
 "contact.shroud.n_0" = { from = 3, to = 9, count = 12 }
-"""
-)
-ONE = HEAD + "[response]\nfrequency = [0.8, 1.6]\nmax_step = 0.2\n"
+""")
+ONE = TITLE + oscillator("[response]\nfrequency = [0.8, 1.6]\nmax_step = 0.2\n")
 # groups of few curves, so that a short sweep is worth interrupting
 FEW = (
     "from fcm import signals\nsignals.take()\n"  # as the program does, before anything is imported

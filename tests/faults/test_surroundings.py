@@ -16,8 +16,9 @@ import pytest
 
 from fcm.cli.terminal import plain
 
+from ..oscillator import oscillator
 from ..program import python
-from .conftest import HEAD, ONE
+from .conftest import ONE
 
 # 8
 
@@ -31,7 +32,7 @@ from .conftest import HEAD, ONE
     ],
 )
 def test_a_run_without_end_is_refused(program, line, said):
-    program.write("scene.toml", f"{HEAD}[response]\n{line}\n")
+    program.write("scene.toml", oscillator(f"[response]\n{line}\n"))
     done = program("respond", "scene.toml")
     assert done.returncode == 2 and said in done.err and done.out == ""
 
@@ -42,7 +43,7 @@ def test_a_step_without_end_is_refused_on_the_command_line(program):
 
 
 def test_a_narrow_range_that_can_be_followed_is_not(program):
-    program.write("scene.toml", f"{HEAD}[response]\nfrequency = [1.2, 1.2000000013]\nmax_step = 0.5\n")
+    program.write("scene.toml", oscillator("[response]\nfrequency = [1.2, 1.2000000013]\nmax_step = 0.5\n"))
     assert program("respond", "scene.toml").returncode == 0
 
 
@@ -107,8 +108,8 @@ def test_what_creeps_away_is_not_stable(program):
 
 @pytest.mark.parametrize("at", ["52", "33.3"])
 def test_a_frequency_in_hertz_is_the_one_that_was_given(program, at):
-    scene = HEAD.replace("[modal]", 'frequency_unit = "Hz"\n[modal]', 1).replace("n_0 = 5.0", "n_0 = 1e9")
-    program.write("scene.toml", scene + "[response]\nfrequency = [1, 2]\n")
+    scene = oscillator("[response]\nfrequency = [1, 2]\n", n_0=1e9)
+    program.write("scene.toml", 'frequency_unit = "Hz"' + scene)
     args = ("respond", "scene.toml", "--method", "exact", "--at", at, "-o", "a.nc", "--csv", "a.csv")
     done = program(*args)
     assert done.returncode == 0, done.err

@@ -14,6 +14,7 @@ from fcm.response import groups, sweep
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
 
+from ..oscillator import oscillator
 from ..program import called, python
 
 PRELOADS = np.linspace(-20.0, 60.0, 6)
@@ -130,30 +131,14 @@ def test_interrupted_before_anything_is_finished(scene, small_groups, tmp_path, 
     assert not keep.exists()
 
 
-SCENE = """
-[modal]
-dofs = ["u", "v"]
-frequency = [1.0, 10.0]
-damping = 0.01
-shapes = [[0.707, 0.707], [1.0, -0.5]]
-[[contact]]
-name = "shroud"
-tangential = "u"
-normal = "v"
-mu = 0.4
-k_u = 1.0
-k_v = 1.0
-n_0 = 5.0
-[[force]]
-dof = "u"
-amplitude = 1.0
+SCENE = oscillator("""
 [response]
 frequency = [0.7, 1.7]
 max_step = 0.2
 [sweep]
 "contact.shroud.mu" = { normal = [0.4, 0.05], count = 90, seed = 1 }
 "contact.shroud.n_0" = { normal = [10, 3], count = 90, seed = 1 }
-"""
+""")
 GROUPS = "import fcm.response.sweep as sweep\nsweep.BATCH = 5"
 
 

@@ -15,6 +15,8 @@ from fcm.table import TableError, build_table, open_table, spline
 from fcm.table.nodes import PRESETS
 from fcm.table.part import GUARD, Part, Reach
 
+from ..oscillator import oscillator
+
 SCENE = "yang1998-n5"
 
 
@@ -191,26 +193,7 @@ def test_command_says_what_it_saved(fcm, tmp_path):
     assert done.code == 0 and "look-ups outside the part it holds" in done.err
 
 
-STUCK = """
-[modal]
-dofs = ["u", "v"]
-frequency = [1.0, 10.0]
-damping = 0.01
-shapes = [[0.7, 0.7], [1.0, -0.5]]
-[[contact]]
-name = "c"
-tangential = "u"
-normal = "v"
-mu = 0.4
-k_u = 1.0
-k_v = 1.0
-n_0 = 1e9
-[[force]]
-dof = "u"
-amplitude = 1e-3
-[response]
-frequency = [0.7, 1.7]
-"""
+STUCK = oscillator("[response]\nfrequency = [0.7, 1.7]\n", n_0=1e9, amplitude=1e-3)
 
 
 @pytest.mark.parametrize(
