@@ -17,6 +17,7 @@ import pytest
 import fcm
 from fcm.response import groups, trace
 from fcm.run import Checkpoint, CheckpointError, Elsewhere, Lost, fingerprint, place_for, sweep
+from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
 from fcm.run.records import Record, packed
 
@@ -99,6 +100,28 @@ def test_changed_sources_are_another_program(tmp_path, monkeypatch):
     monkeypatch.setattr(fcm, "__version__", "0.1.1")
     seen.append(of_program.__wrapped__(tmp_path))
     assert len(set(seen)) == 6
+
+
+def test_what_is_installed_is_known_by_sizes_and_times(tmp_path):
+    (tmp_path / "b").mkdir()
+    one, other = tmp_path / "a.py", tmp_path / "b" / "c.so"
+    one.write_text("x = 1")
+    other.write_text("binary")
+    seen = [installed.__wrapped__(tmp_path)]
+    (tmp_path / "__pycache__").mkdir()
+    (tmp_path / "__pycache__" / "a.py").write_text("")  # decides nothing
+    (tmp_path / "notes.txt").write_text("")
+    assert seen == [installed.__wrapped__(tmp_path)]
+    changes = (
+        lambda: os.utime(other, ns=(1, 1)),
+        lambda: one.write_text("x = 10"),
+        lambda: one.rename(tmp_path / "d.py"),
+        lambda: (tmp_path / "e.nc").write_text(""),
+    )
+    for change in changes:
+        change()
+        seen.append(installed.__wrapped__(tmp_path))
+    assert len(set(seen)) == 5
 
 
 def test_a_fingerprint_is_of_what_decides_the_curves():
