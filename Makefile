@@ -133,6 +133,7 @@ check: $(VENV)/installed-dev  ## format, lint and types only
 tables: $(VENV)/installed  ## build the shipped tables again
 	$(BIN)/fcm tabulate -o tables/default.nc
 	$(BIN)/fcm tabulate --preset fast -o tables/fast.nc
+	$(BIN)/python -m fcm.table.shipped
 
 study: $(VENV)/installed  ## bundled and two hundred random scenes: do three step limits agree, are errors true? half an hour
 	@mkdir -p build

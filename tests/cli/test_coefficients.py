@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 from fcm.plot.surface import draw_surfaces
-from fcm.table.store import DEFAULT
+from fcm.table.shipped import DEFAULT
 
 SOME = ("--coefficient", "F_c", "--phi", "15deg")
 WHATS = (("surface", *SOME), ("surface", "--contour", *SOME), ("error", *SOME), ("normal",))

@@ -21,6 +21,6 @@ def default():
 
 @pytest.fixture(scope="session")
 def fast():
-    from fcm.table.store import DEFAULT
+    from fcm.table.shipped import DEFAULT
 
     return open_table(DEFAULT.with_name("fast.nc"))

@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 import fcm
-from fcm.table import TableError, build_table, open_table, seal, store
+from fcm.table import TableError, build_table, open_table, seal, shipped, store
 from fcm.table.arrays import encode
 
 
@@ -29,12 +29,44 @@ def copy(tiny_file, tmp_path):
 
 
 def test_open_table_is_found_at_the_top():
-    assert fcm.open_table().resolution == open_table(str(store.DEFAULT)).resolution
+    assert fcm.open_table().resolution == open_table(str(shipped.DEFAULT)).resolution
 
 
 @pytest.mark.parametrize(("name", "size"), [("default", 12e6), ("fast", 1e6)])
 def test_shipped_files_are_small(name, size):
-    assert store.DEFAULT.with_name(f"{name}.nc").stat().st_size <= size
+    assert shipped.DEFAULT.with_name(f"{name}.nc").stat().st_size <= size
+
+
+def test_the_splines_beside_the_shipped_table_are_those_of_its_file():
+    ready, file = shipped.read(shipped.DEFAULT), open_table(shipped.DEFAULT)
+    assert ready.coefficients.tobytes() == file.coefficients.tobytes()
+    assert (ready.error, ready.part, ready.resolution) == (file.error, file.part, file.resolution)
+
+
+def test_splines_that_are_damaged_or_of_another_table_are_not_used(tiny_file, copy):
+    assert shipped.read(copy) is None
+    table = open_table(copy)
+    shipped.write(table, copy)
+    assert shipped.read(copy)(0.3, 0.5, 1.0) == table(0.3, 0.5, 1.0)
+    splines = copy.with_suffix(shipped.SPLINES)
+    sound = splines.read_bytes()
+    for position in (
+        *range(0, 600, 7),
+        shipped.HEADER - 1,
+        shipped.HEADER + 3,
+        len(sound) // 2,
+        len(sound) - 1,
+    ):
+        damaged = bytearray(sound)
+        damaged[position] ^= 0x10
+        splines.write_bytes(damaged)
+        assert shipped.read(copy) is None
+    for cut in (0, 100, shipped.HEADER, len(sound) - 4):
+        splines.write_bytes(sound[:cut])
+        assert shipped.read(copy) is None
+    splines.write_bytes(sound)
+    build_table(copy, (5, 5, 5, 7), points=10_000)
+    assert shipped.read(copy) is None
 
 
 def test_xarray_opens_it_with_the_coefficients_at_every_node(tiny_file):
@@ -127,7 +159,7 @@ def test_every_flipped_byte_is_refused(tmp_path, tiny_file):
 
 
 def test_shipped_table_with_a_flipped_byte(tmp_path):
-    content = bytearray(store.DEFAULT.read_bytes())
+    content = bytearray(shipped.DEFAULT.read_bytes())
     content[len(content) // 2] ^= 1
     path = tmp_path / "flipped.nc"
     path.write_bytes(content)

@@ -81,7 +81,7 @@ def saving(path: Path, part: Part) -> tuple[dict[str, Any], str]:
 def _shipped(resolution: Resolution) -> Path | None:
     """The table of that resolution that comes with fcm."""
     from fcm.table.nodes import PRESETS
-    from fcm.table.store import DEFAULT
+    from fcm.table.shipped import DEFAULT
 
     names = [name for name, preset in PRESETS.items() if preset == resolution]
     return DEFAULT.with_name(f"{names[0]}.nc") if names else None

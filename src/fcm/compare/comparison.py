@@ -15,7 +15,7 @@ from fcm.response.around import refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.model import Scene
 from fcm.table import open_table
-from fcm.table.store import DEFAULT
+from fcm.table.shipped import DEFAULT
 
 STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
 STEPS_EXACT = (2.0, 1.0)

@@ -6,14 +6,17 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fcm.table import store
-from fcm.table.lookup import Table
-from fcm.table.store import TableError
-
 if TYPE_CHECKING:
     from fcm.table.build import build_table
+    from fcm.table.lookup import Table
 
 __all__ = ["Table", "TableError", "build_table", "open_table"]
+
+_HOME = {"Table": "fcm.table.lookup", "build_table": "fcm.table.build"}
+
+
+class TableError(ValueError):
+    """A file that is not a sound table; the message says which file and why."""
 
 
 def open_table(path: str | Path | None = None) -> Table:
@@ -33,10 +36,17 @@ def open_table(path: str | Path | None = None) -> Table:
     >>> table.error["max"] < 2e-4
     True
     """
-    return Table(*store.load(path))
+    from fcm.table import shipped
+
+    if path is None and (table := shipped.read(shipped.DEFAULT)) is not None:
+        return table
+    from fcm.table import store
+    from fcm.table.lookup import Table
+
+    return Table(*store.load(shipped.DEFAULT if path is None else path))
 
 
 def __getattr__(name: str) -> Any:
-    if name == "build_table":  # needs the closed form and more, which look-up does not
-        return import_module("fcm.table.build").build_table
+    if name in _HOME:  # what opening a table does not need
+        return getattr(import_module(_HOME[name]), name)
     raise AttributeError(f"module 'fcm.table' has no attribute {name!r}")

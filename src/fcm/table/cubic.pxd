@@ -1,5 +1,5 @@
 cdef class Cubic:
-    cdef const double[::1] coefficients
+    cdef const float[::1] coefficients
     cdef Py_ssize_t step_u, step_x, last
     cdef void evaluate(
         self, double u, double x, double z, bint gradient, double[::1] out, Py_ssize_t at

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import numpy.typing as npt
 
 from fcm.table import spline
@@ -12,6 +13,8 @@ from fcm.table.cubic import Cubic
 from fcm.table.locate import Resolution
 from fcm.table.part import Part, frame
 from fcm.table.tabulated import Tabulated
+
+Coefficients = npt.NDArray[np.float32]
 
 
 class Table:
@@ -37,6 +40,8 @@ class Table:
     0.5000 0.3183
     """
 
+    coefficients: Coefficients  # of the splines, as from `spline.stack`
+
     def __init__(
         self,
         separation: FloatArray,
@@ -56,8 +61,23 @@ class Table:
             (separation, (_ends(of_u_1, nu_1), free, free)),
             (slip, (_ends(of_u_2, nu_2), (_ends(of_x, nx)[0], spline.FREE), free)),
         )
-        self._coefficients = spline.stack(*(spline.interpolate(*chart) for chart in charts if chart[0].size))
-        self._cubic, self._frame = Cubic(self._coefficients), frame(self.part)
+        self.coefficients = spline.stack(*(spline.interpolate(*chart) for chart in charts if chart[0].size))
+        self._cubic, self._frame = Cubic(self.coefficients), frame(self.part)
+
+    @classmethod
+    def of_splines(cls, coefficients: Coefficients, error: dict[str, Any], part: Part) -> Table:
+        """From the attributes of another."""
+        table = cls.__new__(cls)
+        table.__setstate__(
+            {
+                "coefficients": coefficients,
+                "error": error,
+                "part": part,
+                "resolution": part.resolution,
+                "outside": 0,
+            }
+        )
+        return table
 
     def __call__(
         self, n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike
@@ -89,7 +109,7 @@ class Table:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         vars(self).update(state)
-        self._cubic, self._frame = Cubic(self._coefficients), frame(self.part)
+        self._cubic, self._frame = Cubic(self.coefficients), frame(self.part)
 
     def law(self) -> Tabulated:
         """The table as a law for one thread."""

@@ -49,5 +49,12 @@ def check(path: Path) -> bytes | None:
     return content
 
 
+def of(path: Path) -> str:
+    """The seal of a file; whatever is in its place if it has none."""
+    with path.open("rb") as file:
+        file.seek(max(file.seek(0, 2) - LENGTH, 0))
+        return file.read().decode("latin-1")
+
+
 def _line(content: bytes) -> bytes:
     return START + f"{zlib.crc32(content):08x}\n".encode()

@@ -61,12 +61,14 @@ def _inverse(nodes: int, ends: tuple[str, str]) -> FloatArray:
     return np.asarray(np.linalg.inv(matrix)[:, 1:-1], dtype=np.float64)
 
 
-def stack(*parts: FloatArray) -> FloatArray:
+def stack(*parts: FloatArray) -> npt.NDArray[np.float32]:
     """Coefficients of several splines one after the other along the first axis, the three of a node together.
+
+    In single precision, as the values are in the file: half of the memory that look-ups wait for.
 
     A point on the last node of a row of cells reads beyond it, with weight 0: hence the zeros at the end.
     """
     planes = sum(part.shape[1] for part in parts)
-    stacked = np.zeros((planes + 2, *parts[0].shape[2:], 3))
+    stacked = np.zeros((planes + 2, *parts[0].shape[2:], 3), dtype=np.float32)
     np.concatenate([np.moveaxis(part, 0, -1) for part in parts], out=stacked[:planes])
     return stacked

@@ -15,7 +15,7 @@ import numpy as np
 
 import fcm
 from fcm.files import replacing
-from fcm.table import seal
+from fcm.table import TableError, seal
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
 from fcm.table.part import Part
@@ -23,7 +23,6 @@ from fcm.table.part import Part
 LAYOUT = 1  # to be raised whenever `decode` or `atlas` changes
 PART_LAYOUT = 2  # of a file with a part of the nodes, which fcm before it would have taken for all
 TITLE = "Fourier coefficients of the friction force of a contact with variable normal load"
-DEFAULT = Path(__file__).parent.parent / "tables" / "default.nc"
 COMMENT = (
     "Levels: the first level_open are with separation, from n0_bar = -b_bar (fully open) to n0_bar = b_bar; "
     "the others slip without separation, from n0_bar = b_bar to the slip limit. phi + pi changes the sign of "
@@ -37,10 +36,6 @@ PART_COMMENT = (
 )
 HDF5 = b"\x89HDF\r\n\x1a\n"  # begins every netCDF-4 file
 REMEDY = "make it anew with fcm tabulate"
-
-
-class TableError(ValueError):
-    """A file that is not a sound table; the message says which file and why."""
 
 
 def write(
@@ -112,17 +107,15 @@ def _checksum(arrays: Arrays, attributes: Mapping[str, Any]) -> str:
     return f"crc32:{value:08x}"
 
 
-def load(path: str | Path | None = None) -> tuple[FloatArray, FloatArray, dict[str, Any], Part]:
+def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part]:
     """The reduced coefficients of the two charts, the recorded error, and the nodes that the file has.
-
-    path None is the shipped table.
 
     Raises
     ------
     TableError
         If the file is missing, is not a table, is of another layout, or is damaged.
     """
-    name = Path(DEFAULT if path is None else path)
+    name = Path(path)
     try:
         content = seal.check(name)
         attributes, arrays = _read(name, content)
