@@ -57,10 +57,11 @@ def _sweep(
     """Walk from a point along stable segments in the direction of the sweep, and jump where they end."""
     rises = np.diff(frequency) * (1.0 if sweep == "up" else -1.0)
     usable = stable[:-1] & stable[1:] & (rises != 0.0) & np.isfinite(rises)
+    onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
     found: list[Jump] = []
     visited: set[int] = set()
     while at not in visited:
-        at = _end_of_branch(at, rises, usable, visited)
+        at = _end_of_branch(at, onwards, visited)
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
             return found
@@ -74,12 +75,13 @@ def _sweep(
     return found
 
 
-def _end_of_branch(at: int, rises: FloatArray, usable: BoolArray, visited: set[int]) -> int:
+def _end_of_branch(at: int, onwards: list[float], visited: set[int]) -> int:
+    """The last point of stable segments that lead onwards (1), or from their end to their start (-1)."""
     while True:
         visited.add(at)
-        if at < rises.size and usable[at] and rises[at] > 0.0:
+        if at < len(onwards) and onwards[at] > 0.0:
             at += 1
-        elif at > 0 and usable[at - 1] and rises[at - 1] < 0.0:
+        elif at > 0 and onwards[at - 1] < 0.0:
             at -= 1
         else:
             return at

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 import fcm
 from fcm.files import replacing
@@ -113,7 +114,11 @@ def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
 
 
 def write_netcdf(response: Response, path: str | Path) -> None:
-    """Write the response as netCDF-4; the file appears only when it is complete."""
+    """Write the response as netCDF-4; the file appears only when it is complete.
+
+    All variables are described before any is filled: between the one and the other the library goes through
+    all it has been told, which for each variable by itself took half of the time.
+    """
     import netCDF4
 
     fields = fields_of(response)
@@ -121,29 +126,33 @@ def write_netcdf(response: Response, path: str | Path) -> None:
     with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
         file.setncatts(attributes(response))
         for name, field in fields.items():
-            variable = _written(file, name, field)
-            variable.setncatts(field.attrs)
             of = [x for x in coordinates if set(fields[x].dims) <= set(field.dims)]
-            if of and name not in coordinates:
-                variable.coordinates = " ".join(of)
+            more = {"coordinates": " ".join(of)} if of and name not in coordinates else {}
+            _described(file, name, field).setncatts(field.attrs | more)
+        for name, field in fields.items():
+            _fill(file.variables[name], field.values)
 
 
-def _written(file: Any, name: str, field: Field) -> Any:
-    """A variable of an open file; what is of many curves is made and written some curves at a time."""
+def _described(file: Any, name: str, field: Field) -> Any:
+    """A variable of an open file, without values."""
     for dim, size in zip(field.dims, field.values.shape, strict=True):
         if dim not in file.dimensions:
             file.createDimension(dim, size)
     if not isinstance(field.values, Padded):
-        variable = _variable(file, name, field.dims, field.values.dtype)
-        variable[...] = _storable(field.values)
-        return variable
+        return _variable(file, name, field.dims, field.values.dtype)
     step, (count, *rest) = field.values.step, field.values.shape
     chunks = (max(min(step, count), 1), *(max(size, 1) for size in rest))
     # each chunk is written once, so that nothing is gained by keeping many of every variable
-    variable = _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=2 * CHUNK)
-    for begin in range(0, count, step):
-        variable[begin : begin + step] = _storable(field.values.part(begin, begin + step))
-    return variable
+    return _variable(file, name, field.dims, field.values.dtype, chunksizes=chunks, chunk_cache=2 * CHUNK)
+
+
+def _fill(variable: Any, values: npt.NDArray[Any] | Padded) -> None:
+    """Write the values; what is of many curves is made and written some curves at a time."""
+    if not isinstance(values, Padded):
+        variable[...] = _storable(values)
+        return
+    for begin in range(0, values.shape[0], values.step):
+        variable[begin : begin + values.step] = _storable(values.part(begin, begin + values.step))
 
 
 def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], **options: Any) -> Any:
