@@ -66,7 +66,6 @@ class Along:
         sine: cython.double = self.columns[u + 1, n]
         cosine: cython.double = self.columns[u + 1, n + 1]
         h: cython.double = self.flows.step[slot] * (1 << j)
-        self.flows.reach(slot, j)
         self._times(self.flows.power[slot, j])
         self.flows.advance(slot, j, self.columns, u)
         self.flows.advance(slot, j, self.columns, u + 1)

@@ -50,17 +50,12 @@ class Flows(Forced):
         """Move row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        x: cython.double
         sine: cython.double = y[k, n]
         cosine: cython.double = y[k, n + 1]
+        self.reach(slot, j)
         for i in range(n):
             self._whole[i] = self.forced[slot, j, 0, i] * sine + self.forced[slot, j, 1, i] * cosine
-        for p in range(n):
-            x = y[k, p]
-            if x != 0.0:
-                for i in range(n):
-                    self._whole[i] += self.power[slot, j, p, i] * x
+        add_rows(self.power[slot, j], y[k], n, self._whole, n)
         for i in range(n):
             y[k, i] = self._whole[i]
         y[k, n] = self.turn[slot, j, 0] * sine + self.turn[slot, j, 1] * cosine
@@ -74,21 +69,19 @@ class Flows(Forced):
         slot: cython.Py_ssize_t,
         y: cython.double[:, ::1],
         k: cython.Py_ssize_t,
+        steps: cython.Py_ssize_t,
         seen: cython.double[::1],
     ) -> cython.void:
-        """g, g' h and g'''' h**4 of the exits at 0 to BLOCK steps from row k of y."""
-        wide: cython.Py_ssize_t = (_BLOCK + 1) * 3 * self.exits[slot]
+        """g, g' h and g'''' h**4 of the exits at 0 to `steps` <= BLOCK steps from row k of y."""
+        wide: cython.Py_ssize_t = (steps + 1) * 3 * self.exits[slot]
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t
-        i: cython.Py_ssize_t
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
+        self.look(slot, steps)
         for w in range(wide):
             seen[w] = self.table_forced[slot, 0, w] * x + self.table_forced[slot, 1, w] * other
-        for i in range(n):
-            x = y[k, i]
-            for w in range(wide):
-                seen[w] += self.table[slot, i, w] * x
+        add_rows(self.table[slot], y[k], n, seen, wide)
 
     @cython.cfunc
     @cython.nogil
@@ -96,31 +89,27 @@ class Flows(Forced):
     def leave(
         self,
         slot: cython.Py_ssize_t,
+        e: cython.Py_ssize_t,
         y: cython.double[:, ::1],
         k: cython.Py_ssize_t,
         powers: cython.double[:, ::1],
     ) -> cython.void:
-        """Taylor coefficients (exit, ORDER + 1) of the exits in the step from row k of y."""
+        """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, into its row."""
         n: cython.Py_ssize_t = self.linear
-        e: cython.Py_ssize_t
-        w: cython.Py_ssize_t
+        w: cython.Py_ssize_t = e * (_ORDER + 1)
         i: cython.Py_ssize_t
         j: cython.int
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
-        for e in range(self.exits[slot]):
-            w = e * (_ORDER + 1)
-            for j in range(_ORDER + 1):
-                powers[e, j] = (
-                    self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
-                )
+        for j in range(_ORDER + 1):
+            powers[e, j] = (
+                self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
+            )
         for i in range(n):
             x = y[k, i]
             if x != 0.0:
-                for e in range(self.exits[slot]):
-                    w = e * (_ORDER + 1)
-                    for j in range(_ORDER + 1):
-                        powers[e, j] += self.series[slot, i, w + j] * x
+                for j in range(_ORDER + 1):
+                    powers[e, j] += self.series[slot, i, w + j] * x
 
     @cython.cfunc
     @cython.nogil
@@ -141,3 +130,34 @@ class Flows(Forced):
             for i in range(n):
                 out[i] += self.sizes[slot, p, i] * x
         out[n] = out[n + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def add_rows(
+    matrix: cython.double[:, ::1],
+    x: cython.double[::1],
+    n: cython.Py_ssize_t,
+    out: cython.double[::1],
+    wide: cython.Py_ssize_t,
+) -> cython.void:
+    """Add to out (wide,) the first n rows of a matrix times x; four together, to go through out less often."""
+    i: cython.Py_ssize_t = 0
+    w: cython.Py_ssize_t
+    a: cython.double
+    b: cython.double
+    c: cython.double
+    d: cython.double
+    while i + 4 <= n:
+        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
+        for w in range(wide):
+            out[w] = (
+                ((out[w] + matrix[i, w] * a) + matrix[i + 1, w] * b) + matrix[i + 2, w] * c
+            ) + matrix[i + 3, w] * d
+        i += 4
+    while i < n:
+        a = x[i]
+        for w in range(wide):
+            out[w] += matrix[i, w] * a
+        i += 1

@@ -7,4 +7,4 @@ cdef class Forced(Series):
     cdef void _unit(self, Py_ssize_t slot, Py_ssize_t b) noexcept nogil
     cdef void _unit_exits(self, Py_ssize_t slot, Py_ssize_t b) noexcept nogil
     cdef void _double(self, Py_ssize_t slot, Py_ssize_t j) noexcept nogil
-    cdef void _look(self, Py_ssize_t slot) noexcept nogil
+    cdef void look(self, Py_ssize_t slot, Py_ssize_t steps) noexcept nogil

@@ -19,13 +19,14 @@ else:
     from fcm.motion.series import Series
 
 _ORDER = cython.declare(cython.int, 19)
-_WHOLE = cython.declare(cython.int, 4)  # BLOCK is 2**4 steps
-_BLOCK = cython.declare(cython.int, 16)
 
 
 @cython.cclass
 class Forced(Series):
-    """`refresh` makes the columns of a flow for the frequency `omega` [rad/s]; see `Pool`."""
+    """`refresh` makes the columns of a flow for the frequency `omega` [rad/s], for one step; see `Pool`.
+
+    Those for more are made where they are needed, by `reach` and `look`.
+    """
 
     def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
         Series.__init__(self, modal, ports, law)
@@ -43,9 +44,8 @@ class Forced(Series):
         b: cython.Py_ssize_t
         for b in range(2):
             self._unit(slot, b)
-        self.reached[slot] = 0
-        self.reach(slot, _WHOLE)
-        self._look(slot)
+        self.reached[slot] = self.looked[slot] = 0
+        self.reach(slot, 0)
         self.made_for[slot] = self.omega
 
     @cython.cfunc
@@ -137,26 +137,34 @@ class Forced(Series):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _look(self, slot: cython.Py_ssize_t) -> cython.void:
-        """The columns of the table of exits: T[k + 1] = T[k] exp(A h)."""
+    def look(self, slot: cython.Py_ssize_t, steps: cython.Py_ssize_t) -> cython.void:
+        """Make the columns of the table of exits up to so many steps, those that are not made yet.
+
+        T[k + 1] = T[k] exp(A h).
+        """
         g: cython.Py_ssize_t = 3 * self.exits[slot]
+        begin: cython.Py_ssize_t = self.looked[slot] * g
+        end: cython.Py_ssize_t = steps * g
         w: cython.Py_ssize_t
         i: cython.Py_ssize_t
         b: cython.int
         x: cython.double
         c: cython.double = self.turn[slot, 0, 0]
         s: cython.double = self.turn[slot, 0, 1]
+        if begin >= end:
+            return
         for b in range(2):
-            for w in range(g, (_BLOCK + 1) * g):
+            for w in range(begin + g, end + g):
                 self.table_forced[slot, b, w] = 0.0
             for i in range(self.linear):
                 x = self.forced[slot, 0, b, i]
-                for w in range(_BLOCK * g):
+                for w in range(begin, end):
                     self.table_forced[slot, b, w + g] += self.table[slot, i, w] * x
-        for w in range(_BLOCK * g):
+        for w in range(begin, end):
             self.table_forced[slot, 0, w + g] += (
                 c * self.table_forced[slot, 0, w] - s * self.table_forced[slot, 1, w]
             )
             self.table_forced[slot, 1, w + g] += (
                 s * self.table_forced[slot, 0, w] + c * self.table_forced[slot, 1, w]
             )
+        self.looked[slot] = steps

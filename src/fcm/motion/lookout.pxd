@@ -6,12 +6,14 @@ cdef class Lookout:
     cdef double base, left, inside
     cdef double[:, ::1] there, powers
     cdef double[::1] slack
-    cdef double[:, ::1] _here, _work
-    cdef double[::1] _floors, _seen
+    cdef signed char[::1] touched
+    cdef int _doubled
+    cdef double[:, ::1] _here, _begun, _work
+    cdef double[::1] _floors, _largest, _seen
     cdef signed char[::1] _marked
-    cdef bint begin(self, double[:, ::1] y, double left) noexcept nogil
+    cdef void begin(self, double[:, ::1] y, double left) noexcept nogil
     cdef bint block(self) noexcept nogil
     cdef bint _suspect(self, Py_ssize_t k, Py_ssize_t e) noexcept nogil
+    cdef double _floor(self, Py_ssize_t e) noexcept nogil
     cdef void _stand(self, int steps) noexcept nogil
     cdef bint _passed(self, double before) noexcept nogil
-    cdef void _hold(self, double x) noexcept nogil

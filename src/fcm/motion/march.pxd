@@ -19,5 +19,6 @@ cdef class March:
     cdef int _settle(self) noexcept nogil
     cdef bint _fails(self, Py_ssize_t slot) noexcept nogil
     cdef void _switch(self, Py_ssize_t slot) noexcept nogil
-    cdef bint _open_segment(self) noexcept nogil
+    cdef void _descends(self, Py_ssize_t slot, Py_ssize_t e) noexcept nogil
+    cdef void _open_segment(self) noexcept nogil
     cdef void _close_segment(self) noexcept nogil

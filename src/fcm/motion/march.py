@@ -129,7 +129,7 @@ class March:
                     return stopped
                 if self.segments.count == self.segments.start.shape[0] or self.segments.count > self.limit:
                     return 2
-                ended = self._open_segment()
+                self._open_segment()
                 if self._ahead.left > MOST_STEPS:
                     return 5
             while not ended:
@@ -159,7 +159,6 @@ class March:
                 for i in range(self.flows.size):
                     self._noise[i] *= ROUNDING
                 self._fresh = False
-            self.flows.leave(slot, self.y, 0, self._ahead.powers)
             if not self._fails(slot):
                 return 0
             self._switch(slot)
@@ -172,31 +171,54 @@ class March:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fails(self, slot: cython.Py_ssize_t) -> cython.bint:
-        """Mark the exits whose first coefficient beyond rounding is negative; set those before it to zero."""
+        """Mark the exits whose first coefficient beyond rounding is negative; set those before it to zero.
+
+        The coefficients beyond the first are asked for only where that is rounding.
+        """
+        e: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        value: cython.double
+        zero: cython.double
+        some: cython.bint = False
+        for e in range(self.flows.exits[slot]):
+            value = zero = 0.0
+            for i in range(self.flows.first[slot, e], self.flows.linear):
+                value += self.flows.row[slot, e, i] * self.y[0, i]
+                zero += fabs(self.flows.row[slot, e, i]) * self._noise[i]
+            self._failed[e] = e == self._ahead.exit
+            self._ahead.touched[e] = fabs(value) <= zero
+            if self._ahead.touched[e]:
+                self._descends(slot, e)
+            elif value < 0.0:
+                self._failed[e] = 1
+            some = some or self._failed[e] != 0
+        self._ahead.exit = -1
+        return some
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _descends(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
+        """Mark exit e, zero here, if the first of its further coefficients beyond rounding is negative."""
         powers: cython.double[:, ::1] = self._ahead.powers
         n: cython.Py_ssize_t = self.flows.linear
-        e: cython.Py_ssize_t
         i: cython.Py_ssize_t
         w: cython.Py_ssize_t
         j: cython.int
         zero: cython.double
-        some: cython.bint = False
-        for e in range(self.flows.exits[slot]):
-            self._failed[e] = e == self._ahead.exit
-            for j in range(_LEADING):
-                w = e * (_ORDER + 1) + j
-                zero = fabs(self.flows.series_forced[slot, 0, w]) * self._noise[n]
-                zero += fabs(self.flows.series_forced[slot, 1, w]) * self._noise[n + 1]
-                for i in range(n):
-                    zero += fabs(self.flows.series[slot, i, w]) * self._noise[i]
-                if fabs(powers[e, j]) > zero:
-                    if powers[e, j] < 0.0:
-                        self._failed[e] = 1
-                    break
-                powers[e, j] = 0.0
-            some = some or self._failed[e] != 0
-        self._ahead.exit = -1
-        return some
+        self.flows.leave(slot, e, self.y, 0, powers)
+        powers[e, 0] = 0.0
+        for j in range(1, _LEADING):
+            w = e * (_ORDER + 1) + j
+            zero = fabs(self.flows.series_forced[slot, 0, w]) * self._noise[n]
+            zero += fabs(self.flows.series_forced[slot, 1, w]) * self._noise[n + 1]
+            for i in range(n):
+                zero += fabs(self.flows.series[slot, i, w]) * self._noise[i]
+            if fabs(powers[e, j]) > zero:
+                if powers[e, j] < 0.0:
+                    self._failed[e] = 1
+                return
+            powers[e, j] = 0.0
 
     @cython.cfunc
     @cython.nogil
@@ -228,8 +250,8 @@ class March:
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _open_segment(self) -> cython.bint:
-        """Note the segment that begins; whether it ends in its first step."""
+    def _open_segment(self) -> cython.void:
+        """Note the segment that begins."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t = self.segments.count
         self._settled, self._passes = True, 0
@@ -238,7 +260,7 @@ class March:
             self.segments.states[k, i] = self.states[0, i]
         for i in range(self.flows.size):
             self.segments.y[k, i] = self.y[0, i]
-        return self._ahead.begin(self.y, (self.duration - self.time) / self.flows.step[self._ahead.slot])
+        self._ahead.begin(self.y, (self.duration - self.time) / self.flows.step[self._ahead.slot])
 
     @cython.cfunc
     @cython.nogil

@@ -7,8 +7,8 @@ cdef class Pool:
     cdef readonly signed char[::1] rough
     cdef readonly signed char[:, ::1] states
     cdef readonly double[::1] step
-    cdef readonly Py_ssize_t[::1] exits, reached
-    cdef readonly Py_ssize_t[:, ::1] owner
+    cdef readonly Py_ssize_t[::1] exits, reached, looked
+    cdef readonly Py_ssize_t[:, ::1] owner, first
     cdef readonly signed char[:, ::1] goal
     cdef readonly double[:, :, ::1] row, table, table_forced, series, series_forced, sizes, sizes_forced
     cdef readonly double[:, :, :, ::1] power, forced, terms

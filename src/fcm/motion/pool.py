@@ -84,6 +84,7 @@ class Pool:
         k, exits, made = self._place(), len(owner), self._pool
         made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
+        made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
         made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
         made["terms"][k] = terms
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
@@ -104,9 +105,9 @@ class Pool:
         n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
-            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "made_for": (), "used": (),
+            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,), "made_for": (), "used": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
-            "reached": (), "terms": (ORDER + 1 if n <= SMALL else 0, n, n), "sizes": (n, n),
+            "reached": (), "looked": (), "terms": (ORDER + 1 if n <= SMALL else 0, n, n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
@@ -115,8 +116,10 @@ class Pool:
             "goal": np.int8,
             "exits": np.intp,
             "owner": np.intp,
+            "first": np.intp,
             "used": np.intp,
             "reached": np.intp,
+            "looked": np.intp,
         }
         old, made = self._pool, {}
         for name, shape in shapes.items():
@@ -124,15 +127,12 @@ class Pool:
             if self.count:
                 made[name][: self.count] = old[name][: self.count]
         self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
-        self.owner, self.goal, self.row = made["owner"], made["goal"], made["row"]
+        self.owner, self.goal = made["owner"], made["goal"]
+        self.row, self.first = made["row"], made["first"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
         self.terms = made["terms"]
-        self.turn, self.reached, self.table, self.table_forced = (
-            made["turn"],
-            made["reached"],
-            made["table"],
-            made["table_forced"],
-        )
+        self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
+        self.reached, self.looked = made["reached"], made["looked"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]
         self._pool = made
