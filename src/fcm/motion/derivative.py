@@ -135,7 +135,7 @@ class Derivative(Along):
         u: cython.Py_ssize_t = self.unknowns
         k: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        e: cython.Py_ssize_t = segments.ended[i]
+        e: cython.Py_ssize_t = cython.cast(cython.Py_ssize_t, segments.ended[i])
         speed: cython.double = 0.0
         size: cython.double = 0.0
         moved: cython.double

@@ -19,6 +19,7 @@ N = 19  # degree, ORDER of fcm.motion.pool
 DEEPEST = 50  # halvings
 _N = cython.declare(cython.int, 19)
 _DEEPEST = cython.declare(cython.int, 50)
+NOTHING = cython.declare(cython.double, 1e-20)  # of all powers: those above the last that is more are left out
 _WEIGHTS = cython.declare(
     cython.double[:, ::1],
     np.array([[comb(j, i) / comb(N, i) if i <= j else 0.0 for j in range(N + 1)] for i in range(N + 1)]),
@@ -71,24 +72,32 @@ def first_descent(
     """The root for row k of the powers, -1 where there is none."""
     i: cython.int
     j: cython.int
-    least: cython.double = powers[k, 0]
+    degree: cython.int
+    change: cython.double = 0.0
     for i in range(1, _N + 1):
-        least -= fabs(powers[k, i])
-    if least >= -floor:
+        change += fabs(powers[k, i])
+    if powers[k, 0] - change >= -floor:
         return -1.0
+    degree = _N
+    while degree > 1 and fabs(powers[k, degree]) <= NOTHING * change:
+        degree -= 1
     for j in range(_N + 1):
         work[0, j] = powers[k, 0]
-    for i in range(1, _N + 1):
+    for i in range(1, degree + 1):
         for j in range(i, _N + 1):
             work[0, j] += _WEIGHTS[i, j] * powers[k, i]
-    return _search(powers, k, floor, work)
+    return _search(powers, k, degree, floor, work)
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
 def _search(
-    powers: cython.double[:, ::1], k: cython.Py_ssize_t, floor: cython.double, work: cython.double[:, ::1]
+    powers: cython.double[:, ::1],
+    k: cython.Py_ssize_t,
+    degree: cython.int,
+    floor: cython.double,
+    work: cython.double[:, ::1],
 ) -> cython.double:
     """Depth first, left before right; row i of work has the coefficients of what waits at depth i.
 
@@ -102,7 +111,7 @@ def _search(
         if verdict == 2 or (verdict == 3 and depth >= _DEEPEST):
             return low  # it descends from rounding at the very start
         if verdict == 1:
-            return _root(powers, k, low, low + ldexp(1.0, -depth))
+            return _root(powers, k, degree, low, low + ldexp(1.0, -depth), work[depth])
         if verdict == 3:
             _halve(work, depth)
             depth += 1
@@ -181,17 +190,26 @@ def _mirror(work: cython.double[:, ::1], depth: cython.int) -> cython.void:
 @cython.nogil
 @cython.exceptval(check=False)
 def _root(
-    powers: cython.double[:, ::1], k: cython.Py_ssize_t, low: cython.double, high: cython.double
+    powers: cython.double[:, ::1],
+    k: cython.Py_ssize_t,
+    degree: cython.int,
+    low: cython.double,
+    high: cython.double,
+    ends: cython.double[::1],
 ) -> cython.double:
-    """Newton's method, kept inside a bracket with the only root: positive at low, negative at high."""
-    x: cython.double = 0.5 * (low + high)
+    """Newton's method, kept inside a bracket with the only root: positive at low, negative at high.
+
+    The first and the last of `ends` are the values there, but for rounding; it begins on the line between,
+    away from low, where there may be a root as well, of a touch.
+    """
+    x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[_N]), 0.25), 1.0)
     value: cython.double
     slope: cython.double
     new: cython.double
     i: cython.int
     for _ in range(100):
         value = slope = 0.0
-        for i in range(_N, -1, -1):
+        for i in range(degree, -1, -1):
             slope = slope * x + value
             value = value * x + powers[k, i]
         if value == 0.0:

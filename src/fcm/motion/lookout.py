@@ -108,11 +108,14 @@ class Lookout:
         owner: cython.Py_ssize_t = self.flows.owner[self.slot, e]
         a: cython.Py_ssize_t = 3 * k * exits + e
         b: cython.Py_ssize_t = a + 3 * exits
-        g: cython.double[::1] = self._seen
-        low: cython.double = min(min(g[a], g[b]), min(g[a] + g[a + exits] / 3.0, g[b] - g[b + exits] / 3.0))
-        low -= max(fabs(g[a + 2 * exits]), fabs(g[b + 2 * exits])) / 192.0
+        first: cython.double = self._seen[a]
+        last: cython.double = self._seen[b]
+        low: cython.double = min(
+            min(first, last), min(first + self._seen[a + exits] / 3.0, last - self._seen[b + exits] / 3.0)
+        )
+        low -= max(fabs(self._seen[a + 2 * exits]), fabs(self._seen[b + 2 * exits])) / 192.0
         self.slack[owner] = min(self.slack[owner], low)
-        self._largest[e] = max(self._largest[e], fabs(g[a]))
+        self._largest[e] = max(self._largest[e], fabs(first))
         return low < 0.0 and low < -self._floor(e)
 
     @cython.cfunc

@@ -7,13 +7,9 @@ that derivative the motion is the same in the old and the new state, so that the
 
 from __future__ import annotations
 
-from typing import Any
-
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
-
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
@@ -48,9 +44,15 @@ class March:
         self._noise, self._failed = np.zeros(d), np.zeros(2 * c + 1, np.int8)
         self.segments = Segments(d, c)
 
-    def begins(self, y: FloatArray, states: Any, duration: float, limit: int) -> None:
+    def begins(
+        self, y: cython.double[::1], states: cython.schar[::1], duration: float, limit: int
+    ) -> None:
         """Set the state vector (d,), the contacts' states (contact,) and the time to march [s]."""
-        np.asarray(self.y)[0], np.asarray(self.states)[0] = y, states
+        i: cython.Py_ssize_t
+        for i in range(self.flows.size):
+            self.y[0, i] = y[i]
+        for i in range(self.flows.contacts):
+            self.states[0, i] = states[i]
         self.lasts(duration, limit)
 
     def enters(self, x: cython.double[::1], sine: cython.double, cosine: cython.double) -> bool:

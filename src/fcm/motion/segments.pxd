@@ -1,6 +1,7 @@
 cdef class Segments:
     cdef public Py_ssize_t count
-    cdef readonly double[:, ::1] y, slack
+    cdef double[:, ::1] _numbers
+    cdef readonly double[:, :] y, slack
     cdef readonly signed char[:, ::1] states
-    cdef readonly double[::1] start, length
-    cdef readonly Py_ssize_t[::1] ended
+    cdef readonly double[:] start, length, ended
+    cdef void _part(self, Py_ssize_t size)

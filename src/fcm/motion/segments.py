@@ -21,15 +21,23 @@ class Segments:
     """Arrays over segments, of which the first `count` are there.
 
     A segment begins at the time `start` [s] with the state vector `y` (d,), lasts for `length` steps of the
-    flow of its `states` (contact,), and is `ended` by an exit of that flow, or (-1) by the end of the motion.
+    flow of its `states` (contact,), and is `ended` by the exit of that number, or (-1) by the end of the motion.
     While it lasts, the exits of each contact are no less than `slack` (contact,).
     """
 
     def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:
         self.count = 0
-        self.y, self.states = np.zeros((capacity, size)), np.zeros((capacity, contacts), np.int8)
-        self.start, self.length = np.zeros(capacity), np.zeros(capacity)
-        self.ended, self.slack = np.zeros(capacity, np.intp), np.zeros((capacity, contacts))
+        self._numbers = np.zeros((capacity, size + contacts + 3))
+        self.states = np.zeros((capacity, contacts), np.int8)
+        self._part(size)
+
+    @cython.cfunc
+    def _part(self, size: cython.Py_ssize_t) -> cython.void:
+        """Name the columns of the numbers, which are one array so that it is soon made."""
+        wide: cython.Py_ssize_t = self._numbers.shape[1]
+        self.y, self.slack = self._numbers[:, :size], self._numbers[:, size : wide - 3]
+        self.start, self.length = self._numbers[:, wide - 3], self._numbers[:, wide - 2]
+        self.ended = self._numbers[:, wide - 1]
 
     def __len__(self) -> int:
         return self.count
@@ -93,16 +101,16 @@ class Segments:
 
     def trim(self) -> Segments:
         """These segments without room for more."""
-        k: cython.Py_ssize_t = self.count
-        self.y, self.states, self.ended = self.y[:k], self.states[:k], self.ended[:k]
-        self.start, self.length, self.slack = self.start[:k], self.length[:k], self.slack[:k]
+        self._numbers, self.states = self._numbers[: self.count], self.states[: self.count]
+        self._part(self.y.shape[1])
         return self
 
     def room(self, capacity: int) -> Segments:
         """The same segments with room for more."""
         made = Segments(self.y.shape[1], self.states.shape[1], capacity)
         k = made.count = self.count
-        np.asarray(made.y)[:k], np.asarray(made.states)[:k] = self.y[:k], self.states[:k]
-        np.asarray(made.start)[:k], np.asarray(made.length)[:k] = self.start[:k], self.length[:k]
-        np.asarray(made.ended)[:k], np.asarray(made.slack)[:k] = self.ended[:k], self.slack[:k]
+        np.asarray(made._numbers)[:k], np.asarray(made.states)[:k] = (
+            np.asarray(self._numbers)[:k],
+            np.asarray(self.states)[:k],
+        )
         return made
