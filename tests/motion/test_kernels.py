@@ -167,7 +167,7 @@ def test_flows_that_were_used_longest_ago_make_room(monkeypatch):
     scene = two_contacts()
     whole = simulate(scene, 1.3, 20)
     monkeypatch.setattr("fcm.motion.pool.MOST_BYTES", 1)
-    little = simulate(scene, 1.3, 20)
+    little = simulate(replace(scene), 1.3, 20)  # a scene of its own, with flows of its own
     assert whole.cycles[0].system.flows.count > 8 == little.cycles[0].system.flows.count
     assert np.array_equal(whole.end.q, little.end.q)
     assert measure(little.cycles[-1]).amplitude == pytest.approx(

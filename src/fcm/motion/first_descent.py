@@ -19,11 +19,18 @@ N = 19  # degree, ORDER of fcm.motion.pool
 DEEPEST = 50  # halvings
 _N = cython.declare(cython.int, 19)
 _DEEPEST = cython.declare(cython.int, 50)
-NOTHING = cython.declare(cython.double, 1e-20)  # of all powers: those above the last that is more are left out
-_WEIGHTS = cython.declare(
-    cython.double[:, ::1],
-    np.array([[comb(j, i) / comb(N, i) if i <= j else 0.0 for j in range(N + 1)] for i in range(N + 1)]),
-)
+NOTHING = cython.declare(cython.double, 1e-20)  # of what the powers add up to: those above the last that is more are left out
+
+
+def _weights(degree: int) -> FloatArray:
+    """Of the powers in the Bernstein coefficients of a degree: (power, coefficient)."""
+    weights = np.zeros((N + 1, N + 1))
+    for i in range(degree + 1):
+        weights[i, i : degree + 1] = [comb(j, i) / comb(degree, i) for j in range(i, degree + 1)]
+    return weights
+
+
+_WEIGHTS = cython.declare(cython.double[:, :, ::1], np.array([_weights(n) for n in range(N + 1)]))
 
 
 def workspace() -> FloatArray:
@@ -73,19 +80,22 @@ def first_descent(
     i: cython.int
     j: cython.int
     degree: cython.int
+    leading: cython.int = 0
     change: cython.double = 0.0
-    for i in range(1, _N + 1):
+    while leading < _N and powers[k, leading] == 0.0:
+        leading += 1
+    for i in range(leading + 1, _N + 1):
         change += fabs(powers[k, i])
-    if powers[k, 0] - change >= -floor:
+    if powers[k, leading] - change >= -floor:
         return -1.0
     degree = _N
     while degree > 1 and fabs(powers[k, degree]) <= NOTHING * change:
         degree -= 1
-    for j in range(_N + 1):
+    for j in range(degree + 1):
         work[0, j] = powers[k, 0]
     for i in range(1, degree + 1):
-        for j in range(i, _N + 1):
-            work[0, j] += _WEIGHTS[i, j] * powers[k, i]
+        for j in range(i, degree + 1):
+            work[0, j] += _WEIGHTS[degree, i, j] * powers[k, i]
     return _search(powers, k, degree, floor, work)
 
 
@@ -107,13 +117,13 @@ def _search(
     low: cython.double = 0.0
     verdict: cython.int
     while True:
-        verdict = _judge(work, depth, floor)
+        verdict = _judge(work, degree, depth, floor)
         if verdict == 2 or (verdict == 3 and depth >= _DEEPEST):
             return low  # it descends from rounding at the very start
         if verdict == 1:
             return _root(powers, k, degree, low, low + ldexp(1.0, -depth), work[depth])
         if verdict == 3:
-            _halve(work, depth)
+            _halve(work, degree, depth)
             depth += 1
             continue
         # nothing here: to the right, on the depth of the nearest interval that is a left half
@@ -123,7 +133,7 @@ def _search(
         if depth == 0:
             return -1.0
         low += ldexp(1.0, -depth)
-        _mirror(work, depth)
+        _mirror(work, degree, depth)
 
 
 @cython.cfunc
@@ -138,7 +148,9 @@ def _odd(low: cython.double, depth: cython.int) -> cython.bint:
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _judge(work: cython.double[:, ::1], depth: cython.int, floor: cython.double) -> cython.int:
+def _judge(
+    work: cython.double[:, ::1], degree: cython.int, depth: cython.int, floor: cython.double
+) -> cython.int:
     """0: no descent; 1: exactly one root; 2: it descends at its start; 3: to be halved."""
     i: cython.int
     first: cython.int = 0
@@ -146,7 +158,7 @@ def _judge(work: cython.double[:, ::1], depth: cython.int, floor: cython.double)
     sign: cython.int
     changes: cython.int = 0
     below: cython.bint = False
-    for i in range(_N + 1):
+    for i in range(degree + 1):
         if work[depth, i] < -floor:
             below = True
         if fabs(work[depth, i]) > floor:
@@ -166,23 +178,23 @@ def _judge(work: cython.double[:, ::1], depth: cython.int, floor: cython.double)
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _halve(work: cython.double[:, ::1], depth: cython.int) -> cython.void:
+def _halve(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
     """Row depth + 1 becomes the left half of row depth, which keeps the right one (de Casteljau)."""
     i: cython.int
     j: cython.int
-    for j in range(_N + 1):
+    for j in range(degree + 1):
         work[depth + 1, j] = work[depth, 0]
-        for i in range(_N - j):
+        for i in range(degree - j):
             work[depth, i] = 0.5 * (work[depth, i] + work[depth, i + 1])
 
 
 @cython.cfunc
 @cython.nogil
 @cython.exceptval(check=False)
-def _mirror(work: cython.double[:, ::1], depth: cython.int) -> cython.void:
+def _mirror(work: cython.double[:, ::1], degree: cython.int, depth: cython.int) -> cython.void:
     """Row depth becomes the right half that its parent keeps."""
     i: cython.int
-    for i in range(_N + 1):
+    for i in range(degree + 1):
         work[depth, i] = work[depth - 1, i]
 
 
@@ -199,10 +211,10 @@ def _root(
 ) -> cython.double:
     """Newton's method, kept inside a bracket with the only root: positive at low, negative at high.
 
-    The first and the last of `ends` are the values there, but for rounding; it begins on the line between,
+    The first of `ends` and that of the degree are the values there, but for rounding; it begins on the line between,
     away from low, where there may be a root as well, of a touch.
     """
-    x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[_N]), 0.25), 1.0)
+    x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[degree]), 0.25), 1.0)
     value: cython.double
     slope: cython.double
     new: cython.double

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import isfinite
+from threading import local
 from typing import Protocol
+from weakref import ref
 
 import numpy as np
 import numpy.typing as npt
@@ -58,9 +61,7 @@ class System:
         displacements = np.zeros((modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = modal.shapes.T
         self.displacements = Rows(displacements)  # of the degrees of freedom
-        self.flows = self._flows()
-        self._march, self._derivative = March(self.flows), Derivative(self.flows)
-        self._along = Derivative(self.flows, 1)
+        self.flows, self._march, self._derivative, self._along = _kernels_of(scene, self._flows)
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -130,6 +131,38 @@ class System:
             (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
             law,
         )
+
+
+_Kernels = tuple[Flows, March, Derivative, Derivative]
+
+
+class _Latest(local):
+    """The kernels of the scene that this thread came to last, which is still there."""
+
+    of: Callable[[], Scene | None] = staticmethod(lambda: None)
+    kernels: _Kernels | None = None
+
+    def keep(self, scene: Scene, kernels: _Kernels) -> None:
+        """Until the scene goes, or another comes."""
+        self.of, self.kernels = ref(scene, lambda gone: self.drop(gone)), kernels
+
+    def drop(self, gone: object) -> None:
+        """Those of a scene that goes."""
+        if self.of is gone:
+            self.kernels = None
+
+
+_LATEST = _Latest()
+
+
+def _kernels_of(scene: Scene, flows: Callable[[], Flows]) -> _Kernels:
+    """Those of a scene, the same as long as it is the one that is asked for: flows are dear to make."""
+    kernels = _LATEST.kernels
+    if kernels is None or _LATEST.of() is not scene:
+        made = flows()
+        kernels = made, March(made), Derivative(made), Derivative(made, 1)
+        _LATEST.keep(scene, kernels)
+    return kernels
 
 
 def _checked(omega: float) -> float:
