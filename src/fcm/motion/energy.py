@@ -55,10 +55,9 @@ def energy(motion: Motion) -> Energy:
 def _powers(cycle: Cycle) -> Powers:
     """The integrals of the powers over a cycle."""
     system, modal = cycle.system, cycle.system.scene.modal
-    steps = system.steps(cycle.segments)
     wave, damper = system.wave, 2.0 * modal.mass * modal.damping * modal.frequency
-    powers = Powers(steps, wave.real.copy(), wave.imag.copy(), system.static, damper)
-    system.run(powers, steps)
+    powers = Powers(system.flows, wave.real.copy(), wave.imag.copy(), system.static, damper)
+    system.run(powers, cycle.segments)
     return powers
 
 

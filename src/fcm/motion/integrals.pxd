@@ -1,11 +1,8 @@
-from fcm.motion.steps cimport Steps
+from fcm.motion.walk cimport Walk
 
-cdef class Integrals:
-    cdef readonly Steps steps
-    cdef readonly double[::1] mean, sine, cosine
-    cdef double[::1] _real, _imag, _even, _weights, _nodes
-    cdef double[:, ::1] _sums
-    cdef Py_ssize_t _slot
-    cdef int _go(self) noexcept nogil
-    cdef void _moments(self) noexcept nogil
-    cdef void _integrate(self) noexcept nogil
+cdef class Integrals(Walk):
+    cdef readonly double[:, ::1] sums
+    cdef double[::1] _nodes
+    cdef double[:, ::1] _shares, _weights, _part, _near, _far
+    cdef void _weigh(self, double angle) noexcept nogil
+    cdef void _add(self, double h) noexcept nogil

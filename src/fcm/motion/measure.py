@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.motion.cycle import Cycle
-from fcm.motion.integrals import Integrals
 from fcm.motion.scan import Rows, Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
@@ -34,12 +33,10 @@ def measure(cycle: Cycle, known: Extremes | None = None) -> Measure:
     """
     system, shapes = cycle.system, cycle.system.scene.modal.shapes
     least, greatest = known or displaced(system, cycle.segments)
-    steps = system.steps(cycle.segments)
-    found = Integrals(steps)
-    system.run(found, steps)
-    # x = a sin(theta + phase): its integral with sin(theta) + i cos(theta) is a exp(i phase) T / 2
-    wave = 2.0 / cycle.duration * (np.asarray(found.sine) + 1j * np.asarray(found.cosine)) @ shapes
-    mean = np.asarray(found.mean) @ shapes / cycle.duration
+    system.run(system.integrals, cycle.segments)
+    mean, sine, cosine = (np.asarray(system.integrals.sums) @ shapes) / cycle.duration
+    # x = a sin(theta + phase): its mean with sin(theta) + i cos(theta) is a exp(i phase) / 2
+    wave = 2.0 * (sine + 1j * cosine)
     high, low = (np.array([one.value for one in ends]) for ends in (greatest, least))
     return Measure(0.5 * (high - low), np.abs(wave), np.angle(wave), mean, high, low)
 
@@ -57,18 +54,16 @@ Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of 
 
 def displaced(system: System, segments: Segments) -> Extremes:
     """The least and the greatest displacement of each degree of freedom."""
-    return _extremes(system, segments, system.displacements)
+    return _extremes(system, segments, system.displaced)
 
 
 def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
     """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
-    return _extremes(system, segments, Rows(rows))
+    return _extremes(system, segments, Scan(system.flows, Rows(rows)))
 
 
-def _extremes(system: System, segments: Segments, rows: Rows) -> Extremes:
-    steps = system.steps(segments)
-    found = Scan(steps, rows)
-    system.run(found, steps)
+def _extremes(system: System, segments: Segments, found: Scan) -> Extremes:
+    system.run(found, segments)
     values = zip(np.asarray(found.least).tolist(), np.asarray(found.greatest).tolist(), strict=True)
     least, greatest = list[Extreme](), list[Extreme]()
     for (low, high), place in zip(values, np.asarray(found.place).tolist(), strict=True):

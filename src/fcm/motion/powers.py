@@ -6,14 +6,17 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
+from fcm.motion.pool import ORDER
 from fcm.scene.model import FloatArray
 
 if cython.compiled:
+    from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.series import summed
-    from cython.cimports.fcm.motion.steps import Steps
+    from cython.cimports.fcm.motion.walk import Walk
 else:
+    from fcm.motion.flow import Flows
     from fcm.motion.series import summed
-    from fcm.motion.steps import Steps
+    from fcm.motion.walk import Walk
 
 NODES = 8  # integrate exactly polynomials of degree 15
 _PLACES, _SHARES = np.polynomial.legendre.leggauss(NODES)
@@ -24,12 +27,12 @@ _NEGATIVE = cython.declare(cython.int, 3)
 
 
 @cython.cclass
-class Powers:
-    """Work of the forces, dissipation by slip and by damping, and the sum of all magnitudes, over steps.
+class Powers(Walk):
+    """Work of the forces, dissipation by slip and by damping, and the sum of all magnitudes, over a motion.
 
     Parameters
     ----------
-    steps : Steps
+    flows : Flows
     sine, cosine, static : (mode,)
         Modal amplitudes of the forces.
     damper : (mode,)
@@ -37,42 +40,40 @@ class Powers:
     """
 
     def __init__(
-        self, steps: Steps, sine: FloatArray, cosine: FloatArray, static: FloatArray, damper: FloatArray
+        self, flows: Flows, sine: FloatArray, cosine: FloatArray, static: FloatArray, damper: FloatArray
     ) -> None:
-        self.steps = steps
+        Walk.__init__(self, flows)
         self.work = self.slip = self.damping = self.turnover = 0.0
         self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
-        self._y = np.zeros((1, steps.flows.size))
+        self._y, self._terms = np.zeros((2, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._nodes, self._weights = _ON_ONE
-
-    def go(self) -> int:
-        """Integrate over all steps: 0 when done, -1 where a flow is missing."""
-        stopped: cython.int
-        with cython.nogil:
-            stopped = self._go()
-        return int(stopped)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _go(self) -> cython.int:
-        stopped: cython.int
-        i: cython.int
-        while True:
-            stopped = self.steps.next()
-            if stopped != 1:
-                return stopped
+    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+        """Step by step, each a polynomial."""
+        left: cython.double = self.segments.length[self.at]
+        length: cython.double
+        i: cython.Py_ssize_t
+        for i in range(self.flows.size):
+            self._y[1, i] = self.segments.y[self.at, i]
+        while left > 0.0:
+            length = min(left, 1.0)
+            self.flows.taylor(slot, self._y, 1, self._terms)
             for i in range(_NODES):
-                summed(self.steps.terms, self._nodes[i] * self.steps.length, self._y, 0)
-                self._add(self._weights[i] * self.steps.length * self.steps.h)
+                summed(self._terms, self._nodes[i] * length, self._y, 0)
+                self._add(self._weights[i] * length * self.flows.step[slot])
+            summed(self._terms, 1.0, self._y, 1)
+            left -= 1.0
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _add(self, weight: cython.double) -> cython.void:
         """The powers at an instant; w' of a slipping contact is (6), (8)."""
-        m: cython.Py_ssize_t = self.steps.flows.modes
-        n: cython.Py_ssize_t = self.steps.flows.linear
+        m: cython.Py_ssize_t = self.flows.modes
+        n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         state: cython.int
@@ -85,17 +86,17 @@ class Powers:
             push: cython.double = self._sine[i] * self._y[0, n] + self._cosine[i] * self._y[0, n + 1]
             power += self._y[0, m + i] * (push + self._static[i])
             loss += self._damper[i] * self._y[0, m + i] * self._y[0, m + i]
-        for j in range(self.steps.flows.contacts):
-            state = self.steps.segments.states[self.steps.at, j]
+        for j in range(self.flows.contacts):
+            state = self.segments.states[self.at, j]
             if state != _POSITIVE and state != _NEGATIVE:
                 continue
-            ratio = self.steps.flows.mu[j] * self.steps.flows.k_v[j] / self.steps.flows.k_u[j]
+            ratio = self.flows.mu[j] * self.flows.k_v[j] / self.flows.k_u[j]
             if state == _NEGATIVE:
                 ratio = -ratio
             rate = 0.0
             for i in range(m):
                 rate += self._y[0, m + i] * (
-                    self.steps.flows.tangential[j, i] - ratio * self.steps.flows.normal[j, i]
+                    self.flows.tangential[j, i] - ratio * self.flows.normal[j, i]
                 )
             slip += self._y[0, 2 * m + j] * rate
         self.work += weight * power

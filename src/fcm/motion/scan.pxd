@@ -1,19 +1,17 @@
-from fcm.motion.steps cimport Steps
+from fcm.motion.walk cimport Walk
 
 cdef class Rows:
     cdef readonly Py_ssize_t count
     cdef double[::1] entry
     cdef Py_ssize_t[::1] column, first
 
-cdef class Scan:
-    cdef readonly Steps steps
+cdef class Scan(Walk):
     cdef readonly double[::1] greatest, least
     cdef readonly double[:, ::1] place
     cdef Rows _rows
     cdef double[::1] _powers
-    cdef double[:, ::1] _there, _old, _new
-    cdef int _go(self) noexcept nogil
-    cdef void _scan_segment(self, Py_ssize_t slot) noexcept nogil
+    cdef double[:, ::1] _there, _terms, _old, _new
+    cdef double _first, _length
     cdef void _look(self, Py_ssize_t slot, double[:, ::1] out) noexcept nogil
     cdef bint _may_turn(self, Py_ssize_t r) noexcept nogil
     cdef double _dot(self, Py_ssize_t r, double[:, ::1] y, Py_ssize_t k) noexcept nogil

@@ -14,10 +14,15 @@ from fcm.motion.pool import ORDER
 from fcm.scene.model import FloatArray
 
 if cython.compiled:
-    from cython.cimports.fcm.motion.steps import Steps
+    from cython.cimports.fcm.motion.flow import Flows
+    from cython.cimports.fcm.motion.segments import Segments
+    from cython.cimports.fcm.motion.walk import Walk
 else:
-    from fcm.motion.steps import Steps
+    from fcm.motion.flow import Flows
+    from fcm.motion.segments import Segments
+    from fcm.motion.walk import Walk
 
+LARGEST = cython.declare(cython.double, 1.7976931348623157e308)  # beyond every value
 _ORDER = cython.declare(cython.int, 19)
 
 
@@ -33,81 +38,64 @@ class Rows:
 
 
 @cython.cclass
-class Scan:
+class Scan(Walk):
     """`greatest` and `least` (row,), the extremes of rows @ y.
 
     `place` (row, 4) is where they are: segment and position of the greatest, and of the least.
     """
 
-    def __init__(self, steps: Steps, rows: Rows) -> None:
-        self.steps, self._rows = steps, rows
-        self.greatest, self.least = np.full(rows.count, -np.inf), np.full(rows.count, np.inf)
+    def __init__(self, flows: Flows, rows: Rows) -> None:
+        Walk.__init__(self, flows)
+        self._rows = rows
+        self.greatest, self.least = np.zeros(rows.count), np.zeros(rows.count)
         self.place, self._powers = np.zeros((rows.count, 4)), np.zeros(ORDER + 1)
-        self._there = np.zeros((4, steps.flows.size))
+        self._there, self._terms = np.zeros((4, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._old, self._new = np.zeros((3, rows.count)), np.zeros((3, rows.count))
+        self._first, self._length = 0.0, 0.0
 
-    def go(self) -> int:
-        """Go through all steps: 0 when done, -1 where a flow is missing."""
-        stopped: cython.int
-        with cython.nogil:
-            stopped = self._go()
-        return int(stopped)
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _go(self) -> cython.int:
-        """Segment by segment."""
-        slot: cython.Py_ssize_t
-        while self.steps.at + 1 < self.steps.segments.count:
-            if self.steps.segments.length[self.steps.at + 1] > 0.0:
-                slot = self.steps.flows.find(self.steps.segments.states, self.steps.at + 1)
-                if slot < 0:
-                    return -1
-                self.steps.flows.refresh(slot)
-                self.steps.at += 1
-                self._scan_segment(slot)
-            else:
-                self.steps.at += 1
-        return 0
+    def begins(self, segments: Segments) -> None:
+        """Stand before the first segment, with no extreme so far."""
+        r: cython.Py_ssize_t
+        Walk.begins(self, segments)
+        for r in range(self._rows.count):
+            self.greatest[r], self.least[r] = -LARGEST, LARGEST
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _scan_segment(self, slot: cython.Py_ssize_t) -> cython.void:
-        left: cython.double = self.steps.segments.length[self.steps.at]
-        length: cython.double
+    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+        """Step by step."""
+        left: cython.double = self.segments.length[self.at]
         i: cython.Py_ssize_t
         r: cython.Py_ssize_t
         expanded: cython.bint
-        self.steps.first = 0.0
-        for i in range(self.steps.flows.size):
-            self._there[0, i] = self.steps.segments.y[self.steps.at, i]
+        self._first = 0.0
+        for i in range(self.flows.size):
+            self._there[0, i] = self.segments.y[self.at, i]
         self._look(slot, self._old)
         for r in range(self.greatest.shape[0]):
             self._note(r, 0.0, self._old[0, r])
         while left > 0.0:
-            length = min(left, 1.0)
-            for i in range(self.steps.flows.size):
+            self._length = min(left, 1.0)
+            for i in range(self.flows.size):
                 self._there[3, i] = self._there[0, i]
-            if length == 1.0:
-                self.steps.flows.advance(slot, 0, self._there, 0)
+            if self._length == 1.0:
+                self.flows.advance(slot, 0, self._there, 0)
             else:
-                self.steps.flows.part(slot, length, self._there, 0, 1)
+                self.flows.part(slot, self._length, self._there, 0, 1)
             self._look(slot, self._new)
             expanded = False
             for r in range(self.greatest.shape[0]):
                 if self._may_turn(r):
                     if not expanded:
-                        self.steps.length = length
-                        self.steps.flows.taylor(slot, self._there, 3, self.steps.terms)
+                        self.flows.taylor(slot, self._there, 3, self._terms)
                         expanded = True
                     self._extremes(r)
-                self._note(r, length, self._new[0, r])
+                self._note(r, self._length, self._new[0, r])
                 for i in range(3):
                     self._old[i, r] = self._new[i, r]
             left -= 1.0
-            self.steps.first += 1.0
+            self._first += 1.0
 
     @cython.cfunc
     @cython.nogil
@@ -116,8 +104,8 @@ class Scan:
         """The rows at the place there, and their first two derivatives by the position."""
         r: cython.Py_ssize_t
         j: cython.int
-        h: cython.double = self.steps.flows.step[slot]
-        self.steps.flows.extend(slot, self._there, 2, h, self._there, False)
+        h: cython.double = self.flows.step[slot]
+        self.flows.extend(slot, self._there, 2, h, self._there, False)
         for r in range(self.greatest.shape[0]):
             for j in range(3):
                 out[j, r] = self._dot(r, self._there, j)
@@ -161,14 +149,14 @@ class Scan:
         j: cython.int
         turn: cython.double
         for j in range(_ORDER + 1):
-            self._powers[j] = self._dot(r, self.steps.terms, j)
+            self._powers[j] = self._dot(r, self._terms, j)
         if first * self._new[1, r] < 0.0:
-            self._turn(r, 0.0, self.steps.length)
+            self._turn(r, 0.0, self._length)
             return
-        turn = self._root(2, 0.0, self.steps.length)
+        turn = self._root(2, 0.0, self._length)
         if self._value(1, turn) * first < 0.0:
             self._turn(r, 0.0, turn)
-            self._turn(r, turn, self.steps.length)
+            self._turn(r, turn, self._length)
 
     @cython.cfunc
     @cython.nogil
@@ -185,10 +173,10 @@ class Scan:
         """Take a value, at x, if it is an extreme so far."""
         if value > self.greatest[r]:
             self.greatest[r] = value
-            self.place[r, 0], self.place[r, 1] = self.steps.at, self.steps.first + x
+            self.place[r, 0], self.place[r, 1] = self.at, self._first + x
         if value < self.least[r]:
             self.least[r] = value
-            self.place[r, 2], self.place[r, 3] = self.steps.at, self.steps.first + x
+            self.place[r, 2], self.place[r, 3] = self.at, self._first + x
 
     @cython.cfunc
     @cython.nogil

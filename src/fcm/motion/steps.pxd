@@ -5,6 +5,6 @@ cdef class Steps:
     cdef readonly Flows flows
     cdef readonly Segments segments
     cdef readonly Py_ssize_t at, slot
-    cdef readonly double left, length, time, h, first
+    cdef readonly double left, length, time, h
     cdef readonly double[:, ::1] y, terms
     cdef int next(self) noexcept nogil

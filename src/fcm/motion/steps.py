@@ -23,14 +23,13 @@ MISSING = -1
 class Steps:
     """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x up to `length` of `h` [s].
 
-    `at` is the segment, `first` the position of the step in it.
     """
 
     def __init__(self, flows: Flows, segments: Segments) -> None:
         self.flows, self.segments = flows, segments
         self.y, self.terms = np.zeros((1, flows.size)), np.zeros((ORDER + 1, flows.size))
         self.at, self.slot, self.left, self.length = -1, -1, 0.0, 0.0
-        self.time, self.h, self.first = 0.0, 1.0, 0.0
+        self.time, self.h = 0.0, 1.0
 
     @cython.cfunc
     @cython.nogil
@@ -43,7 +42,6 @@ class Steps:
         if self.left > 0.0:
             summed(self.terms, self.length, self.y, 0)
             self.time += self.h
-            self.first += 1.0
         else:
             while self.at + 1 < self.segments.count and self.segments.length[self.at + 1] <= 0.0:
                 self.at += 1
@@ -56,7 +54,7 @@ class Steps:
                 return -1
             self.flows.refresh(slot)
             self.at += 1
-            self.slot, self.h, self.first = slot, self.flows.step[slot], 0.0
+            self.slot, self.h = slot, self.flows.step[slot]
             self.left, self.time = self.segments.length[self.at], self.segments.start[self.at]
             for i in range(self.flows.size):
                 self.y[0, i] = self.segments.y[self.at, i]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import isfinite
 from threading import local
-from typing import Protocol
 from weakref import ref
 
 import numpy as np
@@ -15,20 +14,16 @@ from fcm.motion.combination import Codes, made
 from fcm.motion.derivative import Derivative
 from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
+from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
-from fcm.motion.scan import Rows
+from fcm.motion.scan import Rows, Scan
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
+from fcm.motion.walk import Walk
 from fcm.scene.model import Contact, FloatArray, Scene
 from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
-
-
-class Kernel(Protocol):
-    """What goes through steps; -1 where the flow of the next segment is missing."""
-
-    def go(self) -> int: ...
 
 
 class System:
@@ -60,8 +55,9 @@ class System:
         self.static: FloatArray = modal.shapes @ loads.static  # modal
         displacements = np.zeros((modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = modal.shapes.T
-        self.displacements = Rows(displacements)  # of the degrees of freedom
+        rows = Rows(displacements)  # of the degrees of freedom
         self.flows, self._march, self._derivative, self._along = _kernels_of(scene, self._flows)
+        self.displaced, self.integrals = Scan(self.flows, rows), Integrals(self.flows)
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -109,10 +105,12 @@ class System:
         """The steps of segments at this frequency."""
         return Steps(self.tuned(), segments)
 
-    def run(self, kernel: Kernel, steps: Steps) -> None:
-        """Let a kernel go through all its steps, making the flows that are missing."""
+    def run(self, kernel: Walk, segments: Segments) -> None:
+        """Let a kernel go through segments at this frequency, making the flows that are missing."""
+        self.tuned()
+        kernel.begins(segments)
         while kernel.go() < 0:
-            self.make(np.asarray(steps.segments.states)[steps.at + 1])
+            self.make(np.asarray(segments.states)[kernel.at + 1])
 
     def loads(self, y: FloatArray) -> FloatArray:
         """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""

@@ -1,0 +1,9 @@
+from fcm.motion.flow cimport Flows
+from fcm.motion.segments cimport Segments
+
+cdef class Walk:
+    cdef readonly Flows flows
+    cdef readonly Segments segments
+    cdef readonly Py_ssize_t at
+    cdef int _go(self) noexcept nogil
+    cdef void visit(self, Py_ssize_t slot) noexcept nogil
