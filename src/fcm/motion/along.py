@@ -1,14 +1,16 @@
-"""The motion and its derivatives along one flow, to any position in steps.
+"""The derivatives of a motion along one flow, to any position in steps.
 
 Along it the derivative by the start is the exponential of the flow's matrix. The frequency acts on the
 forces alone, which may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t)
-are t cos(omega t) and -t sin(omega t), and that of the columns of the forces is known with the flow.
+are t cos(omega t) and -t sin(omega t), and that of the columns of the forces is known with the flow. Of the
+motion itself only the angle of the forces is needed.
 """
 
 from __future__ import annotations
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import cos, sin
 
 from fcm.motion.pool import ORDER
 
@@ -29,14 +31,14 @@ class Along:
     """`follow` moves the rows of `columns` (unknowns + 2, size) along a flow.
 
     Row k < unknowns is a derivative of the state vector by its start; the row after them that by the
-    frequency, at a fixed time; the last row is the state vector itself.
+    frequency, at a fixed time; of the last row, the state vector, only the forces' angle is moved.
     """
 
     def __init__(self, flows: Flows, unknowns: cython.Py_ssize_t) -> None:
         self.flows, self.unknowns = flows, unknowns
         self.columns = np.zeros((unknowns + 2, flows.size))
         self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
-        self._room = np.zeros((unknowns, flows.linear))
+        self._room = np.zeros((unknowns + 1, flows.linear))
         self._matrix = np.zeros((flows.linear, flows.linear))
 
     @cython.cfunc
@@ -65,21 +67,38 @@ class Along:
         i: cython.Py_ssize_t
         sine: cython.double = self.columns[u + 1, n]
         cosine: cython.double = self.columns[u + 1, n + 1]
-        h: cython.double = self.flows.step[slot] * (1 << j)
-        self._times(self.flows.power[slot, j])
-        self.flows.advance(slot, j, self.columns, u)
-        self.flows.advance(slot, j, self.columns, u + 1)
+        by_sine: cython.double = self.columns[u, n]
+        by_cosine: cython.double = self.columns[u, n + 1]
+        self.flows.reach(slot, j)
+        self._times(self.flows.power[slot, j], u + 1)
         for i in range(n):
-            self.columns[u, i] += self.flows.forced[slot, j, 2, i] * sine
-            self.columns[u, i] += self.flows.forced[slot, j, 3, i] * cosine
-        self.columns[u, n] += h * self.columns[u + 1, n + 1]
-        self.columns[u, n + 1] -= h * self.columns[u + 1, n]
+            self.columns[u, i] += (
+                (self.flows.forced[slot, j, 0, i] * by_sine + self.flows.forced[slot, j, 1, i] * by_cosine)
+                + self.flows.forced[slot, j, 2, i] * sine
+            ) + self.flows.forced[slot, j, 3, i] * cosine
+        self._turn(self.flows.turn[slot, j, 0], self.flows.turn[slot, j, 1], self.flows.step[slot] * (1 << j))
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _times(self, matrix: cython.double[:, ::1]) -> cython.void:
-        """Multiply the derivatives by the start by the matrix of a flow."""
+    def _turn(self, c: cython.double, s: cython.double, time: cython.double) -> cython.void:
+        """Turn the forces by the angle with that cosine and sine, which takes that time [s]."""
+        n: cython.Py_ssize_t = self.flows.linear
+        u: cython.Py_ssize_t = self.unknowns
+        k: cython.Py_ssize_t
+        sine: cython.double
+        cosine: cython.double
+        for k in range(u, u + 2):
+            sine, cosine = self.columns[k, n], self.columns[k, n + 1]
+            self.columns[k, n], self.columns[k, n + 1] = c * sine + s * cosine, c * cosine - s * sine
+        self.columns[u, n] += time * self.columns[u + 1, n + 1]
+        self.columns[u, n + 1] -= time * self.columns[u + 1, n]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _times(self, matrix: cython.double[:, ::1], rows: cython.Py_ssize_t) -> cython.void:
+        """Multiply so many of the derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -87,11 +106,11 @@ class Along:
         x: cython.double
         if n >= DENSE:
             with cython.gil:
-                columns = np.asarray(self.columns)[: self.unknowns, :n]
-                np.matmul(columns, matrix, out=np.asarray(self._room))
-                columns[:] = self._room
+                columns, room = np.asarray(self.columns)[:rows, :n], np.asarray(self._room)[:rows]
+                np.matmul(columns, matrix, out=room)
+                columns[:] = room
             return
-        for k in range(self.unknowns):
+        for k in range(rows):
             for i in range(n):
                 self._room[0, i] = 0.0
             for p in range(n):
@@ -106,7 +125,7 @@ class Along:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
-        """The same by a part x of a step: by its matrix, or, where that is more work, row by row."""
+        """The derivatives by the start by a part x of a step: by its matrix, or, where that is more work, row by row."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -124,26 +143,34 @@ class Along:
                 for i in range(n):
                     self._matrix[p, i] += size * self.flows.terms[slot, j, p, i]
             size *= x
-        self._times(self._matrix)
+        self._times(self._matrix, self.unknowns)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
         """By a part x < 1 of a step."""
+        n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
+        size: cython.double
         orders: cython.Py_ssize_t = needed(x)
         h: cython.double = x * self.flows.step[slot]
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         self._fraction(slot, x, orders)
         for i in range(self.flows.size):
-            self._grades[0, i], self._terms[0, i] = self.columns[u, i], self.columns[u + 1, i]
-        self.flows.extend(slot, self._terms, orders, h, self._terms, False)
+            self._grades[0, i] = self.columns[u, i]
+        self._terms[0, n], self._terms[0, n + 1] = self.columns[u + 1, n], self.columns[u + 1, n + 1]
+        for j in range(orders):
+            size = h * self.flows.omega / (j + 1)
+            self._terms[j + 1, n], self._terms[j + 1, n + 1] = (
+                size * self._terms[j, n + 1],
+                -size * self._terms[j, n],
+            )
         self.flows.extend(slot, self._grades, orders, h, self._terms, True)
         for j in range(orders - 1, -1, -1):
-            for i in range(self.flows.size):
+            for i in range(n):
                 self._grades[j, i] += self._grades[j + 1, i]
-                self._terms[j, i] += self._terms[j + 1, i]
-        for i in range(self.flows.size):
-            self.columns[u, i], self.columns[u + 1, i] = self._grades[0, i], self._terms[0, i]
+        for i in range(n):
+            self.columns[u, i] = self._grades[0, i]
+        self._turn(cos(self.flows.omega * h), sin(self.flows.omega * h), h)

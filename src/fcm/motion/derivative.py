@@ -112,6 +112,7 @@ class Derivative(Along):
             if self.at == last:
                 self.follow(slot, position - self.position)
                 self.position = position
+                self._arrive(segments, slot)
                 self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0)
                 for i in range(self.flows.size):
                     self.rate[i] = self._rates[0, i]
@@ -123,6 +124,17 @@ class Derivative(Along):
             self._across(segments, self.at, slot, new)
             self.at += 1
             self.position = 0.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _arrive(self, segments: Segments, slot: cython.Py_ssize_t) -> cython.void:
+        """Put the state vector at the position in the segment into its row."""
+        i: cython.Py_ssize_t
+        u: cython.Py_ssize_t = self.unknowns
+        for i in range(self.flows.size):
+            self.columns[u + 1, i] = segments.y[self.at, i]
+        self.flows.carry(slot, self.position, self.columns, u + 1)
 
     @cython.cfunc
     @cython.nogil

@@ -30,7 +30,7 @@ else:
     from fcm.motion.forced import Forced
 
 _ORDER = cython.declare(cython.int, 19)
-_BLOCK = cython.declare(cython.int, 16)
+_POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
 
 
 @cython.cclass
@@ -60,6 +60,24 @@ class Flows(Forced):
             y[k, i] = self._whole[i]
         y[k, n] = self.turn[slot, j, 0] * sine + self.turn[slot, j, 1] * cosine
         y[k, n + 1] = self.turn[slot, j, 0] * cosine - self.turn[slot, j, 1] * sine
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def carry(
+        self, slot: cython.Py_ssize_t, position: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
+    ) -> cython.void:
+        """Move row k of y by any number of steps."""
+        whole: cython.longlong = cython.cast(cython.longlong, position)
+        x: cython.double = position - whole
+        j: cython.int
+        while whole >> _POWERS:
+            self.advance(slot, _POWERS - 1, y, k)
+            whole -= 1 << (_POWERS - 1)
+        for j in range(_POWERS):
+            if whole >> j & 1:
+                self.advance(slot, j, y, k)
+        self.part(slot, x, y, k, k + 1)
 
     @cython.cfunc
     @cython.nogil

@@ -71,8 +71,11 @@ class Series(Pool):
         b: cython.Py_ssize_t
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        half: cython.Py_ssize_t = m // 2
+        odd: cython.bint = m % 2 == 1
         state: cython.int
         factor: cython.double
+        w: cython.double
         f: cython.double
         n: cython.double
         u: cython.double
@@ -95,10 +98,13 @@ class Series(Pool):
                 )  # fmt: skip
             for j in range(c):
                 state = self.states[slot, j]
-                v = 0.0
-                for i in range(m):
+                v = w = 0.0  # two sums, for one would wait for each addition
+                for i in range(half):
                     v += self.normal[j, i] * z[a, m + i]
-                v *= factor * self.k_v[j]
+                    w += self.normal[j, half + i] * z[a, m + half + i]
+                if odd:
+                    w += self.normal[j, m - 1] * z[a, m + m - 1]
+                v = factor * self.k_v[j] * (v + w)
                 f, n, u = z[a, 2 * m + j], z[a, 2 * m + c + j], 0.0
                 if state == _OPEN:  # the preload is missing
                     f, n = 0.0, -max(self.n_0[j], 0.0) * one
@@ -107,9 +113,13 @@ class Series(Pool):
                     if state != _STICK:
                         u = self.mu[j] * v if state == _POSITIVE else -self.mu[j] * v
                     elif self.rough[j]:
-                        for i in range(m):
+                        w = 0.0
+                        for i in range(half):
                             u += self.tangential[j, i] * z[a, m + i]
-                        u *= factor * self.k_u[j]
+                            w += self.tangential[j, half + i] * z[a, m + half + i]
+                        if odd:
+                            w += self.tangential[j, m - 1] * z[a, m + m - 1]
+                        u = factor * self.k_u[j] * (u + w)
                 f *= factor
                 n *= factor
                 if f != 0.0:
