@@ -44,7 +44,8 @@ def made(system: System, states: Codes) -> Flow:
     step = _step(system, matrix)
     change = matrix.T * step
     rows, owner, goal = _exits(system, states)
-    powers = [_exponential(change)]
+    terms = _terms(change)
+    powers = [terms.sum(axis=0) if len(terms) else _exponential(change)]
     for _ in range(POWERS - 1):
         powers.append(powers[-1] @ powers[-1])
     leading = [rows.T]
@@ -54,7 +55,7 @@ def made(system: System, states: Codes) -> Flow:
     for _ in range(BLOCK):
         table.append(powers[0] @ table[-1])
     return Flow(
-        states.copy(), step, rows, owner, goal, np.array(powers), _terms(change),
+        states.copy(), step, rows, owner, goal, np.array(powers), terms,
         np.stack(leading, axis=2).reshape(rows.shape[1], -1),
         np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
         np.hstack(table),
@@ -121,10 +122,12 @@ def _terms(a: FloatArray) -> FloatArray:
     n = a.shape[0]
     if n > SMALL:
         return np.empty((0, n, n))
-    terms = [np.eye(n)]
+    terms = np.empty((ORDER + 1, n, n))
+    terms[0] = np.eye(n)
     for j in range(1, ORDER + 1):
-        terms.append(terms[-1] @ a / j)
-    return np.array(terms)
+        np.matmul(terms[j - 1], a, out=terms[j])
+        terms[j] /= j
+    return terms
 
 
 def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:

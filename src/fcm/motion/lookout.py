@@ -24,7 +24,7 @@ DEPTH = cython.declare(cython.double, 1e-13)  # an exit that is passed by less, 
 UNSEEN = cython.declare(cython.double, 1e300)  # bound of what no step has been looked at for
 _ORDER = cython.declare(cython.int, 19)
 _FIRST = cython.declare(cython.int, 2)  # a segment's first look is at 2**2 steps, for many are short
-_WHOLE = cython.declare(cython.int, 4)  # BLOCK is 2**4 steps
+_WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 
 @cython.cclass

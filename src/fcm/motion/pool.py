@@ -11,10 +11,10 @@ from fcm.scene.model import FloatArray
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
 POWERS = 8  # of exp(A h): 1, 2, 4 ... 128 steps
-BLOCK = 16  # steps that are looked at together: a power of two
+BLOCK = 8  # steps that are looked at together: a power of two
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
-SMALL = 128  # components up to which the Taylor coefficients of exp(A h x) are kept
+SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
 FEWEST, MOST_BYTES = 8, 2**29  # flows that are kept at least, and the memory that they otherwise have
 
 
@@ -93,9 +93,10 @@ class Pool:
     def _place(self) -> int:
         """A place for one more."""
         capacity = self.step.shape[0]
-        if self.count == capacity and (capacity < FEWEST or 2 * self.bytes() <= MOST_BYTES):
-            self._make_room(2 * capacity)
-            capacity *= 2
+        most = max(int(MOST_BYTES / (self.bytes() / capacity)), FEWEST)
+        if self.count == capacity < most:
+            capacity = min(2 * capacity, most)
+            self._make_room(capacity)
         if self.count == capacity:
             return int(np.argmin(np.asarray(self.used)))
         self.count += 1
