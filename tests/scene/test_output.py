@@ -57,13 +57,22 @@ def test_an_empty_list_asks_for_no_more_than_those_of_few():
         (["7q"], 'response.output[0]: no degree of freedom matches "7q"'),
         (["1x", "99*"], 'response.output[1]: no degree of freedom matches "99*"'),
         (3, "response.output: must be a list of degrees of freedom, or of patterns"),
-        ([3], "response.output: must be a list of degrees of freedom, or of patterns"),
+        ([3], 'response.output[0]: must be a degree of freedom or a pattern such as "40*", is 3'),
     ],
 )
 def test_mistakes(output, words):
     with pytest.raises(SceneError) as caught:
         scene(output=output)
     assert words in str(caught.value)
+
+
+def test_every_wrong_entry_is_named_whatever_the_others_are():
+    with pytest.raises(SceneError) as caught:
+        scene(output=[3, "7*", "7q", ["1x"]])
+    said = caught.value.mistakes
+    assert [one.split(":")[0] for one in said] == [f"response.output[{i}]" for i in (0, 2, 3)]
+    with pytest.raises(SceneError, match=r"output\[0\](.|\n)*dofs|dofs(.|\n)*output\[0\]"):
+        scene(dofs=[1, 2], output=[3])
 
 
 def test_results_have_these_and_the_same_numbers():

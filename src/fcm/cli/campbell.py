@@ -33,12 +33,13 @@ def campbell(messages: Messages, scene: str, output: Path | None, to_json: bool,
     With its contacts open and stuck, and the engine order over the range of frequencies: bars where its
     harmonics are, and the lines of all engine orders at the lowest (dotted) and highest (dashed) speed.
     """
-    from fcm.scene import load_scene
+    from fcm.scene import SceneError, load_scene
 
     loaded = load_scene(scene, largest_file=largest_file).in_use()
     if loaded.ring is None:
-        what = "a ring of sectors, a scene with [cyclic]; of others, fcm plot modes lists the modes"
-        raise click.UsageError(f"{scene}: this diagram is of {what}.")
+        raise SceneError(
+            scene, ["has no [cyclic]: this diagram is of a ring of sectors; fcm plot modes lists the modes"]
+        )
     found = numbers(loaded)
     if to_json:
         click.echo(json.dumps(found, indent=2, allow_nan=False))

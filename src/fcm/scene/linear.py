@@ -16,7 +16,7 @@ from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.model import FloatArray
 from fcm.scene.names import Names, RowNames
 from fcm.scene.ring import NEXT
-from fcm.scene.section import Section
+from fcm.scene.section import Section, described
 from fcm.structure.rigid_body import rigid_by_gap
 
 if TYPE_CHECKING:
@@ -121,21 +121,31 @@ def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tupl
 
 def read_output(section: Section, dofs: Names | None) -> list[str]:
     """Degrees of freedom that are asked for, by names or patterns such as "40*", in the order of the dofs."""
-    if "output" not in section.data or dofs is None:
+    if "output" not in section.data:
         return []
     value = section.data["output"]
     patterns = [value] if isinstance(value, str) else value
-    if not isinstance(patterns, list | tuple) or not all(isinstance(one, str) for one in patterns):
+    if not isinstance(patterns, list | tuple):
         section.wrong("output", 'must be a list of degrees of freedom, or of patterns such as "40*"')
         return []
     found: set[str] = set()
     for index, pattern in enumerate(patterns):
-        matching = {name for name in dofs if fnmatchcase(name, pattern)} | ({dofs.find(pattern)} - {""})
-        if not matching:
-            what = f"no degree of freedom matches {quoted(pattern)}"
-            section.wrong(f"output[{index}]", what, pattern, dofs)
-        found |= matching
-    return [name for name in dofs if name in found]
+        found |= _matching(section, f"output[{index}]", pattern, dofs)
+    return [name for name in dofs or () if name in found]
+
+
+def _matching(section: Section, key: str, pattern: object, dofs: Names | None) -> set[str]:
+    """The degrees of freedom that one entry asks for."""
+    if not isinstance(pattern, str):
+        what = 'must be a degree of freedom or a pattern such as "40*"'
+        section.wrong(key, f"{what}, is {described(pattern)}")
+        return set()
+    if dofs is None:
+        return set()
+    matching = {name for name in dofs if fnmatchcase(name, pattern)} | ({dofs.find(pattern)} - {""})
+    if not matching:
+        section.wrong(key, f"no degree of freedom matches {quoted(pattern)}", pattern, dofs)
+    return matching
 
 
 def reported_of(parts: Parts, output: list[str], asked: bool) -> tuple[str, ...]:

@@ -67,7 +67,7 @@ class Section:
         """The value as a number within the rule; nan after a mistake."""
         number = as_float(value)
         if number is None:
-            self.mistakes.add(path, f"must be a number, is {_described(value)}")
+            self.mistakes.add(path, f"must be a number, is {described(value)}")
             return nan
         fault = rule.fault(number)
         if fault:
@@ -97,7 +97,7 @@ class Section:
         value = self.data[key]
         if isinstance(value, str):
             return value
-        self.wrong(key, f"must be a string, is {_described(value)}")
+        self.wrong(key, f"must be a string, is {described(value)}")
         return ""
 
     def vector(self, key: str, rule: Rule) -> FloatArray | None:
@@ -111,7 +111,7 @@ class Section:
         if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
             value = value.tolist()
         if not isinstance(value, list | tuple | np.ndarray):
-            self.mistakes.add(path, f"must be a list of numbers, is {_described(value)}")
+            self.mistakes.add(path, f"must be a list of numbers, is {described(value)}")
             return None
         array = np.array(value if isinstance(value, np.ndarray) else _floats(value), dtype=np.float64)
         faulty = rule.faulty(array)[:, 0].tolist()
@@ -129,14 +129,14 @@ class Section:
             return Section(value, self.at(key), self.mistakes)
         many = isinstance(value, list) and value and isinstance(value[0], dict)
         hint = f"; there is one of it: write [{key}]" if many else ""
-        self.wrong(key, f"must be a table, is {_described(value)}{hint}")
+        self.wrong(key, f"must be a table, is {described(value)}{hint}")
         return None
 
     def tables(self, key: str) -> list[Section]:
         """A list of tables, empty when the key is missing; those that are not tables are left out."""
         value = self.data.get(key, [])
         if not isinstance(value, list | tuple):
-            self.wrong(key, f"must be a list of tables, is {_described(value)}; write [[{key}]]")
+            self.wrong(key, f"must be a list of tables, is {described(value)}; write [[{key}]]")
             return []
         sections = []
         for index, item in enumerate(value):
@@ -144,7 +144,7 @@ class Section:
             if isinstance(item, Mapping):
                 sections.append(Section(item, path, self.mistakes))
             else:
-                self.mistakes.add(path, f"must be a table, is {_described(item)}; write [[{key}]]")
+                self.mistakes.add(path, f"must be a table, is {described(item)}; write [[{key}]]")
         return sections
 
     def weights(self, key: str, dofs: Names | None) -> FloatArray | None:
@@ -153,7 +153,7 @@ class Section:
             return None
         value = self.data[key]
         if not isinstance(value, str | Mapping):
-            self.wrong(key, f"must be a degree of freedom or a table of weights, is {_described(value)}")
+            self.wrong(key, f"must be a degree of freedom or a table of weights, is {described(value)}")
             return None
         terms = {value: 1.0} if isinstance(value, str) else self._terms(key, value)
         if terms is None or dofs is None or not self._known(key, terms, dofs):
@@ -193,7 +193,7 @@ def _floats(values: Sequence[object]) -> list[float]:
     return [nan if number is None else number for number in numbers]
 
 
-def _described(value: object) -> str:
+def described(value: object) -> str:
     """The kind of a value, and the value when it is short."""
     if isinstance(value, bool | int | float):
         return shown(value)
