@@ -45,7 +45,7 @@ def wrong(**tables):
         ({"sweep": {"cyclic.engine_order": [1, 1.5]}}, ['"cyclic.engine_order"[1]: must be a whole number']),
         ({"sweep": {"cyclic.sectors": [5, 6]}}, ['did you mean "cyclic.engine_order"?']),
         ({"structure": rings.STRUCTURE | {"coupling": {"stiffness": [[1.0]]}}}, ["has 1 rows, but"]),
-        ({"structure": rings.STRUCTURE | {"stiffness": [1.0, 1.0, 1.0]}}, ["negative eigenvalues"]),
+        ({"structure": rings.STRUCTURE | {"stiffness": [1.0, 1.0, 1.0]}}, ["negative eigenvalue"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1]}}, ["has 2 numbers, but"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 1, 4]}}, ["[2]: is 4, but those"]),
         ({"structure": None, "modal": MODAL | {"nodal_diameter": [0, 2, 2]}}, ["diameter 1, which harm"]),

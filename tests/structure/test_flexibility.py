@@ -119,6 +119,28 @@ def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
             assert more.bound < 3 * error.max()
 
 
+@pytest.mark.parametrize("count", [None, 2])
+@pytest.mark.parametrize("free", [False, True])
+def test_rows_without_mass_keep_their_flexibility(free, count):
+    """A chain with masses at two of its rows, loaded at one without, at the other and at a mass."""
+    springs = [0.0 if free else 3.0, 1.0, 5.0, 2.0, 4.0]
+    K = np.diag(np.add(springs, [*springs[1:], 0.0]))
+    K -= np.diag(springs[1:], 1) + np.diag(springs[1:], -1)
+    M = np.diag([2.0, 0.0, 1.0, 0.0, 1.5])
+    loads = np.eye(5)[:, [1, 3, 4]]
+    omega = 0.4
+    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, omega, count, True)
+    on_modes = found.modes.shapes.T @ loads
+    receptance = on_modes.T @ (on_modes / (found.modes.stiffness - omega**2)[:, None])
+    exact = np.linalg.solve(K - omega**2 * M, loads)
+    assert (found.kept, found.rigid) == (count or 3, int(free))
+    assert (
+        np.abs(receptance - loads.T @ exact).max() < 2.0 * (found.bound + 1e-8) * np.abs(exact).max() < 1e-4
+    )
+    few = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads[:, 2:], omega, None, True)
+    assert few.modes.count == 3  # nothing is added where nothing without mass is loaded
+
+
 def scene(folder, elements=60, **structure):
     """A beam that rubs at its tip, pushed in the middle."""
     K, M, names = beams.beam(elements)

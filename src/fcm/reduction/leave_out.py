@@ -12,8 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.contact.limits import BoolArray, FloatArray
-from fcm.reduction.sentences import counted, has_friction, named
+from fcm.reduction.sentences import has_friction, named
 from fcm.reduction.static_modes import with_static_modes
+from fcm.scene.errors import counted
 from fcm.scene.model import Contact, Modal, Scene
 
 TOLERANCE = 1e-5  # of the response, for modes that are replaced

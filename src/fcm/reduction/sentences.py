@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.scene.errors import counted
 from fcm.scene.model import Contact
 from fcm.units import UNIT
 
@@ -14,15 +15,6 @@ if TYPE_CHECKING:
     from fcm.reduction.leave_out import Lighter
 
 MOST_NAMES = 6  # of contacts in one sentence
-
-
-def counted(count: int, what: str) -> str:
-    """A number with its noun.
-
-    >>> counted(1, "mode"), counted(2, "mode")
-    ('1 mode', '2 modes')
-    """
-    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def named(contacts: Sequence[Contact], numbers: Sequence[int]) -> str:

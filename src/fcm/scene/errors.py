@@ -73,6 +73,15 @@ def suggestion(word: str, among: Iterable[str]) -> str:
     return f"; did you mean {quoted(names[close[0]])}?" if close else ""
 
 
+def counted(count: int, what: str) -> str:
+    """A number with its noun.
+
+    >>> counted(1, "mode"), counted(2, "mode")
+    ('1 mode', '2 modes')
+    """
+    return f"{count} {what}{'' if count == 1 else 's'}"
+
+
 def choices(names: Iterable[str], most: int = 12) -> str:
     """The names in quotes, separated by commas; the rest are counted.
 

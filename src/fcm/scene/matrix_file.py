@@ -24,6 +24,8 @@ def read_matrix(name: str, files: Files) -> Any:
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS:
         raise DataFileError(f"{quoted(path)} cannot be read: such a file is {', '.join(ENDINGS)}")
+    if ending == ".op4":  # pyyeti gives the names in lower case
+        chosen = chosen.lower()
     with files.opened(path) as where:
         return _matrix(_chosen(_READERS[ending](where, chosen, files), chosen, path), path, files)
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
@@ -49,11 +50,15 @@ def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
     """What is kept of the structure, and how far it is off."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     text = f"structure: {found.kept} modes of {rows} degrees of freedom are kept"
-    if not np.isfinite(found.beyond):
+    every = not np.isfinite(found.beyond)
+    if every and not added:
         return f"{text}, all that there are"
     if not matrices.flexibility:
         return f"{text}; the flexibility of the others is left out"
-    text += f", and the flexibility of the others as {added} modes"
+    of = "rows without mass" if every else "the others"
+    text += (
+        f"{', all that there are' if every else ''}, and the flexibility of {of} as {counted(added, 'mode')}"
+    )
     if not np.isfinite(found.bound):
         return f"{text}; how far it is off cannot be told"
     return f"{text}: {how_far_off(matrices, found.bound, found.damping)}"
@@ -72,9 +77,11 @@ def how_far_off(matrices: Matrices, bound: float, damping: float) -> str:
 def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
     said = []
     if found.rigid:
-        said.append(f"structure: its {found.rigid} lowest modes are rigid-body modes, of frequency 0")
+        said.append(f"structure: {counted(found.rigid, 'rigid-body mode')}, of frequency 0")
     if found.missed:
-        said.append(f"structure: the eigensolver has missed {found.missed} modes: ask for another number")
+        said.append(
+            f"structure: the eigensolver has missed {counted(found.missed, 'mode')}: ask for another number"
+        )
     if found.beyond < ends[1]:
         said.append("structure: there are modes within the range that are not kept: raise structure.modes")
     return said

@@ -70,7 +70,8 @@ def system_of(K: Matrix, M: Matrix) -> System:
     ground = scipy.sparse.diags_array(np.full(heavy.size, NEGATIVE * heavy.max()))
     for what, matrix in (("mass", M + ground), ("stiffness", K - shift * M)):
         if (count := _negative(_factor(matrix, f"the {what} is singular"))) not in (0, None):
-            raise StructureError(f"the {what} has {count} negative eigenvalues, that of a structure has none")
+            found = "1 negative eigenvalue" if count == 1 else f"{count} negative eigenvalues"
+            raise StructureError(f"the {what} has {found}, that of a structure has none")
     return System(
         K, M, shift, _factor(K - shift * M, "the stiffness is singular where there is no mass").solve
     )
@@ -106,8 +107,8 @@ def modes_of(system: System, count: int) -> Modes:
         _, shapes = eigsh(system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start)
         if np.iscomplexobj(shapes):  # those of close frequencies are not orthogonal to each other
             shapes = _apart(system, shapes)
-    shapes = shapes / np.sqrt(_energy(system.M, shapes))
-    stiffness = _energy(system.K, shapes)
+    shapes = shapes / np.sqrt(energy_of(system.M, shapes))
+    stiffness = energy_of(system.K, shapes)
     order = np.argsort(stiffness)[:count]
     return Modes(stiffness[order], shapes[:, order])
 
@@ -128,7 +129,7 @@ def _apart(system: System, shapes: FloatArray) -> FloatArray:
     return found
 
 
-def _energy(matrix: Matrix, shapes: FloatArray) -> FloatArray:
+def energy_of(matrix: Matrix, shapes: FloatArray) -> FloatArray:
     """phi^H A phi of each shape."""
     energy: FloatArray = np.einsum("ij,ij->j", shapes.conj(), matrix @ shapes).real
     return energy

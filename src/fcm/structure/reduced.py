@@ -44,9 +44,9 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | No
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
     lost = missed(system, found)
-    if found.count == wanted:
+    if found.count == wanted and (wanted == system.rows or not rest):
         return Reduced(kept, wanted, rigid, np.inf, 0.0, lost)
-    beyond = float(found.stiffness[wanted])
+    beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
     if not rest:
         return Reduced(kept, wanted, rigid, float(np.sqrt(beyond)), np.nan, lost)
     more = flexibility(system, kept, loads, top, beyond)
