@@ -91,3 +91,13 @@ modes = 3
 def test_a_scene_with_mistakes_is_refused(listed):
     done = listed(SCENE.replace('dof = "v"', 'dof = "x"'))
     assert done.code == 2 and 'unknown degree of freedom "x"' in done.err
+
+
+def test_matrices_whose_modes_are_all_kept_lack_none(listed):
+    kept = "frequency_unit = 'rad/s'\n[structure]\ndofs = ['u', 'v', 'w']\nmass = [1, 1, 1]\n"
+    stiffness = "stiffness = [[2, -1, 0], [-1, 2, -1], [0, -1, 1]]\ndamping = 0.01\n"
+    text = (kept + stiffness + SCENE[SCENE.index("[[contact]]") :]).replace("[2, 4.5]", "[0.2, 4.5]")
+    assert json.loads(listed(text, "--json").out)["warnings"] == []
+    fewer = text.replace("damping", "modes = 2\nflexibility = false\ndamping", 1)
+    (said,) = json.loads(listed(fewer, "--json").out)["warnings"]
+    assert "a contact lacks the flexibility of all modes above" in said

@@ -148,7 +148,8 @@ def _of_range(scene: Scene) -> list[str]:
     if undamped.size:
         said.append(f"within the range, without damping: mode {', '.join(map(str, undamped[:10]))}")
     highest = modal.frequency.max()
-    if not modal.added and highest < SPARSE_ABOVE * high and modal.frequency.size > 1 and scene.contacts:
+    lacking = not (modal.added or modal.complete)
+    if lacking and highest < SPARSE_ABOVE * high and modal.frequency.size > 1 and scene.contacts:
         where = f"{highest / UNIT[unit]:.6g} {unit}"
         said.append(f"the highest mode is at {where}: a contact lacks the flexibility of all modes above")
     return said

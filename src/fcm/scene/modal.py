@@ -60,7 +60,8 @@ def modal_of(draft: dict[str, Any], unit: str) -> Modal:
     arrays["frequency"] = draft["frequency"] * UNITS[unit]
     for array in arrays.values():
         array.flags.writeable = False
-    return Modal(dofs=tuple(draft["dofs"]), added=draft.get("added", 0), **arrays)
+    more = {key: draft[key] for key in ("added", "complete") if key in draft}
+    return Modal(dofs=tuple(draft["dofs"]), **more, **arrays)
 
 
 def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[Section | None, list[str]]:

@@ -27,6 +27,7 @@ class Modal:
     damping: FloatArray  # (mode,) ratio [-]
     shapes: FloatArray  # (mode, dof)
     added: int = 0  # the last so many are no modes of the structure, but the flexibility of the others
+    complete: bool = False  # whether it is known that there are no others
 
     def at(self, used: npt.NDArray[np.bool_]) -> Modal:
         """The same modes at some of the degrees of freedom."""

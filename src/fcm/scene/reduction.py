@@ -10,7 +10,7 @@ from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
-from fcm.structure.damping import coupling_effect, projected, proportional, ratios
+from fcm.structure.damping import check_dissipates, coupling_effect, projected, proportional, ratios
 from fcm.structure.eigen import StructureError
 from fcm.structure.reduced import Reduced, reduced
 
@@ -33,15 +33,16 @@ def modal_of_matrices(
         found = reduced(
             matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility
         )
+        ratio, said = damping_of(matrices, found, loads, outputs, ends)
     except StructureError as error:
         top.wrong("structure", str(error))
         return None, np.zeros((len(matrices.dofs), 0)), []
-    ratio, said = damping_of(matrices, found, loads, outputs, ends)
     draft = {
         "mass": np.ones(found.modes.count),
         "frequency": np.sqrt(found.modes.stiffness),
         "damping": ratio,
         "added": found.modes.count - found.kept,
+        "complete": not np.isfinite(found.beyond),
     }
     return draft, found.modes.shapes, [_kept(matrices, found, ends), *_warnings(found, ends), *said]
 
@@ -102,6 +103,7 @@ def damping_of(
         return proportional(matrices.by_mass, matrices.by_stiffness, stiffness), said
     modal = projected(matrices.C, found.modes)
     coefficients = np.diagonal(modal).real
+    check_dissipates(coefficients)
     ratio = ratios(coefficients, stiffness)
     said = _undamped(float(np.abs(coefficients[: found.rigid]).max(initial=0.0)), found.rigid)
     if np.isfinite(ends).all():

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.structure.eigen import FloatArray, Matrix, Modes
+from fcm.structure.eigen import FloatArray, Matrix, Modes, StructureError
 
 MOST_FREQUENCIES = 60  # at which two responses are compared
+ROUNDING = 1e-9  # of the greatest coefficient: less negative than that is none
 
 
 def ratios(coefficients: FloatArray, stiffness: FloatArray) -> FloatArray:
@@ -29,6 +30,14 @@ def projected(C: Matrix, modes: Modes) -> FloatArray:
     """The damping matrix in modal coordinates, (mode, mode)."""
     matrix: FloatArray = modes.shapes.conj().T @ (C @ modes.shapes)
     return matrix
+
+
+def check_dissipates(coefficients: FloatArray) -> None:
+    """Raise StructureError where the damping of a mode is negative, beyond rounding."""
+    least = float(coefficients.min(initial=0.0))
+    if least < -ROUNDING * np.abs(coefficients).max(initial=0.0):
+        mode = int(coefficients.argmin()) + 1
+        raise StructureError(f"the damping of mode {mode} is negative, {least:.3g} for a modal mass of 1")
 
 
 def coupling_effect(
