@@ -243,7 +243,9 @@ def test_rigid_bodies_are_recognised_and_said():
     assert any("the damping of its rigid-body modes is left out" in note for note in scene.notes)
 
 
-@pytest.mark.parametrize("lowest, rigid", [([1e-3, 2e-3], 2), ([0.5, 0.7], 0), ([0.0, 1e-3], 1)])
+@pytest.mark.parametrize(
+    "lowest, rigid", [([1e-3, 2e-3], 2), ([0.01, 0.05], 2), ([0.5, 0.7], 0), ([0.0, 1e-3], 1)]
+)
 def test_rigid_bodies_of_an_eigensolver(lowest, rigid):
     """As a finite-element program gives them, with some thousandths of a hertz."""
     modal = {"dofs": ["u"], "frequency": [*lowest, 52.0], "damping": 0.01, "shapes": [[1.0], [0.5], [0.2]]}
@@ -251,7 +253,7 @@ def test_rigid_bodies_of_an_eigensolver(lowest, rigid):
     scene = scene_from_dict(one | {"force": [{"dof": "u", "amplitude": 1.0}]})
     assert (scene.modal.frequency == 0.0).sum() == rigid + lowest.count(0.0)
     assert len(scene.notes) == (rigid > 0)
-    assert not rigid or "rigid-body modes: taken as 0" in scene.notes[0]
+    assert not rigid or ": taken as 0" in scene.notes[0]
 
 
 def test_a_low_mode_within_reach_of_the_range_is_a_mode():

@@ -113,8 +113,11 @@ def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tupl
     lowest = np.sort(frequency[frequency > 0.0])[:count]
     if lowest[-1] * UNITS[unit] > OF_NO_INTEREST * ends[0]:
         return parts, []
-    modes = "1 mode" if count == 1 else f"{count} modes"
-    note = f"modal: {modes} of {lowest[0]:.3g} to {lowest[-1]:.3g} {unit} are rigid-body modes: taken as 0"
+    if count == 1:
+        note = f"modal: the mode of {lowest[0]:.3g} {unit} is a rigid-body mode: taken as 0"
+    else:
+        span = f"{lowest[0]:.3g} to {lowest[-1]:.3g} {unit}"
+        note = f"modal: {count} modes of {span} are rigid-body modes: taken as 0"
     zeroed = np.where(frequency <= lowest[-1], 0.0, frequency)
     return parts | {"modal": parts["modal"] | {"frequency": zeroed}}, [note]
 

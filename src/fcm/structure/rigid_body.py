@@ -9,20 +9,21 @@ import numpy as np
 if TYPE_CHECKING:
     from fcm.structure.eigen import FloatArray, Matrix, Modes
 
-FAR_BELOW = 1e-4  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
+FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
 MOST = 6  # rigid-body modes of one body
+FARTHER_BELOW = 1e-4  # the same where the stiffness is there to be asked, and may be that of soft supports
 CANCELLED = 1e-13  # share of the elastic energy's terms that is left of their sum: rounding
 NEARLY = 1e-6  # the same, of a matrix written with few digits
 
 
-def rigid_by_gap(frequency: FloatArray) -> int:
+def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW) -> int:
     """How many of the lowest modes are rigid-body modes, of those with a frequency above 0.
 
     >>> rigid_by_gap(np.array([2e-4, 1e-3, 2e-3, 52.0, 80.0])), rigid_by_gap(np.array([0.5, 52.0, 80.0]))
     (3, 0)
     """
     ordered = np.sort(frequency[frequency > 0.0])
-    gaps = np.flatnonzero(ordered[:-1] < FAR_BELOW * ordered[1:])
+    gaps = np.flatnonzero(ordered[:-1] <= below * ordered[1:])
     return int(gaps[0]) + 1 if gaps.size and gaps[0] < MOST else 0
 
 
@@ -30,5 +31,5 @@ def rigid_by_energy(K: Matrix, modes: Modes) -> int:
     """How many of the lowest modes have no elastic energy, beyond the rounding of its sum."""
     terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
     left = modes.stiffness / np.where(terms > 0.0, terms, 1.0)
-    far_below = np.arange(left.size) < rigid_by_gap(np.sqrt(np.maximum(modes.stiffness, 0.0)))
+    far_below = np.arange(left.size) < rigid_by_gap(np.sqrt(np.maximum(modes.stiffness, 0.0)), FARTHER_BELOW)
     return int(((left <= CANCELLED) | (far_below & (left <= NEARLY))).sum())
