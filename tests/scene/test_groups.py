@@ -72,6 +72,8 @@ def test_one_pair_alone_is_swept_by_its_name():
         ({"tangential": {"x": "1"}}, "tangential.x: must be a number"),
         ({"areas": [1.0]}, "areas: must have one number for each of the 2 pairs, has 1"),
         ({"areas": [1.0, 0.0]}, "areas[1]: must be greater than 0"),
+        ({"nodes": [[40, 40], [50, 51]], "areas": [1.0, 2.0]}, "nodes[0]: is the same node twice"),
+        ({"nodes": [[40, 40], [50, 51]], "areas": [1.0]}, "one number for each of the 2 pairs, has 1"),
     ],
 )
 def test_mistakes_of_pairs(change, words):

@@ -220,12 +220,15 @@ def test_a_modal_mass_under_another_name_is_used_and_said(tmp_path, save, name):
         scene_of(tmp_path, name)
 
 
+@pytest.mark.parametrize("other", ["mass_of_mode", "m"])
 @pytest.mark.parametrize("save, name", WRITERS)
-def test_what_may_be_a_modal_mass_is_refused(tmp_path, save, name):
+def test_what_may_be_a_modal_mass_is_refused(tmp_path, save, name, other):
     modes = {key: value for key, value in MODES.items() if key != "mass"}
-    save(tmp_path / name, modes | {"mass_of_mode": MODES["mass"]})
-    with pytest.raises(ValueError, match='has "mass_of_mode", which may be the modal mass'):
+    save(tmp_path / name, modes | {other: MODES["mass"]})
+    with pytest.raises(ValueError, match=f'has "{other}", which may be the modal mass'):
         scene_of(tmp_path, name)
+    save(tmp_path / name, MODES | {other: MODES["mass"]})
+    assert any("not used" in note for note in scene_of(tmp_path, name).notes)
 
 
 @pytest.mark.parametrize("save, name", WRITERS)

@@ -80,8 +80,8 @@ def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: lis
             arrays[key] = found[names[0]]
         if names and names[0] != key:
             notes.append(f"modal: {quoted(names[0])} of {name} is taken as {key}")
-    unknown = [one for one in others if "mass" in one.casefold() and one not in WANTED]
-    if unknown:
+    unknown = [one for one in others if one not in WANTED and _may_be_mass(one)]
+    if unknown and "mass" not in arrays:
         may_be = f"{quoted(name)} has {quoted(unknown[0])}, which may be the modal mass"
         raise DataFileError(f"{may_be}: name it mass, or leave it out")
     unused = [one for one in others if one not in WANTED and not one.startswith("__")]
@@ -90,6 +90,10 @@ def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: lis
     if "frequency" in arrays and "angular_frequency" in arrays:
         raise DataFileError(f"{quoted(name)} has frequency and angular_frequency; keep one")
     return arrays
+
+
+def _may_be_mass(name: str) -> bool:
+    return "mass" in name.casefold() or name == "m"
 
 
 def _without_matrix(key: str, array: Any) -> Any:

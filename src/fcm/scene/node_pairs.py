@@ -82,7 +82,9 @@ def read_shares(section: Section, count: int) -> list[float]:
     areas = section.vector("areas", POSITIVE)
     if areas is None:
         return [1.0] * count
-    if count and len(areas) != count:
-        section.wrong("areas", f"must have one number for each of the {count} pairs, has {len(areas)}")
+    pairs = section.data["nodes"]
+    if isinstance(pairs, list | tuple) and len(areas) != len(pairs):
+        section.wrong("areas", f"must have one number for each of the {len(pairs)} pairs, has {len(areas)}")
+    if len(areas) != count:
         return [1.0] * count
     return [float(area) for area in areas / areas.sum()]
