@@ -11,6 +11,7 @@ from fcm.scene.model import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
 SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
+ROUNDING = 1e-13  # relative difference of frequencies that are one
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,9 @@ def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> li
     >>> found = jumps(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], w == w)
     >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found]
     [('up', 3.0, [5.0]), ('down', 2.0, [2.0])]
+    >>> w = np.array([1.0, 2.0, np.nextafter(2.0, 1.0), 3.0])  # a peak at a corner is there twice
+    >>> jumps(w, w[:, None], w == w)
+    []
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable)
     known = np.flatnonzero(np.isfinite(frequency))
@@ -45,7 +49,7 @@ def _once(
     frequency: FloatArray, amplitude: FloatArray, stable: BoolArray
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
     """The points without those that are there twice, as a peak at a corner is."""
-    again = np.diff(frequency) == 0.0
+    again = np.abs(np.diff(frequency)) <= ROUNDING * frequency[1:]
     again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=SAME, atol=0.0).all(axis=1)
     kept = np.concatenate((np.ones(min(frequency.size, 1), dtype=bool), ~again))
     return frequency[kept], amplitude[kept], stable[kept]
