@@ -156,6 +156,7 @@ build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/f
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
 	$(BIN)/python tests/benchmarks/speed.py
 	$(BIN)/python tests/benchmarks/large.py
+	$(BIN)/python -m tests.benchmarks.ring
 
 bench-time: $(VENV)/installed  ## steady motion by exact periodic solutions beside fixed steps, some minutes
 	$(BIN)/python tests/benchmarks/motion.py

@@ -64,7 +64,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "nodal_diameter": Key("of each mode, with [cyclic]; shapes may have pairs [re, im]",
                               RULES["nodal_diameter"], "none"),
         "pairs": Key("whether modes are cosines and sines of the whole ring, with [cyclic]",
-                     "true or false", "false"),
+                     "true or false", "false, of different frequencies"),
     },
     "structure": {
         "dofs": Key("names of the rows", "list of names, or a text file", "file"),

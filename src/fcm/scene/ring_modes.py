@@ -13,6 +13,7 @@ from fcm.scene.rules import RULES, Rule, as_float
 from fcm.scene.section import Section
 
 Draft = dict[str, Any]
+EQUAL = 1e-6  # relative difference of frequencies that are one
 ROTATED = 1e-8  # relative: of shapes that are real but for a factor, what is left of the imaginary part
 
 
@@ -70,7 +71,8 @@ def travelling(section: Section, draft: Draft, sectors: float) -> Draft:
     if any(draft[key] is None for key in arrays) or isnan(sectors):
         return draft
     if not pairs:
-        _note_pairs(draft)
+        if "pairs" not in section.data:
+            _check_no_pairs(section, draft, int(sectors))
         _check_real(section, draft, int(sectors))
         return draft
     firsts = _firsts(section, draft["diameter"], draft["frequency"], int(sectors))
@@ -108,17 +110,19 @@ def _firsts(
     return found
 
 
-def _note_pairs(draft: Draft) -> None:
-    """Say so where modes may be meant as cosines and sines."""
+def _check_no_pairs(section: Section, draft: Draft, sectors: int) -> None:
+    """Note where modes may be meant as cosines and sines."""
     if draft["shapes"].imag.any():
         return
-    same = (np.diff(draft["diameter"]) == 0) & (np.diff(draft["frequency"]) == 0.0)
-    double = next(iter(np.flatnonzero(same & (draft["diameter"][1:] > 0)).tolist()), None)
-    if double is not None:
-        draft["notes"].append(
-            f"modal: modes {double + 1} and {double + 2} have one diameter and one frequency: if they are "
-            "cosine and sine, say so by pairs = true; they are taken as two travelling modes"
+    diameter, frequency = draft["diameter"], draft["frequency"]
+    same = (np.diff(diameter) == 0) & (np.abs(np.diff(frequency)) <= EQUAL * frequency[1:])
+    double = np.flatnonzero(same & (diameter[1:] > 0) & (2 * diameter[1:] != sectors)).tolist()
+    if double:
+        which = f"modes {double[0] + 1} and {double[0] + 2} have one diameter and one frequency"
+        right = (
+            "give true if they are cosine and sine of the whole ring, false if they are two travelling modes"
         )
+        section.wrong("pairs", f"missing: {which}; {right}")
 
 
 def _check_real(section: Section, draft: Draft, sectors: int) -> None:
