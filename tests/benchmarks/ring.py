@@ -9,11 +9,11 @@ from __future__ import annotations
 import time
 
 import numpy as np
+from tests.ring import rings
 
 from fcm.response import Response, trace
 from fcm.scene import scene_from_dict
 from fcm.scene.model import Scene
-from tests.ring import rings
 
 PRELOAD = 20.0
 

@@ -105,7 +105,7 @@ def test_cosine_and_sine_pairs_are_modes_of_the_whole_ring(sectors):
     found = with_modal(rings.sector(sectors, 1), given | {"shapes": rows, "pairs": True})
     assert tip(found) == pytest.approx(expected, rel=1e-9)
     with pytest.raises(
-        SceneError, match="modal.pairs: missing: modes 4 and 5 have one diameter and one freq"
+        SceneError, match=r"modal\.pairs: missing: modes 4 and 5 have one diameter and one freq"
     ):
         scene_from_dict(with_modal(rings.sector(sectors, 1), given | {"shapes": rows}))
     scene_from_dict(with_modal(rings.sector(sectors, 1), given | {"shapes": rows, "pairs": False}))
