@@ -18,7 +18,7 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
-from fcm.track.curves import Track
+from fcm.track.curve import Track
 from fcm.track.spot import Ending, Spot
 from fcm.track.tracked import Condition, Kind
 
@@ -86,6 +86,17 @@ def test_a_turn_of_folds_is_told_by_what_the_frequency_does(kind, closes, skew, 
     ends = (Ending.SPAN, Ending.SPAN)
     curve = Track(Condition(Kind.FOLD), tuple(spots), z[:, 2], z[:, 1], none, z[:, 0] == z[:, 0], ends)
     assert curve.turns() == [(2, kind)]
+
+
+@pytest.mark.parametrize("name", ["mu", "k_u"])
+def test_folds_are_tracked_from_where_a_contact_has_no_friction(scene, name):
+    open_, key = number_of(scene, PRELOAD).put(scene, -5.0), f"contact.shroud.{name}"
+    tracking = track(open_, "folds", key, (0.0, 0.4), harmonics=1).tracking
+    assert tracking.complete
+    for value in (0.0, 0.4):
+        _, paths = run(open_, value, key=key)
+        expected = np.sort(np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in paths]))
+        assert frequencies_at(tracking.curves, value) == pytest.approx(expected, abs=1e-9)
 
 
 def test_at_a_cusp_no_branch_is_born(scene, folds):
@@ -175,8 +186,8 @@ def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
 
     On the verge of slip its mean friction is between two limits that have met, and moves the mean load.
     """
-    tracking = track(scene, "slip", PRELOAD, (20.0, 100.0), harmonics=1).tracking
-    highest = max(curve.number.max() for curve in tracking.curves)
+    (curve,) = track(scene, "slip", PRELOAD, (20.0, 100.0), harmonics=1).tracking.curves  # and no part twice
+    highest = curve.number.max()
     contact, modal = scene.contacts[0], scene.modal
 
     def needed(omega):  # the preload with which u and v of the linear response just stick

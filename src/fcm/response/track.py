@@ -17,7 +17,8 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import Scene
-from fcm.track.curves import Track, Tracks, tracks
+from fcm.track.curve import Track
+from fcm.track.curves import Tracks, tracks
 from fcm.track.error import change, places
 from fcm.track.onset import KINDS
 from fcm.track.spot import Way

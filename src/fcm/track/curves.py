@@ -2,65 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
-from fcm.track.corner import Corner
-from fcm.track.follow import follow, land
+from fcm.track.curve import Track, whole
+from fcm.track.follow import land
+from fcm.track.known import passed
 from fcm.track.seeds import moved, special_points
-from fcm.track.spot import Ending, Spot, Way
-from fcm.track.tracked import Condition, Kind, Tracked
+from fcm.track.spot import Way
+from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
 SEEDS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
 MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
-SAME = 1e-5  # in the problem's scale: points nearer than this are one
-BESIDE = 0.1  # of a chord: what is nearer to it lies on the curve
-CUSP = 1e-3  # of the frequency's rate beside a turn: at the turn it is less where it turns back, too
-
-BoolArray = npt.NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Track:
-    """One curve: points in the order along it."""
-
-    condition: Condition
-    spots: tuple[Spot, ...]
-    s: FloatArray  # (point,)
-    frequency: FloatArray  # (point,) [rad/s]
-    amplitude: FloatArray  # (point, dof)
-    greatest: BoolArray  # (point,) of peaks: whether it is one, and not a trough
-    endings: tuple[Ending, Ending]
-
-    @property
-    def whole(self) -> bool:
-        """Whether there is no more of it."""
-        return all(ending.whole for ending in self.endings)
-
-    def turns(self) -> list[tuple[int, str]]:
-        """Points at which the number turns back, and what they are."""
-        other = "peak and trough" if self.condition.kind is Kind.PEAK else "extreme"
-        fold, turns = self.condition.kind is Kind.FOLD, [i for i, spot in enumerate(self.spots) if spot.turn]
-        return [(i, self._turn_of_fold(i) if fold else other) for i in turns]
-
-    def _turn_of_fold(self, i: int) -> str:
-        """A cusp where two folds meet with one tangent; an isola where the frequency passes on.
-
-        Along a curve of folds w . R_omega omega' + w . R_s s' = 0, with w the adjoint null vector. At a cusp
-        omega' vanishes with s', as w . R_omega does not; else it is w . R_omega that vanishes, and the
-        response has an isolated point, or crosses itself. At a corner the frequency turns back, or does not.
-        """
-        beside = [self.spots[j].direction[-2] for j in (i - 1, i + 1) if 0 <= j < len(self.spots)]
-        if self.spots[i].switch and len(beside) == 2:
-            return "cusp" if beside[0] * beside[1] < 0.0 else "isola"
-        still = abs(self.spots[i].direction[-2]) < CUSP * max(map(abs, beside), default=0.0)
-        return "cusp" if still else "isola"
 
 
 @dataclass(frozen=True)
@@ -144,61 +102,3 @@ def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, Fl
             for i in np.flatnonzero(value[:-1] * value[1:] <= 0.0):
                 found.append((onset, np.array(spots[i + int(abs(value[i + 1]) < abs(value[i]))].z)))
     return found
-
-
-def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
-    """Whether a curve has passed a spot."""
-    if curve.condition != condition:
-        return False
-    problem = way.tracked(condition)
-    problem.measure(spot.z)
-    points = (np.array([one.z for one in curve.spots]) - spot.z) / np.asarray(problem.scale)
-    there = np.abs(points[:, -1]) <= SAME
-    if there.any():
-        return bool(np.linalg.norm(points[there], axis=1).min() < 1e2 * SAME)
-    return _on_chord(points)
-
-
-def _on_chord(points: FloatArray) -> bool:
-    """Whether the origin lies on a line through points, as near as its chords are to a curve."""
-    chord = np.diff(points, axis=0)
-    length = np.maximum(np.linalg.norm(chord, axis=1), 1e-300)
-    part = np.clip(-(points[:-1] * chord).sum(axis=1) / length**2, 0.0, 1.0)
-    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
-    return bool((off < BESIDE * length).any())
-
-
-def whole(way: Way, condition: Condition, spot: Spot) -> Track:
-    """The curve through a spot, both ways."""
-    spots, ending = follow(way, condition, spot, True)
-    endings = (ending, ending)
-    if ending is not Ending.CLOSED:
-        back, other = follow(way, condition, spot, False)
-        turned = [replace(one, direction=-one.direction) for one in back[:0:-1]]
-        spots, endings = [*turned, *spots], (other, ending)
-    return recorded(way, condition, spots or [spot], endings)
-
-
-def recorded(way: Way, condition: Condition, spots: list[Spot], endings: tuple[Ending, Ending]) -> Track:
-    """A curve with what is reported of its points."""
-    problem = way.tracked(condition)
-    amplitude, greatest = [], []
-    for spot in spots:
-        problem.measure(spot.z)
-        amplitude.append(problem.along(spot.z)[1])
-        greatest.append(condition.kind is not Kind.PEAK or is_top(problem, spot))
-    z = np.array([spot.z for spot in spots])
-    return Track(
-        condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
-    )
-
-
-def is_top(problem: Tracked, spot: Spot) -> bool:
-    """Whether a tracked peak is one, and not a trough."""
-    if spot.corner is None or spot.switch:
-        return problem.is_top(spot.z)
-    corner = Corner(problem, spot.corner)
-    corner.problem.row[:] = problem.row
-    corner.problem.measure(spot.z)
-    before, after = corner.sides(spot.z)
-    return bool(before > after)

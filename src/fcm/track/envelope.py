@@ -16,7 +16,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from fcm.continuation.newton import Newton
 from fcm.scene.model import FloatArray
-from fcm.track.curves import Track
+from fcm.track.curve import Track
 from fcm.track.spot import Way
 from fcm.track.tracked import Condition, Kind, Tracked
 

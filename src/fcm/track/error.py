@@ -14,7 +14,7 @@ import numpy as np
 
 from fcm.harmonic.corrector import ROUNDS, SETTLED, Corrector
 from fcm.harmonic.further import Further
-from fcm.track.curves import Track, is_top
+from fcm.track.curve import Track, is_top
 from fcm.track.follow import follow, land
 from fcm.track.lowest import lifted
 from fcm.track.seeds import moved

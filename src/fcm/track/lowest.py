@@ -16,9 +16,10 @@ import numpy.typing as npt
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
-from fcm.track.curves import Track, passed, whole
+from fcm.track.curve import Track, whole
 from fcm.track.envelope import Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.follow import land
+from fcm.track.known import passed
 from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Condition, Kind

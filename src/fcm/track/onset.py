@@ -63,7 +63,11 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
 
 
 def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
-    """The functions of all contacts that have them, at all unknowns: separation and closing, then slip."""
+    """The functions of all contacts at all unknowns: separation and closing, then slip.
+
+    Also of those that cannot slip, or whose load does not vary, as a number may pass by the value that makes
+    them so: they are then negative, or change sign with another one.
+    """
     if not laws:
         return np.zeros(0)
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
@@ -73,11 +77,10 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     load, push = v * k_v[:, None], u * k_u[:, None]
     load[:, 0] += n_0
     limit = mu[:, None] * load
-    pressed, slides = k_v > 0.0, mu * k_u > 0.0
-    sought = np.concatenate((load[pressed], -load[pressed], (push + limit)[slides], (limit - push)[slides]))
-    least = _all_least(sought, harmonics)
-    a, b = int(pressed.sum()), int(slides.sum())
-    return np.concatenate((least[:a], -least[a : 2 * a], least[2 * a : 2 * a + b] + least[2 * a + b :]))
+    open_, shut, upper, lower = np.split(
+        _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics), 4
+    )
+    return np.concatenate((open_, -shut, upper + lower))
 
 
 def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
