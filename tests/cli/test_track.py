@@ -67,6 +67,27 @@ def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     assert "cannot tell" in fcm("respond", "yang1998", *FOLDS, "4", "--to", "10").out
 
 
+def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
+    sweep = '\n[sweep]\n"contact.shroud.n_0" = [-5.0, -20.0]\n'
+    scene.write_text(scene.read_text() + sweep)
+    args = (
+        "respond",
+        scene,
+        "--track",
+        "peaks",
+        "--over",
+        "contact.shroud.mu",
+        "--from",
+        "0.3",
+        "--to",
+        "0.4",
+    )
+    one, two = (fcm(*args, "--harmonics", "1", "--jobs", jobs) for jobs in ("1", "2"))
+    rows = [line.split() for line in one.out.splitlines() if " peak of u " in line]
+    assert one.code == 0 and one.out == two.out and {row[0] for row in rows} == {"-5", "-20"}
+    assert one.out.startswith("n_0")
+
+
 @pytest.mark.parametrize(
     ("args", "said"),
     [
@@ -75,7 +96,7 @@ def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
         ([*FOLDS, "5", "--to", "4"], "must rise"),
         ([*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"], "must be at least 0"),
         ([*FOLDS[:3], "contact.shroud.n0", "--from", "1", "--to", "4"], "did you mean"),
-        ([*FOLDS, "1", "--to", "4", "--resume"], "--resume is of no use with --track"),
+        ([*FOLDS, "1", "--to", "4", "--resume"], "--resume needs the -o FILE"),
         ([*FOLDS[:4], "--from", "1", "--to", "4", "--method", "exact"], "--method exact"),
         ([*FOLDS[:4], "--from", "nan", "--to", "4"], "must be finite"),
     ],

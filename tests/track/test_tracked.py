@@ -121,7 +121,7 @@ def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_pat
 
     kept = stop_at(0.2)
     (curve,), (problem,) = kept.tracking.curves, kept.tracking.problems
-    assert problem.startswith("interrupted") and not kept.complete
+    assert problem.startswith("interrupted") and not kept.complete and kept.interrupted
     assert np.array_equal(curve.frequency, folds.curves[0].frequency)
     write_netcdf(kept, tmp_path / "kept.nc")
     with netCDF4.Dataset(tmp_path / "kept.nc") as data:
@@ -129,6 +129,28 @@ def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_pat
         assert np.ma.filled(data["tracked_error_told"][0], np.nan) == pytest.approx(np.nan, nan_ok=True)
     with pytest.raises(KeyboardInterrupt):
         stop_at(-1.0)
+
+
+def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
+    shares, place = [], tmp_path / "folds.nc.unfinished"
+
+    def stop_at(limit):
+        def progress(share, _):
+            shares.append(share)
+            if share > limit:
+                raise KeyboardInterrupt
+
+        return {"progress": progress, "keep": place, "resume": True, "harmonics": 1}
+
+    assert track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(0.2)).interrupted
+    with pytest.raises(KeyboardInterrupt):
+        track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(-1.0))
+    stepped = len(shares)
+    done = track(scene, "folds", PRELOAD, (-20.0, 10.0), **stop_at(1.0))
+    assert done.complete and not place.exists() and len(shares) > stepped
+    for one, other in zip(done.tracking.curves, folds.curves, strict=True):
+        assert np.array_equal(one.frequency, other.frequency) and one.errors == other.errors
+        assert np.array_equal(one.amplitude, other.amplitude) and one.closings == other.closings
 
 
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):

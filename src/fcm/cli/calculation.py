@@ -28,7 +28,7 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
 
 def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
     if asked.track is not None:
-        return _tracked(messages, scene, asked)
+        return _tracked(messages, scene, asked, run)
     if asked.mode is not None:
         return _mode(scene, asked)
     if scene.optimum is not None:
@@ -60,11 +60,11 @@ def _balanced(asked: Asked) -> dict[str, Any]:
     }
 
 
-def _tracked(messages: Messages, scene: Scene, asked: Asked) -> Response:
+def _tracked(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]) -> Response:
     assert asked.track is not None and asked.over is not None  # --track needs the others
     assert asked.low is not None and asked.high is not None
-    span = asked.low, asked.high
-    return track.tracked(messages, scene, asked.track, asked.over, span, asked.harmonics, asked.accuracy)
+    options = {**run, "harmonics": asked.harmonics, "accuracy": asked.accuracy}
+    return track.tracked(messages, scene, asked.track, asked.over, (asked.low, asked.high), options)
 
 
 def _mode(scene: Scene, asked: Asked) -> Response:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import aligned, short
+from fcm.cli.columns import aligned, short, swept
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -15,13 +15,12 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.scene.model import Scene
 
+SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
     "table": "its points are exact",
-    "resume": "nothing is kept of it",
-    "jobs": "it is one run",
     "tolerance": "it leaves nothing out",
     "keep_all": "it leaves nothing out anyway",
     "history_csv": "no motion is simulated",
@@ -70,15 +69,12 @@ def check_options(
 
 
 def tracked(
-    messages: Messages, scene: Scene, what: str, over: str, span: tuple[float, float],
-    harmonics: tuple[int, ...] | None, accuracy: float | None,
-) -> Response:  # fmt: skip
+    messages: Messages, scene: Scene, what: str, over: str, span: tuple[float, float], options: dict[str, Any]
+) -> Response:
     """The curves that were asked for."""
     from fcm.response.track import track
 
-    response = track(
-        scene, what, over, span, harmonics=harmonics, accuracy=accuracy, progress=messages.progress
-    )
+    response = track(scene, what, over, span, progress=messages.progress, **options)
     messages.clear()
     return response
 
@@ -134,34 +130,44 @@ def _curves(tracked: Mapping[str, Any], unit: str) -> str:
     if not tracked["curves"]:
         low, high = tracked["span"]
         return f"no {tracked['what']} with {over} from {low:g} to {high:g}"
-    rows = [["what", "points", f"{over} from", "to", f"{unit} from", "to", ""]]
+    rows = [[*_swept(tracked), "what", "points", f"{over} from", "to", f"{unit} from", "to", ""]]
     for curve in tracked["curves"]:
         ends = [f"{value:.6g}" for value in (*curve["number"], *curve["frequency"])]
-        rows.append([plain(curve["what"]), str(curve["points"]), *ends, curve.get("reason", "")])
+        what = [plain(curve["what"]), str(curve["points"])]
+        rows.append([*swept(curve), *what, *ends, curve.get("reason", "")])
     return aligned(rows, left=1)
+
+
+def _swept(tracked: Mapping[str, Any]) -> list[str]:
+    """The names of the numbers that are swept besides."""
+    from fcm.plot.labels import short_names
+
+    return list(short_names(tracked["curves"][0]["parameters"]).values()) if tracked["curves"] else []
 
 
 def _turns(tracked: Mapping[str, Any], unit: str) -> str:
     """Where windows of several solutions open and close."""
-    rows = [[f"turns at {plain(tracked['over'])}", unit, "kind"]]
+    rows = [[*_swept(tracked), f"turns at {plain(tracked['over'])}", unit, "kind"]]
     for curve in tracked["curves"]:
         for turn in curve["turns"]:
-            rows.append([f"{turn['number']:.8g}", f"{turn['frequency']:.8g}", turn["kind"]])
+            where = [f"{turn['number']:.8g}", f"{turn['frequency']:.8g}"]
+            rows.append([*swept(curve), *where, turn["kind"]])
     return aligned(rows, left=1) if len(rows) > 1 else ""
 
 
 def _errors(tracked: Mapping[str, Any], unit: str) -> str:
     """What the harmonics left out would change, where it was looked for; at turns that of the number, too."""
-    rows = [["what", f"at {plain(tracked['over'])}", unit, "error", "of the number", "place"]]
+    turned = any("error_of_number" in one for curve in tracked["curves"] for one in curve["errors"])
+    number = ["of the number"] if turned else []
+    rows = [[*_swept(tracked), "what", f"at {plain(tracked['over'])}", unit, "error", *number, "place"]]
     for curve in tracked["curves"]:
         for one in curve["errors"]:
             told = one["error"] is not None
-            number = short(one["error_of_number"]) if told and "error_of_number" in one else ""
             error = short(one["error"]) if told else "cannot tell"
+            of_number = short(one["error_of_number"]) if told and "error_of_number" in one else ""
             where = [f"{one[key]:.6g}" for key in ("number", "frequency")]
-            rows.append([plain(curve["what"]), *where, error, number, one["place"]])
-    if not any(row[4] for row in rows[1:]):
-        rows = [[*row[:4], row[5]] for row in rows]
+            errors = [error, of_number] if turned else [error]
+            rows.append([*swept(curve), plain(curve["what"]), *where, *errors, one["place"]])
     of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"
     title = f"relative error of the {of} by the harmonics left out, estimated:"
     return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
@@ -174,4 +180,6 @@ def incomplete(result: Mapping[str, Any]) -> str:
         return ""
     stopped = sum(not curve["complete"] for curve in tracked["curves"])
     said = [f"{stopped} of {len(tracked['curves'])} tracked curves not complete"] if stopped else []
-    return "; ".join([*said, *tracked["problems"]])
+    problems = tracked["problems"]
+    more = [f"and so {len(problems) - SHOWN} more"] if len(problems) > SHOWN else []
+    return "; ".join([*said, *problems[:SHOWN], *more])

@@ -14,7 +14,7 @@ from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.sweep import trace
 from fcm.response.trace import ResponseError, wanted_of
-from fcm.response.track import as_curve
+from fcm.response.tracked_work import as_curve
 from fcm.results.result import Response
 from fcm.results.tracked import Optimal, TrackedCurve, Tracking
 from fcm.run import Progress

@@ -2,31 +2,40 @@
 
 from __future__ import annotations
 
+import os
 import time
-from collections.abc import Callable, Sequence
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
+from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.trace import ResponseError, Wanted, wanted_of
-from fcm.results.result import INTERRUPTED, Response
-from fcm.results.tracked import TrackedCurve, TrackedError, Tracking
-from fcm.run import Progress
-from fcm.run.progress import part
+from fcm.response.tracked_work import KINDS, STATES, STOPPED, Followed, TrackedWork
+from fcm.results.result import DEFECT, NOT_BEGUN, Response
+from fcm.results.tracked import Tracking
+from fcm.run import (
+    Checkpoint,
+    Factory,
+    Lost,
+    Outcome,
+    Progress,
+    Results,
+    fingerprint,
+    place_for,
+    sweep,
+)
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import Scene
-from fcm.track.curve import Track
-from fcm.track.curves import Tracks, tracks
-from fcm.track.error import change, places
-from fcm.track.onset import KINDS
-from fcm.track.spot import Way
-from fcm.track.tracked import Condition, Kind
-from fcm.track.varied import along
+from fcm.track.onset import KINDS as ONSETS
 
-WHAT = ("folds", "peaks", *KINDS)
-STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
+WHAT = ("folds", "peaks", *ONSETS)
 
 
 def track(
@@ -38,6 +47,10 @@ def track(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     progress: Progress | None = None,
+    jobs: int = 1,
+    place: Factory | None = None,
+    keep: Path | Checkpoint | None = None,
+    resume: bool = False,
 ) -> Response:
     """Curves of special points of the response against a number of the scene.
 
@@ -49,6 +62,8 @@ def track(
     over : str
         The number as in [sweep], "contact.shroud.n_0", or "level" of the forces. A sweep of it is left out.
     span : (from, to)
+    jobs, place, keep, resume
+        As in `fcm.response.trace`: where the curves of a sweep are followed, and what is finished is kept.
 
     Returns
     -------
@@ -75,19 +90,62 @@ def track(
     curves = free.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
     tracking = Tracking(over, what, span, chosen, [])
-    for i, one in enumerate(curves):
-        shown = None if progress is None else part(progress, i / len(curves), (i + 1.0) / len(curves))
-        system, line = System(one, chosen), along(number)
-        found = tracks(system, line, span, conditions_of(one, what), (), _named(number, shown))
-        stopped = _add(tracking, one, found, Way(system, line, span, (), one.max_step))
-        if stopped and not tracking.curves:
-            raise KeyboardInterrupt
-        if stopped:
-            break
     response = Response.without_curves(scene)
     response.tracking, response.method = tracking, "tracked"
+    with checkpoint_of(keep, resume) as checkpoint:
+        work = TrackedWork(number, what, span, chosen)
+        outcome = _swept(
+            work,
+            curves,
+            checkpoint,
+            place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1),
+            progress,
+        )
+        for i, one in enumerate(curves):
+            _add(response, one, next(iter(outcome.of(i)), None))
+        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
+            checkpoint.done()
     response.seconds = time.perf_counter() - begin
     return response
+
+
+def _swept(
+    work: TrackedWork,
+    scenes: Sequence[Scene],
+    checkpoint: Checkpoint | None,
+    place: Factory,
+    progress: Progress | None,
+) -> Outcome:
+    """What there is of each scene, as far as the run came."""
+    batches, kept = [(replace(one, curves=()),) for one in scenes], Results()
+    if checkpoint is not None:
+        mark = fingerprint("tracked", work, [replace(one, name="", title="") for (one,) in batches])
+        kept = checkpoint.results(mark, (*KINDS, *STATES), lambda i, found: _fits(len(batches), i, found))
+    outcome = sweep(work, batches, place, kept, progress)
+    if outcome.lost:
+        warnings.warn(outcome.lost, stacklevel=2)
+    return outcome
+
+
+def _fits(count: int, number: int, results: Any) -> bool:
+    """Whether results that were read from a file can be those of a scene."""
+    return 0 <= number < count and isinstance(results, list) and [type(one) for one in results] == [Followed]
+
+
+def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> None:
+    """What was followed in one scene to that of all."""
+    assert response.tracking is not None
+    if isinstance(found, Lost):
+        reason = f"{DEFECT}, {found.reason}" if found.defect else found.reason
+        response.defects += [found.defect] if found.defect else []
+    elif found is None:
+        reason = NOT_BEGUN
+    else:
+        response.tracking.curves += found.curves
+    problems = found.problems if isinstance(found, Followed) else [reason]
+    response.tracking.interrupted |= found is None or STOPPED in problems
+    where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
+    response.tracking.problems += [f"{where}: {text}" if where else text for text in problems]
 
 
 def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
@@ -111,81 +169,3 @@ def needed(
         for value in np.linspace(*span, 3).tolist():
             found |= set(accurate(System(number.put(curve, value)), wanted.accuracy).system.harmonics)
     return tuple(sorted(found))
-
-
-def _named(number: Number, progress: Progress | None) -> Callable[[float], None] | None:
-    return None if progress is None else lambda share: progress(share, number.key)
-
-
-def conditions_of(scene: Scene, what: str) -> list[Condition]:
-    """What is tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
-    if what == "folds":
-        return [Condition(Kind.FOLD)]
-    if what == "peaks":
-        return [
-            Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if _is_shown(scene, name)
-        ]
-    return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
-
-
-def _is_shown(scene: Scene, name: str) -> bool:
-    return not scene.reported or name in scene.reported
-
-
-def _add(tracking: Tracking, scene: Scene, found: Tracks, way: Way) -> bool:
-    """The curves of one scene to those of all, with their errors; whether that was interrupted.
-
-    After an interruption nothing is estimated any more.
-    """
-    where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
-    problems, stopped = list(found.problems), found.interrupted
-    for one in found.curves:
-        told: tuple[TrackedError, ...] = ()
-        try:
-            told = () if stopped else errors(way, one)
-        except KeyboardInterrupt:
-            stopped = True
-        tracking.curves.append(as_curve(scene, one, told))
-    if stopped:
-        problems.append(STOPPED)
-    tracking.problems += [f"{where}: {text}" if where else text for text in problems]
-    return stopped
-
-
-def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
-    """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
-    told = []
-    for point, place in places(one).items():
-        by = change(way, one, point)
-        told.append(TrackedError(point, place, by.relative, by.number if one.spots[point].turn else np.nan))
-    return tuple(told)
-
-
-def as_curve(scene: Scene, one: Track, told: tuple[TrackedError, ...] = ()) -> TrackedCurve:
-    """A track in the words of its scene, with its errors as far as they were estimated."""
-    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
-    stopped = [ending for ending in one.endings if not ending.whole]
-    end = one.s[0] if not one.endings[0].whole else one.s[-1]
-    return TrackedCurve(
-        parameters=dict(scene.parameters),
-        what=named(scene, one.condition),
-        number=one.s,
-        frequency=one.frequency,
-        amplitude=one.amplitude,
-        corner=np.array(corners, dtype=str),
-        turn=np.array([bool(spot.turn) for spot in one.spots]),
-        trough=~one.greatest,
-        closings=tuple(one.turns()),
-        complete=one.whole,
-        reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
-        errors=told,
-    )
-
-
-def named(scene: Scene, condition: Condition) -> str:
-    """What a condition is, in words."""
-    if condition.kind is Kind.PEAK:
-        return f"peak of {scene.modal.dofs[condition.which]}"
-    if condition.kind is Kind.ONSET:
-        return f"{condition.onset} of {scene.contacts[condition.which].name or condition.which}"
-    return "fold" if condition.kind is Kind.FOLD else "end of the range"

@@ -221,6 +221,8 @@ class Response:
     @property
     def interrupted(self) -> bool:
         """Whether curves, or parts of the schedule, are missing because the run was interrupted."""
+        if self.tracking is not None and self.tracking.interrupted:
+            return True
         simulated = [] if self.histories is None else self.histories.records
         reasons = [*(curve.reason for curve in self.curves), *(record.reason for record in simulated)]
         return any(reason.startswith(INTERRUPTED) for reason in reasons)

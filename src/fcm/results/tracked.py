@@ -113,6 +113,7 @@ class Tracking:
     curves: list[TrackedCurve]
     optima: list[Optimal] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    interrupted: bool = False
 
     @property
     def complete(self) -> bool:

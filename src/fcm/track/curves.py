@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -19,6 +22,19 @@ from fcm.track.varied import Line
 
 SEEDS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
 MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
+
+T = TypeVar("T")
+
+
+class Once(Protocol):
+    """Takes a costly step, or knows already what comes of it: of the first, the second, ..."""
+
+    def __call__(self, step: Callable[[], T], /) -> T: ...
+
+
+def at_once(step: Callable[[], T], /) -> T:
+    """Takes every step."""
+    return step()
 
 
 @dataclass(frozen=True)
@@ -37,15 +53,16 @@ def tracks(
     conditions: list[Condition],
     seeds: tuple[float, ...] = (),
     progress: Progress | None = None,
+    once: Once = at_once,
 ) -> Tracks:
     """The curves of conditions, from ordinary curves at some values of s, and at more seeds.
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
-    returns the curves that are finished.
+    returns the curves that are finished. once takes each costly step.
     """
     values = sorted({*np.linspace(*span, SEEDS).tolist(), *seeds})
     way = Way(system, line, span, tuple(values[1:-1]), system.scene.max_step)
-    made, stopped = _Made(way), False
+    made, stopped = _Made(way, once), False
     try:
         _follow_all(made, values, conditions, progress)
     except KeyboardInterrupt:
@@ -61,20 +78,21 @@ def _follow_all(
     for number, value in enumerate(values):
         if progress is not None:
             progress(number / len(values))
-        points, wrong = special_points(moved(system, line.scene(system.scene, value)), conditions)
+        there = moved(system, line.scene(system.scene, value))
+        points, wrong = made.once(partial(special_points, there, conditions))
         if wrong:
             made.problems.append(f"at {value:.6g}: {wrong}")
         made.from_points([(condition, np.append(z, value)) for condition, z in points])
     onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
     if onsets:
-        made.from_points(_met_by_peaks(made.way, onsets))
+        made.from_points(made.once(partial(_met_by_peaks, made.way, onsets)))
 
 
 class _Made:
     """The curves so far."""
 
-    def __init__(self, way: Way) -> None:
-        self.way = way
+    def __init__(self, way: Way, once: Once = at_once) -> None:
+        self.way, self.once = way, once
         self.curves: list[Track] = []
         self.problems: list[str] = []
 
@@ -83,7 +101,7 @@ class _Made:
         for condition, z in points:
             spot = land(self.way, condition, z)
             if spot is not None and not any(passed(one, condition, spot, self.way) for one in self.curves):
-                self.curves.append(whole(self.way, condition, spot))
+                self.curves.append(self.once(partial(whole, self.way, condition, spot)))
 
 
 def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:

@@ -45,7 +45,7 @@ class Condition(NamedTuple):
     kind: Kind
     which: int = -1  # degree of freedom, or contact
     onset: str = ""  # one of `onset.KINDS`
-    omega: float = np.nan
+    omega: float = 0.0  # of an end of the range
 
 
 class Tangent(NamedTuple):

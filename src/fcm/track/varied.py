@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -73,10 +74,12 @@ class Varied:
         rigid = bool((system.linear.natural == 0.0).any())
         self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
         # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
-        self._constant = not self.structure and (len(line.numbers) == 1 or "gap" not in fields)
+        self._constant = len(line.numbers) == 1 or "gap" not in fields
+        self._forced = tables <= {"force", "base"} and fields == {"amplitude"}  # what these move is linear
         self.system, self.balance = system, system.balance()
         self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
         self._rates: list[Rates] = []
+        self._contact_rates: FloatArray | None = None
 
     def put(self, s: float) -> None:
         """Move the numbers."""
@@ -90,8 +93,12 @@ class Varied:
             self.balance = system.balance()
         for law, contact in zip(self.balance.laws, system.scene.contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
-        if not self._constant:
+        if self._forced:
+            self._rates = [replace(rate, system=system) for rate in self._rates]
+        elif self.structure or not self._constant:
             self._rates = []
+        if not self._constant:
+            self._contact_rates = None
 
     def by_s(self, z: FloatArray) -> ByNumber:
         """Rates by s at fixed z, where the balance was evaluated last."""
@@ -130,8 +137,8 @@ class Varied:
 
     def contact_rates(self) -> FloatArray:
         """Rates of mu, k_u, k_v, n_0 by s, (contact, 4)."""
-        total: FloatArray = sum(
-            (weight * rate.contact for rate, weight in zip(self.rates, self.line.direction, strict=True)),
-            np.zeros((self.contacts, 4)),
-        )
-        return total
+        if self._contact_rates is None:
+            moved = zip(self.rates, self.line.direction, strict=True)
+            each = (weight * rate.contact for rate, weight in moved)
+            self._contact_rates = sum(each, np.zeros((self.contacts, 4)))
+        return self._contact_rates

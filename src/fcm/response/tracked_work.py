@@ -1,0 +1,145 @@
+"""The tracked curves of one scene, as an item of a sweep (`fcm.run`): each step of it is kept when finished.
+
+The steps - an ordinary curve at a value of the number, a curve followed, its errors - come in an order that
+depends on nothing but the scene and what is asked for. A run that goes on from saved steps takes them in
+that order, and computes the others, to the same last bit.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
+
+import numpy as np
+
+from fcm.harmonic.system import System
+from fcm.results.result import INTERRUPTED
+from fcm.results.tracked import TrackedCurve, TrackedError
+from fcm.run import Interrupted, Report
+from fcm.scene.draft import Number
+from fcm.scene.model import Scene
+from fcm.track.curve import Track
+from fcm.track.curves import tracks
+from fcm.track.error import change, places
+from fcm.track.onset import KINDS as ONSETS
+from fcm.track.spot import Ending, Spot, Way
+from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import along
+
+STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Followed:
+    """What there is of one scene."""
+
+    curves: list[TrackedCurve]
+    problems: list[str]
+
+
+KINDS = (Followed, TrackedCurve, TrackedError)  # what results consist of
+STATES = (Track, Spot, Ending, Condition, Kind)  # and what is saved of steps
+
+
+@dataclass(frozen=True)
+class TrackedWork:
+    """What is followed in each scene."""
+
+    number: Number
+    what: str
+    span: tuple[float, float]
+    harmonics: tuple[int, ...]
+
+    def __call__(self, scenes: Sequence[Scene], report: Report) -> list[Followed]:
+        return [self._one(scene, report) for scene in scenes]
+
+    def _one(self, scene: Scene, report: Report) -> Followed:
+        system, line, once = System(scene, self.harmonics), along(self.number), _Once(report)
+        shown = partial(report, text=self.number.key)
+        found = tracks(system, line, self.span, conditions_of(scene, self.what), (), shown, once)
+        way, followed = Way(system, line, self.span, (), scene.max_step), Followed([], list(found.problems))
+        stopped = found.interrupted
+        for one in found.curves:  # after an interruption nothing is estimated any more
+            told: tuple[TrackedError, ...] = ()
+            try:
+                told = () if stopped else once(partial(errors, way, one))
+            except KeyboardInterrupt:
+                stopped = True
+            followed.curves.append(as_curve(scene, one, told))
+        if not stopped:
+            return followed
+        followed.problems.append(STOPPED)
+        raise Interrupted([followed] if followed.curves else [])
+
+
+class _Once:
+    """Steps that are finished are not taken again."""
+
+    def __init__(self, report: Report) -> None:
+        self.report, self.saved = report, deque(report.saved)
+
+    def __call__(self, step: Callable[[], T]) -> T:
+        if self.saved:
+            return self.saved.popleft()  # type: ignore[no-any-return]
+        found = step()
+        self.report.save(found)
+        return found
+
+
+def conditions_of(scene: Scene, what: str) -> list[Condition]:
+    """What is tracked: for peaks, of every degree of freedom; for onsets, of every contact."""
+    if what == "folds":
+        return [Condition(Kind.FOLD)]
+    if what == "peaks":
+        return [
+            Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if _is_shown(scene, name)
+        ]
+    assert what in ONSETS
+    return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
+
+
+def _is_shown(scene: Scene, name: str) -> bool:
+    return not scene.reported or name in scene.reported
+
+
+def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
+    """What the harmonics left out change at a track's ends, turns, least and greatest peak."""
+    told = []
+    for point, place in places(one).items():
+        by = change(way, one, point)
+        told.append(TrackedError(point, place, by.relative, by.number if one.spots[point].turn else np.nan))
+    return tuple(told)
+
+
+def as_curve(scene: Scene, one: Track, told: tuple[TrackedError, ...] = ()) -> TrackedCurve:
+    """A track in the words of its scene, with its errors as far as they were estimated."""
+    corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
+    stopped = [ending for ending in one.endings if not ending.whole]
+    end = one.s[0] if not one.endings[0].whole else one.s[-1]
+    return TrackedCurve(
+        parameters=dict(scene.parameters),
+        what=named(scene, one.condition),
+        number=one.s,
+        frequency=one.frequency,
+        amplitude=one.amplitude,
+        corner=np.array(corners, dtype=str),
+        turn=np.array([bool(spot.turn) for spot in one.spots]),
+        trough=~one.greatest,
+        closings=tuple(one.turns()),
+        complete=one.whole,
+        reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
+        errors=told,
+    )
+
+
+def named(scene: Scene, condition: Condition) -> str:
+    """What a condition is, in words."""
+    if condition.kind is Kind.PEAK:
+        return f"peak of {scene.modal.dofs[condition.which]}"
+    if condition.kind is Kind.ONSET:
+        return f"{condition.onset} of {scene.contacts[condition.which].name or condition.which}"
+    return "fold" if condition.kind is Kind.FOLD else "end of the range"
