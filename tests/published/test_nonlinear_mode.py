@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
+from fcm.continuation import Status
 from fcm.harmonic.mode import nonlinear_mode
 from fcm.harmonic.system import System
 
@@ -38,3 +39,14 @@ def test_damping_on_the_way_to_sliding(mode, omega, damping):
     after = slice(mode.damping.argmax(), None)
     found = np.interp(omega, mode.omega[after][::-1], mode.damping[after][::-1])
     assert found == pytest.approx(damping, rel=PERCENT)
+
+
+def test_even_harmonics_that_are_zero_do_not_stop_the_mode():
+    """Motions with even harmonics branch off at 504 rad/s; the mode goes on, and solves all equations."""
+    system = System(load_scene("beam").in_use(), tuple(range(1, 10)))
+    found = nonlinear_mode(system, 1, (1e-6, 1e-2), 0.05)
+    assert found.path.status is Status.COMPLETE and found.omega[-1] == pytest.approx(427.07, abs=0.01)
+    assert np.abs(found.Q[:, 1::2]).max() < 1e-12 and np.abs(found.mean).max() < 1e-12
+    for z in found.path.z[::10]:
+        found.problem.evaluate(z)
+        assert np.abs(np.asarray(found.problem.residual)).max() < 1e-11 * found.omega[0]

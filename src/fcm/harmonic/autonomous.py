@@ -93,13 +93,14 @@ class Autonomous(Problem):
         z[self.n - 2 :] = self.guess.omega, self.guess.damping, log_amplitude
         return z
 
-    def from_fewer(self, z: FloatArray, other: Autonomous) -> FloatArray:
-        """A point of the same mode with fewer harmonics, all of which this has."""
+    def carried(self, z: FloatArray, other: Autonomous) -> FloatArray:
+        """A point of the same mode with other harmonics, or a direction there: what both have, else 0."""
         found = np.zeros(self.n + 1)
         found[self.contact_unknowns :] = z[other.contact_unknowns :]
         found[self.mean_rows] = z[other.mean_rows]
-        rows = self.rows[np.searchsorted(self.h, other.h)]
-        found[rows], found[rows + 1] = z[other.rows], z[other.rows + 1]
+        _, mine, others = np.intersect1d(self.h, other.h, return_indices=True)
+        rows, from_rows = self.rows[mine], other.rows[others]
+        found[rows], found[rows + 1] = z[from_rows], z[from_rows + 1]
         return found
 
     def modal_amplitude(self, z: FloatArray) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -65,16 +65,32 @@ def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_s
     ModeError
         If there are fewer modes.
     """
-    guesses = linear_modes(system, number)
+    guesses, followed = linear_modes(system, number), without_even(system)
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
-        problem = Autonomous(system, guess)
-        path = follow_past_corners(
-            partial(Autonomous, system, guess), problem.start(low), (low, high), max_step
-        )
+        problem, new_problem = Autonomous(system, guess), partial(Autonomous, followed, guess)
+        path = follow_past_corners(new_problem, new_problem().start(low), (low, high), max_step)
         if path.z.shape[0]:
             break
+    if followed is not system:
+        fewer = new_problem()
+        z, direction = (
+            np.array([problem.carried(one, fewer) for one in points]).reshape(-1, problem.n + 1)
+            for points in (path.z, path.direction)
+        )
+        path = replace(path, z=z, direction=direction)
     return mode_at(system, problem, path)
+
+
+def without_even(system: System) -> System:
+    """The system without harmonics that the mode has not: those of a motion whose halves are opposite.
+
+    Where no contact's load varies, opposite motions have opposite forces, and from the linear mode on all
+    even harmonics are 0. Other motions with the same friction branch off, where steps would come to nothing.
+    """
+    odd = tuple(h for h in system.harmonics if h % 2)
+    symmetric = all(contact.k_v == 0.0 for contact in system.scene.contacts)
+    return system.with_harmonics(odd) if symmetric and odd != system.harmonics else system
 
 
 def mode_at(system: System, problem: Autonomous, path: Path) -> Mode:
@@ -135,12 +151,12 @@ def truncation(mode: Mode) -> FloatArray:
     """
     system, old = mode.system, mode.problem
     highest = min(2 * system.harmonics[-1] + 1, MOST_HARMONICS)
-    finer = Autonomous(system.with_harmonics(tuple(range(1, highest + 1))), old.guess)
+    finer = Autonomous(without_even(system.with_harmonics(tuple(range(1, highest + 1)))), old.guess)
     newton = Newton(finer)
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
     for i, z in enumerate(mode.path.z):
-        start = finer.from_fewer(z, old)
+        start = finer.carried(z, old)
         finer.measure(start)
         newton.scale[:], newton.z[:] = finer.scale, start
         if newton.correct(1.0):

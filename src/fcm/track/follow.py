@@ -106,9 +106,13 @@ class _Follower(Meeting):
         return self._skip()
 
     def _skip(self) -> float | Ending:
-        """Go on just beyond a corner of the curve itself, with s held a little further on."""
+        """Go on just beyond a corner of the curve itself, with s held a little further on.
+
+        Where what a contact does changes with continuous derivatives, second ones jump, and so does the
+        direction of a curve of folds or peaks.
+        """
         rise = float(np.sign(self.t[-1]))
-        for leap in () if self.turns else SKIPS:
+        for leap in () if self.corner is not None else SKIPS:
             guess = self.z + rise * leap * self.smooth.span * self.held
             if (
                 not self._outside(guess[-1])

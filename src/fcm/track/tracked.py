@@ -27,6 +27,7 @@ SMALLEST = 1e-150  # amplitudes below this count as this in a division
 ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
 
 LEAST_ASIDE = 1e-9  # and at least, where a corner is near
+NEARER = 0.05  # of the way to a corner: beside it derivatives begin like a root, and change again close by
 ASKEW = 1e3  # times as long as the row: a tangent that is nearly across it
 
 
@@ -175,7 +176,7 @@ class Tracked(Problem):
             crossed = signs * there < 0.0
             if crossed.any():
                 part = np.abs(signs[crossed] / (signs[crossed] - there[crossed])).min()
-                step = min(step, max(0.5 * part * ASIDE, LEAST_ASIDE))
+                step = min(step, max(NEARER * part * ASIDE, LEAST_ASIDE))
         return step
 
     def _margins(self, y: FloatArray) -> FloatArray:
