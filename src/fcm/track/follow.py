@@ -63,6 +63,8 @@ class _Follower(Meeting):
         self._accept()
         first, heading, step = self.z, self.t * np.asarray(self.newton.scale), FIRST
         self.spots = [self._spot(self.z, self.t)]
+        if beside[-1] != start.z[-1]:
+            self.spots.insert(0, start)
         if self._outside(self.z[-1] + self.t[-1] * SHORTEST * self.smooth.span):
             return self.spots, Ending.SPAN
         for count in range(MOST):

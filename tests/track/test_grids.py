@@ -1,0 +1,93 @@
+"""Each kind of tracked curve, and the curve of the optimum, against the ordinary runs that it replaces."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Mark
+from fcm.harmonic.record import recorded
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
+from fcm.response.optimum import optimise
+from fcm.response.tracked_work import conditions_of
+from fcm.scene import load_scene
+from fcm.scene.draft import number_of
+from fcm.scene.model import Aim, Optimum
+from fcm.track.curves import tracks
+from fcm.track.varied import along
+
+PRELOAD, STIFFNESS = "contact.shroud.n_0", "contact.shroud.k_u"
+EXACT = 1e-9  # relative; the last point of both is that of Newton's method
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return load_scene("yang1998-n5")
+
+
+def run(scene, key, value):
+    """An ordinary run at a value of the number."""
+    system = System(number_of(scene, key).put(scene, value))
+    return system, traced(system).branches.paths
+
+
+def frequencies(scene, key, value, mark):
+    """Of the points that an ordinary run has marked."""
+    paths = run(scene, key, value)[1]
+    return np.sort(np.concatenate([path.parameter[path.where(mark)] for path in paths]))
+
+
+def grid(scene, what, key, span):
+    """Values of the number at which curves were followed through, and their frequencies there."""
+    system, line = System(scene, (1,)), along(number_of(scene, key))
+    found = tracks(system, line, span, conditions_of(scene, what))
+    assert not found.problems and all(curve.whole for curve in found.curves)
+    for value in np.linspace(*span, 13)[::3]:
+        there = [curve.frequency[np.abs(curve.s - value) < 1e-9] for curve in found.curves]
+        yield value, np.unique(np.concatenate(there).round(11))
+
+
+@pytest.mark.parametrize(
+    ("preload", "key", "span"),
+    [
+        (5.0, PRELOAD, (-20.0, 10.0)),
+        (5.0, "level", (0.4, 2.8)),
+        (-5.0, STIFFNESS, (0.1, 3.0)),  # through a corner of the curve itself, at 0.39987
+    ],
+)
+def test_folds(scene, preload, key, span):
+    there = number_of(scene, PRELOAD).put(scene, preload)
+    for value, found in grid(there, "folds", key, span):
+        assert found == pytest.approx(frequencies(there, key, value, Mark.FOLD), rel=EXACT)
+
+
+@pytest.mark.parametrize(("what", "span"), [("slip", (20.0, 100.0)), ("separation", (2.0, 10.0))])
+def test_onsets(scene, what, span):
+    """They are corners of the ordinary curve, and all of those at which the contact just slips or opens."""
+    for value, found in grid(scene, what, PRELOAD, span):
+        _, paths = run(scene, PRELOAD, value)
+        z = np.concatenate([path.z[path.where(Mark.CORNER)] for path in paths])
+        u, v = z[:, 2] + 1j * z[:, 3], z[:, 4] + 1j * z[:, 5]
+        load, mu = value + z[:, 1], scene.contacts[0].mu  # k_u and k_v are 1
+        slips = 2.0 * mu * load - np.abs(u + mu * v) - np.abs(u - mu * v)
+        off = slips if what == "slip" else load - np.abs(v)
+        assert found == pytest.approx(np.sort(z[np.abs(off) < 1e-9, -1]), rel=EXACT)
+
+
+def test_the_curve_of_the_optimum(scene):
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 30.0),), (Aim("u"),)))
+    (curve,) = optimise(aimed, harmonics=1).tracking.curves
+    assert (curve.number[0], curve.number[-1]) == (2.0, 30.0) and not curve.trough.any()
+    for i in range(0, curve.number.size, 5):
+        system, paths = run(scene, PRELOAD, curve.number[i])
+        expected = recorded(system, paths).amplitude[:, 0].max()
+        assert curve.amplitude[i, 0] == pytest.approx(expected, rel=EXACT)
+
+
+def test_a_bound_at_which_the_gap_closes_is_a_bound(scene):
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((-20.0, 0.0),), (Aim("u"),)))
+    (found,) = optimise(aimed, harmonics=1).tracking.optima
+    assert found.values[PRELOAD] == 0.0 and found.kind == "bound"
+    system, paths = run(scene, PRELOAD, 0.0)
+    assert found.value == pytest.approx(recorded(system, paths).amplitude[:, 0].max(), rel=EXACT)
