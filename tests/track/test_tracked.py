@@ -312,3 +312,19 @@ def test_two_numbers_are_chosen_together(scene):
         beside = best + step
         if 0.1 <= beside[1] <= 0.6:
             assert peak(beside) > found.value
+
+
+def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
+    """With much preload the contact sticks, and no small change of that changes anything."""
+    scene, keys = two_resonances(), ("contact.c.n_0", "contact.c.k_u")
+    found = chosen(scene, ((0.2, 12.0), (0.3, 3.0)), Aim("a"), Aim("b"), vary=keys).tracking.optima[0]
+
+    def peak(n_0, k_u):
+        contact = replace(scene.contacts[0], n_0=n_0, k_u=k_u)
+        system = System(replace(scene, contacts=(contact,)))
+        return recorded(system, traced(system).branches.paths).amplitude[:, :2].max()
+
+    assert found.kind == "kink" and found.values["contact.c.k_u"] == 3.0  # its bound
+    assert found.value == pytest.approx(peak(*found.values.values()), rel=1e-8)
+    beside = [found.values["contact.c.n_0"] + step for step in (-1e-3, 1e-3)]
+    assert all(peak(n_0, k_u) > found.value for n_0 in (*beside, 2.0, 4.0, 12.0) for k_u in (1.5, 3.0))

@@ -6,7 +6,9 @@ With the peaks A_i(q), each followed along straight lines in the numbers q, the 
 
 is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It
 is solved by sequential quadratic programming. At its end the response is traced anew, and what is higher
-than the peaks that were followed joins them.
+than the peaks that were followed joins them. Where a contact sticks throughout, its friction changes
+nothing and no way leads down. So the least peak is then sought along the whole range of each number alone,
+as of one number, and the way down is taken again from there as long as that finds less.
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray
 from fcm.track.envelope import EQUAL, Height, Least, Target
 from fcm.track.follow import follow, land
+from fcm.track.lowest import Search
 from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.tracked import Condition, Kind
@@ -30,8 +33,10 @@ from fcm.track.varied import Line
 LEVELS = (0.1, 0.5, 0.9)  # of each range, at which the first responses are traced
 STARTS = 2  # of the lowest of them, from which the way leads down
 ROUNDS = 6  # of descending and tracing anew
+FURTHER = 1e-5  # relative: less of it along a single number is worth another way down
 COUNTS = 1e-6  # relative: what is higher than this has not been followed
 TOO_HIGH = 10.0  # relative height of a peak that has left the range, so that no step leads there
+ROUNDING = 1e-12  # of a range
 BOUND = 1e-6  # of a range: a number nearer to its end is there
 
 Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
@@ -121,6 +126,14 @@ def descend(valley: Valley) -> tuple[FloatArray, Least] | None:
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
+    for _ in range(ROUNDS):
+        beside = min((_along(valley, q, k) for k in range(count)), key=lambda one: one[1])
+        if not beside[1] < value * (1.0 - FURTHER):
+            break
+        again = _from(valley, beside[0])
+        if not again[1] < value:
+            break
+        q, value, members = again
     active = []
     for member in members:
         height, _ = valley.height(member, q)
@@ -129,6 +142,14 @@ def descend(valley: Valley) -> tuple[FloatArray, Least] | None:
     edge = bool(((q < BOUND) | (q > 1.0 - BOUND)).any())
     kind = "kink" if len(active) > 1 else "bound" if edge else "smooth"
     return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
+
+
+def _along(valley: Valley, q: FloatArray, k: int) -> tuple[FloatArray, float]:
+    """The least over the range of one number, the others as they are."""
+    origin, direction = np.array(q), np.eye(q.size)[k]
+    origin[k] = 0.0
+    best = Search(valley.system, valley.line(origin, direction), (0.0, 1.0), valley.targets).run().best
+    return (q, np.inf) if best is None else (origin + best.s * direction, best.value)
 
 
 def _from(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
@@ -182,4 +203,4 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
         options={"ftol": 1e-10, "maxiter": 60},
     )
     chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
-    return chosen
+    return np.where(np.abs(chosen - chosen.round()) < ROUNDING, chosen.round(), chosen)
