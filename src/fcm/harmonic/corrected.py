@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Path
+from fcm.continuation import Mark, Path
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.further import Further
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 EVERY = 16  # points from one that is displaced to the next, before it is known how they change
-OFF = 0.3  # of a displacement, by which it may be off where it is interpolated
+OFF = 0.2  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
 STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
 UNSETTLED = 2e-3  # a displacement at a top, relative, that is worth to be settled
@@ -28,11 +28,13 @@ class Corrected:
     linear (point,): where no contact slips or separates, so that nothing is to be corrected.
     """
 
-    def __init__(self, system: System, path: Path, amplitude: FloatArray) -> None:
-        self.path, self.amplitude = path, amplitude
+    def __init__(
+        self, system: System, path: Path, amplitude: FloatArray, linear: npt.NDArray[np.bool_]
+    ) -> None:
+        self.path, self.amplitude, self.linear = path, amplitude, _with_ends(path, linear)
         self.further, self.corrector = Further(system), Corrector(system)
+        self.place = places_along(path)
         count, dofs = amplitude.shape
-        self.linear = self.further.linear(path.z)
         self.change = np.zeros((count, 1 + dofs))
         self.weight = np.maximum(1.0, _steepness(path, amplitude))
         self.known = self.linear.copy()
@@ -55,16 +57,16 @@ class Corrected:
             wide = (after - before > 1) & ~(self.linear[before] & self.linear[after])
             before, after = before[wide], after[wide]
             middle = (before + after) // 2
+            expected = self.interpolated(middle)
             self.find(middle)
-            more = self.unforeseen(before, middle, after)
+            more = self.unforeseen(before, middle, after, expected)
             before, after = (
                 np.concatenate((before[more], middle[more])),
                 np.concatenate((middle[more], after[more])),
             )
         for place in places.tolist():
             self.bridge(place)
-        found = np.flatnonzero(self.known)
-        return np.array([np.interp(np.arange(count), found, column) for column in self.change[found].T]).T
+        return self.interpolated(np.arange(count))
 
     def settled(self, tops: Indices) -> FloatArray:
         """By which amplitudes (dof,) at their tops change when the displacement there is settled, a factor.
@@ -112,20 +114,45 @@ class Corrected:
         if len(beside) == 2:
             self.change[place] = 0.5 * (beside[0] + beside[1])
 
-    def unforeseen(self, before: Indices, middle: Indices, after: Indices) -> npt.NDArray[np.bool_]:
-        """Where a displacement is not what the two around it lead to expect.
+    def interpolated(self, places: Indices) -> FloatArray:
+        """Displacements (place, 1 + dof) by cubics through those that are known, with slopes from them."""
+        known = np.flatnonzero(self.known)
+        value, place = self.change[known], self.place[known, None]
+        slope = _slopes(place, value)
+        first = np.clip(np.searchsorted(known, places, side="right") - 1, 0, max(len(known) - 2, 0))
+        last = np.minimum(first + 1, len(known) - 1)
+        length = place[last] - place[first]
+        x = (self.place[places, None] - place[first]) / np.where(length > 0.0, length, 1.0)
+        cubic: FloatArray = (
+            value[first] * (1.0 + 2.0 * x) * (1.0 - x) ** 2
+            + value[last] * x**2 * (3.0 - 2.0 * x)
+            + length * (slope[first] * x * (1.0 - x) ** 2 - slope[last] * x**2 * (1.0 - x))
+        )
+        at = self.known[places]
+        cubic[at] = self.change[places[at]]
+        return cubic
 
-        Along a steep part a displacement of the frequency is a so much larger error of the amplitude.
-        """
-        part = ((middle - before) / (after - before))[:, None]
+    def unforeseen(
+        self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
+    ) -> npt.NDArray[np.bool_]:
+        """Where a displacement is not what the two around it lead to expect."""
         found = self.change[middle]
-        expected = (1.0 - part) * self.change[before] + part * self.change[after]
-        miss = np.abs(found - expected)
-        off = np.maximum(miss[:, 1:].max(axis=1), self.weight[middle] * miss[:, 0])
-        differs = off > np.maximum(OFF * np.abs(found).max(axis=1), NOTHING)
+        off = self.sizes(middle, found - expected)
+        size = np.max([self.sizes(i, self.change[i]) for i in (before, middle, after)], axis=0)
+        differs = off > np.maximum(OFF * size, NOTHING)
         lost, missing = np.isnan(found[:, 0]), np.isnan(expected[:, 0])
         more: npt.NDArray[np.bool_] = differs | (lost != missing)
         return more
+
+    def sizes(self, places: Indices, change: FloatArray) -> FloatArray:
+        """Of displacements (place, 1 + dof) at some places, as errors of an amplitude.
+
+        Along a steep part one of the frequency is a so much larger error of the amplitude.
+        """
+        size: FloatArray = np.maximum(
+            np.abs(change[:, 1:]).max(axis=1), self.weight[places] * np.abs(change[:, 0])
+        )
+        return size
 
     def find(self, places: Indices, best: bool = False) -> None:
         """The displacements of some points, which are then known; with the best harmonics of each, or with
@@ -141,6 +168,35 @@ class Corrected:
             if found is not None:
                 self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
         self.known[places] = True
+
+
+def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """With the corners at which linear parts end: there rounding decides what a point is."""
+    beside = np.zeros_like(linear)
+    beside[1:] |= linear[:-1]
+    beside[:-1] |= linear[1:]
+    ends: npt.NDArray[np.bool_] = linear | (beside & ((path.mark & Mark.CORNER) > 0))
+    return ends
+
+
+def _slopes(place: FloatArray, value: FloatArray) -> FloatArray:
+    """Of values (place, column), by parabolas through neighbours; by what is there beside a gap."""
+    step = np.diff(place, axis=0)
+    step = np.where(step > 0.0, step, 1.0)  # points may coincide
+    secant = np.diff(value, axis=0) / step
+    before, after = np.concatenate((secant[:1], secant)), np.concatenate((secant, secant[-1:]))
+    one, other = np.concatenate((step[:1], step)), np.concatenate((step, step[-1:]))
+    slope: FloatArray = (other * before + one * after) / (one + other)
+    return np.where(np.isnan(before), after, np.where(np.isnan(after), before, slope))
+
+
+def places_along(path: Path) -> FloatArray:
+    """Lengths along the path, in the unit of its directions."""
+    unit = np.full(path.z.shape[1], np.abs(path.z[:, :-1]).max(initial=1e-300))
+    unit[-1] = np.ptp(path.parameter) or 1.0
+    chord = np.linalg.norm(np.diff(path.z, axis=0) / unit, axis=1)
+    speed = np.linalg.norm(path.direction / unit, axis=1)
+    return np.concatenate(([0.0], np.cumsum(2.0 * chord / (speed[1:] + speed[:-1]))))
 
 
 def _steepness(path: Path, amplitude: FloatArray) -> FloatArray:

@@ -23,6 +23,8 @@ from fcm.harmonic.stretch import heights
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
+ComplexArray = npt.NDArray[np.complex128]
+
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
 
@@ -32,10 +34,20 @@ FEW = 8  # points in a row without a displacement, as beside a corner: those aro
 
 @dataclass(frozen=True)
 class Reported:
-    """What is reported along a path, and its growth along the path's direction: (point, dof)."""
+    """What is reported along a path, as of a `Record`; growth (point, dof) of the amplitude along the path's
+    direction; linear (point,) where no contact slips or separates."""
 
+    X: ComplexArray
+    mean: FloatArray
     amplitude: FloatArray
+    force: FloatArray
     growth: FloatArray
+    linear: npt.NDArray[np.bool_]
+
+    def with_rows(self, after: Indices, other: Reported) -> Reported:
+        """With the points of another inserted after some points."""
+        rows = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Reported(*(np.insert(mine, after + 1, its, axis=0) for mine, its in rows))
 
 
 @dataclass(frozen=True)
@@ -60,10 +72,22 @@ class Errors:
 
 
 def reported(system: System, path: Path) -> Reported:
-    """Amplitudes along a path."""
-    points = Points(system.balance(), len(path.z))
-    points.take(path.z, path.direction, np.ones(len(path.z)))
-    return Reported(np.asarray(points.amplitude), np.asarray(points.growth))
+    """What is reported along a path."""
+    return reported_at(system, path.z, path.direction)
+
+
+def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reported:
+    """The same of points z with directions there, both (point, unknown + 1)."""
+    points = Points(system.balance(), len(z))
+    points.take(z, direction, np.ones(len(z)))
+    return Reported(
+        X=np.asarray(points.re) + 1j * np.asarray(points.im),
+        mean=np.asarray(points.mean),
+        amplitude=np.asarray(points.amplitude),
+        force=np.asarray(points.force),
+        growth=np.asarray(points.growth),
+        linear=np.asarray(points.linear) > 0,
+    )
 
 
 def errors_along(system: System, path: Path, shown: Reported | None = None) -> Errors:
@@ -78,13 +102,13 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds = path.where(Mark.FOLD)
     turns = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
-    corrected = Corrected(system, path, shown.amplitude)
+    corrected = Corrected(system, path, shown.amplitude, shown.linear)
     if corrected.linear.all():
         none = np.zeros_like(shown.amplitude)
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
     change = corrected.everywhere(turns, tops)
-    shift = _at_frequency(path, shown, change[:, 0], change[:, 1:])
+    shift = _at_frequency(path, corrected.place, shown, change[:, 0], change[:, 1:])
     error = np.abs(shift)
     typical = np.median(error, axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
@@ -92,6 +116,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     error = np.maximum(
         error, (1.0 - COVERED) * (corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:]))
     )
+    error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
     now = shown.amplitude[tops, d]
     height = np.where(
@@ -114,10 +139,11 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     )
 
 
-def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude: FloatArray) -> FloatArray:
+def _at_frequency(
+    path: Path, place: FloatArray, shown: Reported, frequency: FloatArray, amplitude: FloatArray
+) -> FloatArray:
     """Relative difference from the amplitudes to those of the corrected curve at the same frequencies."""
     rate = path.direction[:, -1]
-    place = _places(path)
     moved = path.parameter * (1.0 + frequency)
     value = shown.amplitude * (1.0 + amplitude)
     beside = Beside(place, moved, rate + _slope(place, moved - path.parameter))
@@ -133,15 +159,6 @@ def _at_frequency(path: Path, shown: Reported, frequency: FloatArray, amplitude:
     scale = np.where(shown.amplitude > 0.0, shown.amplitude, 1.0)
     shift: FloatArray = (out - shown.amplitude) / scale
     return shift
-
-
-def _places(path: Path) -> FloatArray:
-    """Lengths along the path, in the unit of its directions."""
-    unit = np.full(path.z.shape[1], np.abs(path.z[:, :-1]).max(initial=1e-300))
-    unit[-1] = np.ptp(path.parameter) or 1.0
-    chord = np.linalg.norm(np.diff(path.z, axis=0) / unit, axis=1)
-    speed = np.linalg.norm(path.direction / unit, axis=1)
-    return np.concatenate(([0.0], np.cumsum(2.0 * chord / (speed[1:] + speed[:-1]))))
 
 
 def _slope(place: FloatArray, values: FloatArray) -> FloatArray:

@@ -7,11 +7,13 @@ cdef class Law:
     cdef public double k_u
     cdef public double k_v
     cdef public double n_0
+    cdef public bint mixed
     cdef public double[::1] force
     cdef public double[:, ::1] tangent
     cdef public double[::1] margin
     cdef public int[::1] kind
     cdef public double[::1] angle
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int refine(self, bint exact) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1

@@ -25,7 +25,9 @@ KINDS = cython.declare(cython.int, 9)  # of margins, at most
 @cython.cclass
 class Law:
     """A contact; force (width,) and tangent (width, width) by `evaluate`; margin, kind and angle
-    (margins,) by `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1."""
+    (margins,) by `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1; mixed by `evaluate`:
+    whether it slips or separates within the cycle, so that its forces have harmonics that its motion has
+    not."""
 
     def __init__(
         self,
@@ -37,7 +39,7 @@ class Law:
         n_0: cython.double,
     ) -> None:
         self.width, self.margins = width, margins
-        self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
+        self.mu, self.k_u, self.k_v, self.n_0, self.mixed = mu, k_u, k_v, n_0, False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
@@ -47,6 +49,12 @@ class Law:
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         """Forces and their derivatives at the unknowns of the contact, which begin at x[first]."""
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        """The forces alone, where that costs less."""
+        return self.evaluate(x, first)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

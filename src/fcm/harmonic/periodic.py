@@ -9,8 +9,10 @@ from fcm.contact.periodic.margins import Margins
 from fcm.harmonic.law import Law
 
 if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import MIXED
     from cython.cimports.fcm.continuation.problem import NONE
 else:
+    from fcm.contact.periodic.motion import MIXED
     from fcm.continuation.problem import NONE
 
 
@@ -33,11 +35,24 @@ class Periodic(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, True)
-        self.force[:] = self.kernel.forces
+        self.forces(x, first, True)
         self.tangent[:, :] = self.kernel.jacobian
-        self.force[1] -= max(self.n_0, 0.0)
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        self.forces(x, first, False)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, gradient: cython.bint) -> cython.void:
+        """Beyond the preload; if wanted the kernel's Jacobian as well."""
+        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, gradient)
+        self.force[:] = self.kernel.forces
+        self.force[1] -= max(self.n_0, 0.0)
+        self.mixed = self.kernel.kind == MIXED
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

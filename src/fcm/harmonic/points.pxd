@@ -1,6 +1,7 @@
 from fcm.contact.periodic.forces cimport PeriodicContact
 from fcm.contact.periodic.measures cimport Measures
 from fcm.harmonic.balance cimport Balance
+from fcm.harmonic.law cimport Law
 
 cdef class Points:
     cdef readonly Balance balance
@@ -10,3 +11,4 @@ cdef class Points:
     cdef readonly double[:, ::1] amplitude
     cdef readonly double[:, ::1] growth
     cdef readonly double[:, ::1] force
+    cdef readonly int[::1] linear

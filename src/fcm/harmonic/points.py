@@ -8,6 +8,7 @@ import numpy as np
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
 from fcm.harmonic.balance import Balance
+from fcm.harmonic.law import Law
 from fcm.scene.model import FloatArray
 
 MIXED = cython.declare(cython.int, 2)  # `PeriodicContact.kind` of a contact that slips or separates
@@ -18,7 +19,8 @@ class Points:
     """`take` points (point, unknown + 1) and directions there, and have what the balance says of each.
 
     re, im (point, harmonic, dof), mean, amplitude, growth (point, dof), force (point, unknown): see
-    `Displacements`; the growth is that along the direction.
+    `Displacements`; the growth is that along the direction. linear (point,): 1 where no contact slips or
+    separates, else 0.
     """
 
     def __init__(self, balance: Balance, count: cython.int) -> None:
@@ -27,7 +29,7 @@ class Points:
         self.balance = balance
         self.re, self.im = np.zeros((2, count, harmonics, dofs))
         self.mean, self.amplitude, self.growth = np.zeros((3, count, dofs))
-        self.force = np.zeros((count, balance.unknowns))
+        self.force, self.linear = np.zeros((count, balance.unknowns)), np.ones(count, dtype=np.intc)
 
     def take(
         self,
@@ -51,6 +53,10 @@ class Points:
                     self.re[i, j, d], self.im[i, j, d] = b.shown.re[j, d], b.shown.im[j, d]
             for j in range(b.unknowns):
                 self.force[i, j] = b.force[j]
+            for j in range(b.contacts):
+                law: Law = b.laws[j]
+                if law.mixed:
+                    self.linear[i] = 0
         return self
 
 

@@ -12,6 +12,7 @@ from fcm.contact.loop import sequences
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
 from fcm.continuation import Path
+from fcm.harmonic.error import Reported, reported
 from fcm.harmonic.points import Points, borne
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
@@ -40,10 +41,15 @@ class Record:
     shift: FloatArray  # (point,) from the table to the closed form, relative to the unknowns' size
 
 
-def recorded(system: System, paths: Sequence[Path]) -> Record:
-    """The points of paths."""
+def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | None = None) -> Record:
+    """The points of paths; shown is what is reported along each, if it is known."""
     z = np.concatenate([path.z for path in paths])
-    X, mean, amplitude, force = _shown(system, z, np.ones(z.shape[0]))
+    if shown is None:
+        shown = [reported(system, path) for path in paths]
+    X = np.concatenate([one.X for one in shown])
+    mean, amplitude, force = (
+        np.concatenate([getattr(one, name) for one in shown]) for name in ("mean", "amplitude", "force")
+    )
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
     names = ("mark", "direction", "orientation", "shift")
     mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
@@ -54,7 +60,7 @@ def recorded(system: System, paths: Sequence[Path]) -> Record:
 
 def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:
     """Amplitudes (point, harmonic, dof) and means (point, dof) at points z (point, unknown + 1)."""
-    X, mean, _, _ = _shown(system, z, np.ones(z.shape[0]))
+    X, mean, _ = recorded_at_levels(system, z, np.ones(z.shape[0]))
     return X, mean
 
 
@@ -62,18 +68,10 @@ def recorded_at_levels(
     system: System, z: FloatArray, level: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
     """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
-    X, mean, amplitude, _ = _shown(system, z, level)
-    return X, mean, amplitude
-
-
-def _shown(
-    system: System, z: FloatArray, level: FloatArray
-) -> tuple[ComplexArray, FloatArray, FloatArray, FloatArray]:
-    """X, mean, amplitude and force, as of a `Record`."""
     points = Points(system.balance(), z.shape[0])
     points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
     X = np.asarray(points.re) + 1j * np.asarray(points.im)
-    return X, np.asarray(points.mean), np.asarray(points.amplitude), np.asarray(points.force)
+    return X, np.asarray(points.mean), np.asarray(points.amplitude)
 
 
 def loops(system: System, z: FloatArray) -> FloatArray:

@@ -39,6 +39,7 @@ class SingleHarmonic(Law):
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
         self.force[:] = 0.0
         self.tangent[:, :] = 0.0
+        self.mixed = False
         if self.k_v > 0.0:
             self.normal(x, first)
         if self.mu > 0.0 and self.k_u > 0.0:
@@ -46,6 +47,7 @@ class SingleHarmonic(Law):
             if self.margin[SLIPS] > 0.0 and self.margin[OPENS] > 0.0:
                 self.stuck(x, first)
             elif self.margin[CLOSES] > 0.0:
+                self.mixed = True
                 self.slipping(x, first)
         return 0
 
@@ -130,6 +132,7 @@ class SingleHarmonic(Law):
         self.force[1] = -preload
         if load <= -k * b:
             return
+        self.mixed = True
         star: cython.double = load / (k * b)
         closed: cython.double = sqrt(1.0 + star)
         opened: cython.double = sqrt(1.0 - star)

@@ -121,12 +121,19 @@ def _back(path: Path, low: float) -> bool:
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
     """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
-    G, X = system.linear.at(omega)
-    stuck, one = system.springs(stuck=True), np.eye(X.size)
-    at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
-    for share in (at_rest, 1.0, 0.0):
-        ports = np.linalg.solve(one + G * (stuck * share), level * X).astype(np.complex128)
-        yield _unknowns(system.rest, ports, len(system.harmonics), system.harmonics.index(1))
+    for ports in _linear_answers(system, omega):
+        yield _unknowns(system.rest, level * ports, len(system.harmonics), system.harmonics.index(1))
+
+
+def _linear_answers(system: System, omega: float) -> ComplexArray:
+    """Of the ports, (3, port), with the contacts as in `linear_responses`; kept in the system."""
+    if omega not in system.answers:
+        G, X = system.linear.at(omega)
+        at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
+        held = system.springs(stuck=True) * np.array([at_rest, np.ones(X.size), np.zeros(X.size)])
+        found = np.linalg.solve(np.eye(X.size) + G * held[:, None, :], X[:, None])[..., 0]
+        system.answers[omega] = found.astype(np.complex128, copy=False)
+    return system.answers[omega]
 
 
 def loads_at_rest(system: System) -> FloatArray:

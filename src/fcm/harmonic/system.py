@@ -18,7 +18,7 @@ from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.scene.model import FloatArray, Scene
-from fcm.structure.linear import Linear, linear_of
+from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear
 from fcm.structure.travelling import TravellingReceptance
@@ -39,6 +39,7 @@ class System:
     corrected: bool = True
     linear: Linear = field(init=False)
     coarse: CoefficientLaw = field(init=False)  # the table's
+    answers: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `fcm.harmonic.start`
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))

@@ -13,9 +13,10 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, estimated
 from fcm.harmonic.drift import REASONS, undetermined
+from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
-from fcm.harmonic.stability import stability, with_points
+from fcm.harmonic.stability import Crossing, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.results.result import Curve, Peak
@@ -102,7 +103,7 @@ def _curve(found: Accurate) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them."""
     found, parts = _with_stability(found)
     system, paths = found.system, found.traced.branches.paths
-    points, rounding = with_digits(system, recorded(system, paths))
+    points, rounding = with_digits(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
     rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
@@ -139,11 +140,12 @@ def _curve(found: Accurate) -> Curve:
 
 def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
     """The same with points where stability changes between folds, and whether each point is stable."""
-    paths, errors, stable = [], [], []
-    for path, error in zip(found.traced.branches.paths, found.errors, strict=True):
+    paths, shown, errors, stable = [], [], [], []
+    for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path)
         after = np.array([crossing.after for crossing in judged.crossings], dtype=np.intp)
         paths.append(with_points(path, judged.crossings))
+        shown.append(_with_reported(found.system, known, judged.crossings, after))
         errors.append(
             replace(
                 error,
@@ -153,7 +155,16 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
         )
         stable.append(np.insert(judged.stable, after + 1, 1.0))  # a crossing counts to the stable side
     branches = replace(found.traced.branches, paths=tuple(paths))
-    return replace(found, traced=replace(found.traced, branches=branches), errors=tuple(errors)), stable
+    traced = replace(found.traced, branches=branches)
+    return replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors)), stable
+
+
+def _with_reported(system: System, known: Reported, crossings: Sequence[Crossing], after: Rows) -> Reported:
+    """With what is reported of crossings inserted after some points."""
+    if not crossings:
+        return known
+    z, direction = (np.array([getattr(one, name) for one in crossings]) for name in ("z", "direction"))
+    return known.with_rows(after, reported_at(system, z, direction))
 
 
 def _between(values: FloatArray, after: Rows) -> FloatArray:
