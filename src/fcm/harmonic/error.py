@@ -78,7 +78,7 @@ def reported(system: System, path: Path) -> Reported:
 
 def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reported:
     """The same of points z with directions there, both (point, unknown + 1)."""
-    points = Points(system.balance(), len(z))
+    points = Points(system.looking, len(z))
     points.take(z, direction, np.ones(len(z)))
     return Reported(
         X=np.asarray(points.re) + 1j * np.asarray(points.im),

@@ -11,7 +11,7 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.workspace import periodic_contact
 from fcm.structure.receptance import Receptance
 
 FEWEST, MOST = 6, 15  # harmonics beyond the highest that was balanced
@@ -34,7 +34,7 @@ class Finer:
         finer = [int(h) for h in seen.harmonics]
         self.seen, self.contact = seen, contact
         self.contacts, self.width, self.wide = contact.shape[0], 2 + 4 * len(harmonics), 2 + 4 * len(finer)
-        self.kernel = PeriodicContact(harmonics, finer)
+        self.kernel = periodic_contact(tuple(harmonics), tuple(finer))
         self.force, self.x = np.zeros((self.contacts, self.wide)), np.zeros(self.contacts * self.wide)
         where = [harmonics.index(h) if h in harmonics else -1 for h in finer]
         self.place, self.shift = np.array(where, dtype=np.intc), 0.0

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.points import forces_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -31,7 +32,11 @@ class Further:
     def __init__(self, system: System) -> None:
         self.system = system
         self.highest = max(HIGHEST, int(AHEAD * max(system.harmonics)))
-        self.kernel = PeriodicContact(list(system.harmonics), list(range(1, self.highest + 1)))
+        self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
+        others = np.ones(self.highest, dtype=np.bool_)
+        others[np.array(system.harmonics) - 1] = False
+        self.others = np.flatnonzero(others)
+        self.orders = 1.0 + self.others.astype(np.float64)
 
     def forces(self, z: FloatArray) -> npt.NDArray[np.complex128]:
         """Of motions (point, unknown + 1): (point, harmonic, port)."""
@@ -43,7 +48,7 @@ class Further:
 
     def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
-        kernel = PeriodicContact(list(self.system.harmonics), [1])
+        kernel = periodic_contact(self.system.harmonics, (1,))
         linear = np.ones(len(z), dtype=np.bool_)
         for _, one in self._each(kernel, z):
             linear &= one > 0.0
@@ -62,11 +67,9 @@ class Further:
 
         The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
         """
-        others = np.ones(self.highest, dtype=np.bool_)
-        others[np.array(self.system.harmonics) - 1] = False
-        h = 1.0 + np.flatnonzero(others).astype(np.float64)
+        others = self.others
         size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
-        answer = np.abs(self.system.linear.answers(h, z[:, -1], force[:, others]))
+        answer = np.abs(self.system.linear.answers(self.orders, z[:, -1], force[:, others]))
         share = np.zeros((len(z), self.highest))
         share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
         return share

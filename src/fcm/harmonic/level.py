@@ -24,6 +24,7 @@ class Level(Problem):
         self.group = balance.group
         self.boundless *= self.boundless  # as much again as the level may grow
         self.balance, self.omega = balance, omega
+        balance.largest[:] = 0.0  # of another curve
         self.z = np.zeros(balance.unknowns + 1)
 
     @cython.ccall
@@ -35,12 +36,15 @@ class Level(Problem):
         last: cython.Py_ssize_t = 0 if self.rank else n
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         self.place(z)
         b.evaluate(self.z)
-        self.residual[:] = b.residual
-        if not self.rank:
-            self.jacobian[:, :n] = b.jacobian[:, :n]
-        self.jacobian[:, last] = 0.0
+        for i in range(n):
+            self.residual[i] = b.residual[i]
+            for k in range(0 if self.rank else n):
+                self.jacobian[i, k] = b.jacobian[i, k]
+            self.jacobian[i, last] = 0.0
         for p in range(2 * b.contacts):
             row = (p // 2) * b.width + j + 2 * (p % 2)
             self.jacobian[row, last] = -b.seen.X_re[p]
@@ -59,17 +63,20 @@ class Level(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, z: cython.double[::1]) -> cython.int:
+        b: Balance = self.balance
+        i: cython.Py_ssize_t
         self.place(z)
-        self.balance.bound(self.z)
-        self.margin[:] = self.balance.margin
-        self.kind[:] = self.balance.kind
-        self.angle[:] = self.balance.angle
+        b.bound(self.z)
+        for i in range(self.margins):
+            self.margin[i], self.kind[i], self.angle[i] = b.margin[i], b.kind[i], b.angle[i]
         return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def place(self, z: cython.double[::1]) -> cython.void:
-        self.z[:] = z
+        i: cython.Py_ssize_t
+        for i in range(self.unknowns):
+            self.z[i] = z[i]
         self.z[self.unknowns] = self.omega
         self.balance.load = z[self.unknowns]
 

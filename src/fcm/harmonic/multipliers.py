@@ -85,12 +85,9 @@ class Multipliers:
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         monodromy.follow(omega)
-        matrix = monodromy.matrix()
-        if not np.isfinite(matrix).all():
-            return None
         try:
-            found = np.linalg.eigvals(matrix)
-        except np.linalg.LinAlgError:
+            found = np.linalg.eigvals(monodromy.matrix())
+        except np.linalg.LinAlgError:  # also where a number is not finite
             return None
         values = self.of_period(found.astype(np.complex128).tolist())
         for _ in range(2 * self.adrift):

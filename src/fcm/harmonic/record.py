@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.contact.loop import sequences
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
+from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation import Path
 from fcm.harmonic.error import Reported, reported
 from fcm.harmonic.points import Points, borne
@@ -68,7 +69,7 @@ def recorded_at_levels(
     system: System, z: FloatArray, level: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
     """X, mean and amplitude, as of a `Record`, at points z with all forces times level (point,)."""
-    points = Points(system.balance(), z.shape[0])
+    points = Points(system.looking, z.shape[0])
     points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
     X = np.asarray(points.re) + 1j * np.asarray(points.im)
     return X, np.asarray(points.mean), np.asarray(points.amplitude)
@@ -114,7 +115,7 @@ def _several(system: System, contact: Contact, x: FloatArray) -> npt.NDArray[np.
 
 def _cycles(system: System, contact: Contact, x: FloatArray) -> Iterator[PeriodicContact]:
     """The cycle of a contact at each point, one after the other in the same place."""
-    kernel = PeriodicContact(list(system.harmonics), list(system.harmonics))
+    kernel = periodic_contact(system.harmonics, system.harmonics)
     for motion in np.ascontiguousarray(x):
         kernel.at(motion, contact.mu, contact.k_u, contact.k_v, contact.n_0, 0.0, False)
         yield kernel
@@ -125,10 +126,10 @@ def cycles(system: System, z: FloatArray) -> FloatArray:
 
     Greatest normal and greatest friction force, the way of the slip, and the energy that friction takes.
     """
-    contacts, harmonics = system.scene.contacts, list(system.harmonics)
+    contacts, harmonics = system.scene.contacts, system.harmonics
     out = np.zeros((len(contacts), z.shape[0], 4))
     z = np.ascontiguousarray(z)
-    kernel = PeriodicContact(harmonics, harmonics)
+    kernel = periodic_contact(system.harmonics, system.harmonics)
     measures = Measures(kernel.cycle)
     for i, c in enumerate(contacts):
         law = np.array([c.mu, c.k_u, c.k_v, c.n_0])

@@ -99,9 +99,9 @@ def level_curve(
         level = max(low, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            path = follow(Level(system.balance(), omega), start, whole, True, step, stations)
+            path = follow(Level(system.looking, omega), start, whole, True, step, stations)
             if _back(path, low):
-                path = follow(Level(system.balance(), omega), start, whole, True, FINER * step, stations)
+                path = follow(Level(system.looking, omega), start, whole, True, FINER * step, stations)
             if _back(path, low):
                 path = replace(path, status=Status.STALLED)
             if path.z.shape[0]:
@@ -168,9 +168,8 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
 def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
     levels, loads = [1.0], np.abs(loads_at_rest(system))
-    _, *uniform = linear_responses(system, omega, 1.0)
-    for x in uniform:
-        for load, (variation, slip, contact) in zip(loads, _motions(system, x), strict=True):
+    for ports in _linear_answers(system, omega)[1:]:
+        for load, (variation, slip, contact) in zip(loads, _motions(system, ports), strict=True):
             levels += [load / variation] if variation > 0.0 else []
             levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
     return min(BEYOND * max(levels), GREATEST)
@@ -181,20 +180,16 @@ def least(system: System, omega: float) -> float:
     if system.scene.loads:
         return 0.0
     levels = [GREATEST]
-    for variation, slip, contact in _motions(system, next(linear_responses(system, omega, 1.0))):
+    for variation, slip, contact in _motions(system, _linear_answers(system, omega)[0]):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
         levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []
     return min(levels)
 
 
-def _motions(system: System, x: FloatArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
+def _motions(system: System, ports: ComplexArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
     """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
-    first = 2 + 4 * system.harmonics.index(1)
-    for contact, block in zip(
-        system.scene.contacts, x.reshape(-1, 2 + 4 * len(system.harmonics)), strict=True
-    ):
-        U, V = complex(*block[first : first + 2]), complex(*block[first + 2 : first + 4])
+    for contact, (U, V) in zip(system.scene.contacts, ports.reshape(-1, 2).tolist(), strict=True):
         over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
         yield contact.k_v * abs(V), (over, under), contact
 

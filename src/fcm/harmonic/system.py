@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.contact.closed_form import ClosedForm
 from fcm.contact.coefficient_law import CoefficientLaw
-from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
@@ -49,6 +49,7 @@ class System:
         """The same with other harmonics."""
         other = copy(self)
         object.__setattr__(other, "harmonics", harmonics)
+        other.__dict__.pop("looking", None)
         return other
 
     @cached_property
@@ -57,6 +58,11 @@ class System:
         from fcm.harmonic.rest import at_rest  # which balances a system
 
         return at_rest(self)
+
+    @cached_property
+    def looking(self) -> Balance:
+        """A balance for what looks at points or follows levels of the forces, one after the other."""
+        return self.balance()
 
     def balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
@@ -74,7 +80,7 @@ class System:
         """The contacts."""
         contacts = self.scene.contacts
         if self.harmonics != (1,):
-            kernel = PeriodicContact(list(self.harmonics), list(self.harmonics))
+            kernel = periodic_contact(self.harmonics, self.harmonics)
             return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
         exact = ClosedForm() if self.corrected else self.coarse
         return [SingleHarmonic(exact, self.coarse, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]

@@ -7,13 +7,15 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
+from fcm.contact.periodic.workspace import periodic_contact
+
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import STUCK, TWO_PI, Cycle
-    from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+    from cython.cimports.fcm.contact.periodic.cycle import STUCK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN
     from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 else:
-    from fcm.contact.periodic.cycle import STUCK, TWO_PI, Cycle
-    from fcm.contact.periodic.motion import OPEN, UNKNOWN, Motion
+    from fcm.contact.periodic.cycle import STUCK, TWO_PI
+    from fcm.contact.periodic.motion import OPEN, UNKNOWN
     from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 
 FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside those of a cycle
@@ -49,8 +51,8 @@ class Transitions:
         contacts = contact.shape[0]
         self.contacts, self.width = contacts, 2 + 4 * len(harmonics)
         self.contact = np.ascontiguousarray(contact)
-        self.motion = Motion(harmonics)
-        self.cycle = Cycle(self.motion)
+        kernel = periodic_contact(tuple(harmonics), tuple(harmonics))
+        self.motion, self.cycle = kernel.motion, kernel.cycle
         most = contacts * (self.cycle.event.shape[0] + 1)
         self.angle, self.along = np.zeros(most), np.zeros(most)
         self.whose, self.into, self.order = (np.zeros(most, dtype=np.intc) for _ in range(3))
