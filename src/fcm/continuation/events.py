@@ -18,10 +18,10 @@ if cython.compiled:
 else:
     from fcm.continuation.front import along
 
-LOOKS = 40  # places looked at to find a root
-FINE = 1e-11  # of a step: a root is known to this
-HIGH = 1e-11  # of an output, to which a peak is known where looking is dear
-TURNED = 1e-15  # of the parameter, to which a fold is known there
+LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
+FINE = cython.declare(cython.double, 1e-11)  # of a step: a root is known to this
+HIGH = cython.declare(cython.double, 1e-11)  # of an output: a peak is known to this where looking is dear
+TURNED = cython.declare(cython.double, 1e-15)  # of the parameter, to which a fold is known there
 RISE = cython.declare(
     cython.double, 1e-7
 )  # growth of an output over its size, along a unit of arc, that is not rounding
@@ -29,7 +29,9 @@ NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: a lower peak of an output is not looked for
 SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
-MARGIN, FOLD, PEAK = range(3)  # the functions along a step
+MARGIN = cython.declare(cython.int, 0)  # the functions along a step
+FOLD = cython.declare(cython.int, 1)
+PEAK = cython.declare(cython.int, 2)
 
 
 Look = tuple[float, FloatArray]  # a length along the step, and the growths of the outputs there

@@ -191,9 +191,9 @@ class Front:
     def record(self, place: Place, margins: cython.bint, outputs: cython.bint) -> cython.int:
         """The corrector's result as a place, with its margins, its outputs."""
         i: cython.Py_ssize_t
-        place.z[:] = self.newton.z
-        place.tangent[:] = self.newton.tangent
         place.orientation = self.newton.orientation
+        for i in range(place.z.shape[0]):
+            place.z[i], place.tangent[i] = self.newton.z[i], self.newton.tangent[i]
         if margins and self.problem.margins:
             self.problem.bound(place.z)
             place.bounded(self.problem)
@@ -201,8 +201,8 @@ class Front:
             for i in range(place.z.shape[0]):
                 self.guess[i] = self.newton.scale[i] * place.tangent[i]
             self.problem.report(place.z, self.guess)
-            place.output[:] = self.problem.output
-            place.growth[:] = self.problem.growth
+            for i in range(self.problem.outputs):
+                place.output[i], place.growth[i] = self.problem.output[i], self.problem.growth[i]
         return 0
 
     @cython.cfunc

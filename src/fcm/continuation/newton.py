@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import isfinite, sqrt
+from cython.cimports.libc.math import fabs, isfinite, sqrt
 
 from fcm.continuation.dense import Solver
 from fcm.continuation.problem import Problem
@@ -157,9 +157,11 @@ class Newton:
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = self.problem.unknowns
         if not self.problem.rank:
-            self.solver.right[:] = self.delta
+            for i in range(n + 1):
+                self.solver.right[i] = self.delta[i]
             self.solver.solve()
-            self.delta[:] = self.solver.right
+            for i in range(n + 1):
+                self.delta[i] = self.solver.right[i]
             return 0
         for i in range(n):
             self.delta[i] *= self.scale[i]
@@ -218,16 +220,27 @@ class Newton:
 
         Less than that, but more than the last step, where errors of chosen signs already make such a step.
         """
-        size: cython.Py_ssize_t = self.problem.unknowns + 1
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.problem.unknowns
+        least: cython.double = 0.0
+        step: cython.double = 0.0
+        error: cython.double[::1] = self.closing
         if self.problem.rank:
-            return ROUNDINGS * EPS * sqrt(size)
-        scale = np.asarray(self.scale)
-        inner = np.asarray(self.problem.jacobian) * scale / scale[: size - 1, None]
-        matrix = np.concatenate((inner, np.asarray(self.row)[None]))
-        error = EPS * (np.abs(matrix) @ np.abs(np.asarray(self.z) / scale))
-        np.asarray(self.solver.right)[:] = error * np.where(np.arange(size) % 2, -1.0, 1.0)
+            return ROUNDINGS * EPS * sqrt(n + 1)
+        for i in range(n + 1):
+            unit: cython.double = EPS / self.scale[i] if i < n else EPS
+            error[i] = 0.0
+            for j in range(n + 1):
+                if i < n:
+                    error[i] += unit * fabs(self.problem.jacobian[i, j] * self.z[j])
+                else:
+                    error[i] += unit * fabs(self.row[j] * self.z[j] / self.scale[j])
+            self.solver.right[i] = error[i] if i % 2 == 0 else -error[i]
         self.solver.solve()
-        least = float(np.linalg.norm(self.solver.right))
-        if np.linalg.norm(self.delta) < ROUNDINGS * least:
-            return least
-        return float(np.linalg.norm(np.abs(self.solver.inverse()) @ error))
+        for i in range(n + 1):
+            least += self.solver.right[i] * self.solver.right[i]
+            step += self.delta[i] * self.delta[i]
+        if sqrt(step) < ROUNDINGS * sqrt(least):
+            return sqrt(least)
+        return float(np.linalg.norm(np.abs(self.solver.inverse()) @ np.asarray(error)))

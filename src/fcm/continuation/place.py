@@ -33,9 +33,9 @@ class Place:
     @cython.exceptval(-1, check=False)
     def bounded(self, problem: Problem) -> cython.int:
         """Take the margins that a problem was last asked for."""
-        self.margin[:] = problem.margin
-        self.kind[:] = problem.kind
-        self.angle[:] = problem.angle
+        k: cython.Py_ssize_t
+        for k in range(problem.margins):
+            self.margin[k], self.kind[k], self.angle[k] = problem.margin[k], problem.kind[k], problem.angle[k]
         return 0
 
     @cython.cfunc
@@ -43,17 +43,14 @@ class Place:
     def like(self, other: Place, unit: cython.double) -> cython.int:
         """Take everything but the shift from another place, whose unit of length is so many of the new."""
         i: cython.Py_ssize_t
-        self.z[:] = other.z
-        self.tangent[:] = other.tangent
-        self.margin[:] = other.margin
-        self.kind[:] = other.kind
-        self.angle[:] = other.angle
-        self.output[:] = other.output
         self.orientation = other.orientation
+        for i in range(other.z.shape[0]):
+            self.z[i], self.tangent[i] = other.z[i], other.tangent[i]
         for i in range(other.slope.shape[0]):
+            self.margin[i], self.kind[i], self.angle[i] = other.margin[i], other.kind[i], other.angle[i]
             self.slope[i] = other.slope[i] / unit
         for i in range(other.growth.shape[0]):
-            self.growth[i] = other.growth[i] / unit
+            self.output[i], self.growth[i] = other.output[i], other.growth[i] / unit
         return 0
 
     @cython.ccall

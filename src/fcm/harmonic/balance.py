@@ -27,7 +27,8 @@ else:
     from fcm.continuation.problem import NONE, Problem
     from fcm.harmonic.law import KINDS, Law
 
-OWN_FLOOR, OTHER_FLOOR = 0.1, 1e-6  # a unit is at least this much of its own, and of the greatest, maximum
+OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
+OTHER_FLOOR = cython.declare(cython.double, 1e-6)  # and of the greatest
 
 
 @cython.cclass
@@ -97,8 +98,9 @@ class Balance(Problem):
         self.means(columns)
         for j in range(self.seen.count):
             self.harmonic(j, columns)
-        self.evaluated[:] = z
+        self.evaluated[self.unknowns] = z[self.unknowns]
         for i in range(self.unknowns):
+            self.evaluated[i] = z[i]
             self.residual[i] += z[i]
 
     @cython.cfunc
@@ -107,6 +109,7 @@ class Balance(Problem):
         """Forces and tangents of the contacts, without those counted to the structure."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         first: cython.Py_ssize_t
         for c in range(self.contacts):
             law: Law = self.laws[c]
@@ -114,7 +117,8 @@ class Balance(Problem):
             law.evaluate(z, first)
             for i in range(self.width):
                 self.force[first + i] = law.force[i]
-            self.tangent[c, :, :] = law.tangent
+                for k in range(self.width):
+                    self.tangent[c, i, k] = law.tangent[i, k]
             self.force[first + 1] -= self.counted[c] * z[first + 1]
             self.tangent[c, 1, 1] -= self.counted[c]
         return 0
@@ -256,8 +260,9 @@ class Balance(Problem):
         self.seen.at(z[self.unknowns])
         self.forces_at(z, direction)
         self.shown.at(self.load, self.now, self.rate, z, direction)
-        self.output[:] = self.shown.amplitude
-        self.growth[:] = self.shown.growth
+        i: cython.Py_ssize_t
+        for i in range(self.outputs):
+            self.output[i], self.growth[i] = self.shown.amplitude[i], self.shown.growth[i]
         return 0
 
     @cython.cfunc

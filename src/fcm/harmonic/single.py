@@ -11,7 +11,11 @@ from fcm.harmonic.law import Law
 
 PI = cython.declare(cython.double, 3.141592653589793)
 SMALLEST = cython.declare(cython.double, 1e-150)  # amplitudes below this count as this in a division
-CLOSES, OPENS, SLIPS, MOST, LEAST = range(5)  # margins, see `bound`
+CLOSES = cython.declare(cython.int, 0)  # margins, see `bound`
+OPENS = cython.declare(cython.int, 1)
+SLIPS = cython.declare(cython.int, 2)
+MOST = cython.declare(cython.int, 3)
+LEAST = cython.declare(cython.int, 4)
 
 
 @cython.cclass
@@ -44,7 +48,7 @@ class SingleHarmonic(Law):
             self.normal(x, first)
         if self.mu > 0.0 and self.k_u > 0.0:
             self.bound(x, first)
-            if self.margin[SLIPS] > 0.0 and self.margin[OPENS] > 0.0:
+            if self.rests():
                 self.stuck(x, first)
             elif self.margin[CLOSES] > 0.0:
                 self.mixed = True
@@ -74,6 +78,12 @@ class SingleHarmonic(Law):
         self.margin[MOST] = most - self.k_u * x[first] if within else 0.0
         self.margin[LEAST] = self.k_u * x[first] - least if within else 0.0
         return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def rests(self) -> cython.bint:
+        """Whether the contact never slips nor opens, by the margins as they were last asked for."""
+        return self.margin[SLIPS] > 0.0 and self.margin[OPENS] > 0.0
 
     @cython.cfunc
     @cython.exceptval(check=False)

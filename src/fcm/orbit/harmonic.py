@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from fcm.contact import hysteresis_loop, periodic_forces
 from fcm.contact.closed_form import ClosedForm
-from fcm.harmonic.single import OPENS, SLIPS, SingleHarmonic
+from fcm.harmonic.single import SingleHarmonic
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
@@ -152,7 +152,7 @@ def _forces(
 def _stuck(law: SingleHarmonic, x: FloatArray) -> bool:
     """Whether the contact never slips nor opens."""
     law.bound(x, 0)
-    return bool(law.margin[SLIPS] > 0.0 and law.margin[OPENS] > 0.0)
+    return bool(law.rests())
 
 
 def _angle(z: complex) -> float:

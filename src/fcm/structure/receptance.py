@@ -13,8 +13,9 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-LARGE = 4000  # products of a sum over the modes from which on BLAS is faster
-LEAST_DAMPING = 1e-9  # twice the damping ratio of an undamped mode exactly at its own frequency
+LARGE = cython.declare(cython.int, 4000)  # products of a sum over the modes from which on BLAS is faster
+# twice the damping ratio of an undamped mode exactly at its own frequency
+LEAST_DAMPING = cython.declare(cython.double, 1e-9)
 
 
 @cython.cclass
