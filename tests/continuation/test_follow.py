@@ -140,6 +140,63 @@ def test_a_corner_at_which_it_goes_on(step):
 
 
 @pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("wide", [0.0, 1e-12, 1e-10, 3e-9])
+def test_a_piece_that_is_all_but_nothing_is_part_of_a_corner(step, wide):
+    """p rises with x up to 2, falls steeply while x rises by no more than wide, then gently for ever."""
+
+    class Thin(Planar):
+        def __init__(self):
+            Planar.__init__(self, self.piece, lambda x: 0.0)
+            Problem.__init__(self, 2, 2, 1)
+
+        @staticmethod
+        def piece(x, p):
+            if x < 2.0:
+                return x - p, 1.0, -1.0
+            if x < 2.0 + wide:
+                return 2.0 - 30.0 * (x - 2.0) - p, -30.0, -1.0
+            return 2.0 - 30.0 * wide - 0.1 * (x - 2.0 - wide) - p, -0.1, -1.0
+
+        def bound(self, z):
+            self.margin[0], self.margin[1] = z[0] - 2.0, z[0] - 2.0 - wide
+            return 0
+
+    path = follow(Thin(), start(1.0, 1.0), (1.0, 3.0), True, step)
+    assert path.status is Status.RETURNED
+    assert np.all(np.diff(path.z[:, 0]) > 0.0)
+    assert path.z[-1, 0] == pytest.approx(12.0, abs=1e-6)
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([2.0], abs=1e-8)
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("stiff", [1.0, 1e3, 1e6])
+def test_a_stiffness_that_begins_like_a_root(step, stiff):
+    """p = x + stiff (x - 2)^1.5 from 2 on, as a contact that closes: its slope grows at once."""
+    closing = Planar(
+        lambda x, p: (
+            x + stiff * max(x - 2.0, 0.0) ** 1.5 - p,
+            1.0 + 1.5 * stiff * max(x - 2.0, 0.0) ** 0.5,
+            -1.0,
+        ),
+        lambda x: x - 2.0,
+    )
+    path = follow(closing, start(1.0, 1.0), (1.0, 5.0), True, step)
+    assert path.status is Status.COMPLETE
+    x, p = path.z[:, 0], path.parameter
+    assert np.all(np.diff(p) > 0.0) and path.where(Mark.FOLD | Mark.BRANCH).size == 0
+    assert x + stiff * np.maximum(x - 2.0, 0.0) ** 1.5 == pytest.approx(p, abs=1e-9)
+    assert p[path.where(Mark.CORNER)] == pytest.approx([2.0], abs=1e-8)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_an_end_of_the_range_next_to_a_corner_is_landed_on(step):
+    path = follow(zigzag(0.5), start(1.0, 1.0), (1.0, 2.0 - 5e-9), True, step)
+    assert path.status is Status.COMPLETE and path.parameter[-1] == 2.0 - 5e-9
+    path = follow(zigzag(0.5), start(2.5, 1.75), (1.5 + 5e-9, 2.0 + 5e-9), False, step)
+    assert path.parameter[-1] == 1.5 + 5e-9 and path.z[-1, 0] < 3.0
+
+
+@pytest.mark.parametrize("step", STEPS)
 def test_a_peak_is_a_point(step):
     """Of x on the circle: 5, at p = 2; it rises and falls, so that no fold is there."""
     path = follow(circle(), start(3.0 + np.sqrt(3.0), 1.0), (1.0, 3.0), True, step)

@@ -7,8 +7,9 @@ random scene whose curve takes a long way round behind a margin that only dips b
 import numpy as np
 import pytest
 
+from fcm import load_scene
 from fcm.continuation import Mark, Status
-from fcm.harmonic.start import solutions
+from fcm.harmonic.start import resonances, solutions
 from fcm.harmonic.system import System
 
 from ..response.random_scenes import random_scene
@@ -48,6 +49,34 @@ def test_the_same_for_every_step(seed):
         assert all(path.status in WHOLE for path in curves.paths)
     assert np.sort(coarse.folds) == pytest.approx(np.sort(fine.folds), rel=LAST)
     assert coarse.amplitude.max(axis=0) == pytest.approx(fine.amplitude.max(axis=0), rel=LAST)
+
+
+def test_a_contact_closes_that_is_a_million_times_as_stiff():
+    """From level 3e-5 on at the least of these frequencies: beyond that depths are 1e-8 of the motion."""
+    system = System(random_scene(19), up_to(3))
+    for omega in (*system.scene.frequency_range, *resonances(system)):
+        assert solutions(system, omega).complete
+
+
+def test_two_limits_that_are_met_at_one_frequency():
+    """A contact begins to slip and opens within 1e-11 of its load, where the curve turns back.
+
+    Both limits are equal to rounding at that fold: n_0 - |V| = 0 and |k_u U -+ mu k_v V| = mu n.
+    """
+    one = load_scene("extreme/friction-100")
+    folds = []
+    for step in (0.2, 0.1, 0.05, 0.02):
+        curves = Curves(one, (1,), max_step=step)
+        (path,) = curves.paths
+        assert path.status is Status.COMPLETE
+        folds.append(np.sort(curves.folds))
+        v_0, *parts = path.z[path.parameter == folds[-1][-1]][0, 1:6]
+        U, V = complex(*parts[:2]), complex(*parts[2:])
+        load = one.contacts[0].n_0 + v_0
+        assert load == pytest.approx(abs(V), rel=1e-8)
+        assert abs(U - 100.0 * V) + abs(U + 100.0 * V) == pytest.approx(200.0 * load, rel=1e-8)
+    for other in folds[1:]:
+        assert other == pytest.approx(folds[0], rel=LAST)
 
 
 def test_a_curve_does_not_come_back_on_itself():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from fcm import load_scene
 from fcm.continuation import Status
 
 from .scenes import Curves, gap5, up_to, yang
@@ -23,6 +24,17 @@ def test_the_same_for_every_step(name, count):
         assert np.sort(curves.folds) == pytest.approx(np.sort(finest.folds), rel=1e-7)
         highest = finest.amplitude.max(axis=0)
         assert curves.amplitude.max(axis=0) == pytest.approx(highest, rel=1e-7)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_no_curve_leaves_its_range_unseen(step):
+    """Springs of 1e8 and 1e-8: what rounding makes of the equations is far above that of their unknowns."""
+    scene = load_scene("extreme/stiff-and-soft")
+    low, high = scene.frequency_range
+    curves = Curves(scene, (1,), max_step=step)
+    assert curves.branches.status is Status.COMPLETE
+    for path in curves.paths:
+        assert low <= path.parameter.min() and path.parameter.max() <= high
 
 
 @pytest.mark.parametrize("count", [1, 3, 9])

@@ -7,51 +7,113 @@ import cython
 from fcm.continuation.front import Front
 from fcm.continuation.place import Place
 
-NEARER = cython.declare(cython.int, 3)  # lengths past a corner that are tried
-CLOSER = cython.declare(cython.double, 0.01)  # each of them this share of the last
-
-
-@cython.ccall
-@cython.exceptval(-2, check=False)
-def come(front: Front, place: Place, at: cython.double, which: cython.Py_ssize_t) -> cython.Py_ssize_t:
-    """Go to a corner, a place at a length from here, as from before it; which margin is zero there."""
-    same: cython.Py_ssize_t = front.here.partner(which, place.kind, place.angle)
-    if same >= 0:
-        place.margin[same] = front.here.margin[which]
-    place.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
-    place.growth[:] = front.there.growth
-    place.orientation = front.there.orientation
-    front.accept(place, at)
-    return same
+BEYOND = cython.declare(cython.double, 1e-7)  # length past a corner at which the curve is looked for first
+FURTHER = cython.declare(cython.int, 3)  # lengths past a corner that are tried, each ten times the last
+PIECES = cython.declare(cython.int, 3)  # of those that meet in a corner, which are tried at each
+ASTRAY = cython.declare(cython.double, 0.5)  # of the length: a point this far from its prediction is another
 
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def cross(front: Front, which: cython.Py_ssize_t, past: cython.double) -> cython.bint:
-    """Turn, at a corner that is here, into the direction that the curve has a length past it.
+def come(front: Front, place: Place, at: cython.double) -> cython.int:
+    """Go to a corner, a place at a length from here, as from before it."""
+    place.tangent[:] = front.there.tangent  # that before the corner, on whichever side it was put
+    place.growth[:] = front.there.growth
+    place.orientation = front.there.orientation
+    front.accept(place, at)
+    return 0
 
-    It goes on to where the margin has the other sign; where that does not tell, as the orientation says,
-    which is the same on both sides of a piecewise smooth curve. The margins are then those beyond.
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def cross(front: Front, stops: cython.double[::1]) -> cython.bint:
+    """Go on, from a corner that is here, to the nearest point that the curve is found to have beyond.
+
+    Several margins may be zero here or very near, so that more than two smooth pieces meet; all that is
+    nearer is one corner. Where no point is found, or a value of the parameter is passed that is to be landed
+    on, only the direction of the curve is taken and here remains.
     """
     count: cython.int
-    sign: cython.double = 1.0
-    before: cython.double = front.here.margin[which] if which >= 0 else 0.0
-    for count in range(NEARER):  # noqa: B007
-        aim(front, past)
-        if not front.newton.look():
-            return False
-        sign = 1.0 if front.newton.orientation == front.here.orientation else -1.0
-        if not before * beyond(front, which, sign * past) > 0.0:
-            break
-        if not before * beyond(front, which, -sign * past) < 0.0:
-            beyond(front, which, sign * past)
-            break
-        # the two disagree: the curve may bend by much within that length
-        sign, past = -sign, CLOSER * past
-    bear(front, sign)
-    adopt(front, which, before)
-    front.past = past
+    length: cython.double = BEYOND
+    for count in range(FURTHER):  # noqa: B007
+        if leaves(front, length):
+            take(front, length, not passes(front, stops))
+            return True
+        length *= 10.0
+    aim(front, BEYOND)
+    if not onwards(front, BEYOND):
+        return False
+    take(front, BEYOND, False)
     return True
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def leaves(front: Front, length: cython.double) -> cython.bint:
+    """Whether the corrector comes to a point of the curve that is a length past the corner that is here.
+
+    It is looked for in the direction of the piece into which the curve comes, then in that of the piece into
+    which this direction leads, and so on. A point beyond has the orientation of here in the direction in
+    which it was looked for; one on the way to the corner has the other.
+    """
+    count: cython.int
+    aim(front, length)
+    for count in range(PIECES):  # noqa: B007
+        if not onwards(front, length):
+            return False
+        front.between.z[:] = front.newton.z
+        near: cython.bint = front.newton.correct(length) and front.newton.moved < ASTRAY * length
+        if near and front.newton.orientation == front.here.orientation:
+            return True
+        front.newton.z[:] = front.between.z
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def onwards(front: Front, length: cython.double) -> cython.bint:
+    """Put the corrector a length along the direction that the curve has in the piece where it is now.
+
+    With the orientation that it has here, which is the same in all pieces of a piecewise smooth curve.
+    """
+    i: cython.Py_ssize_t
+    if not front.newton.look():
+        return False
+    sign: cython.double = 1.0 if front.newton.orientation == front.here.orientation else -1.0
+    for i in range(front.here.z.shape[0]):
+        front.newton.tangent[i] *= sign
+    front.newton.orientation = front.here.orientation
+    front.newton.row[:] = front.newton.tangent
+    for i in range(front.here.z.shape[0]):
+        front.newton.z[i] = front.here.z[i] + length * front.newton.scale[i] * front.newton.row[i]
+    return True
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def passes(front: Front, stops: cython.double[::1]) -> cython.bint:
+    """Whether a value of the parameter lies between here and where the corrector is."""
+    n: cython.Py_ssize_t = front.here.z.shape[0] - 1
+    k: cython.Py_ssize_t
+    for k in range(stops.shape[0]):
+        if (stops[k] - front.here.z[n]) * (stops[k] - front.newton.z[n]) <= 0.0:
+            return True
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def take(front: Front, length: cython.double, go: cython.bint) -> cython.int:
+    """Go to where the corrector is, a length from here, or take only the direction and the margins there."""
+    there: Place = front.between
+    front.record(there, True, True)
+    there.incline(front.problem, front.newton.scale, front.guess)
+    if not go:
+        there.z[:] = front.here.z
+        there.output[:] = front.here.output
+    front.accept(there, 0.0)
+    front.past = 0.0 if go else length
+    return 0
 
 
 @cython.ccall
@@ -59,14 +121,20 @@ def cross(front: Front, which: cython.Py_ssize_t, past: cython.double) -> cython
 def cross_softly(front: Front, past: cython.double) -> cython.bint:
     """Turn, where a label changes, into the direction that the curve has a length past it.
 
-    The orientation is the same on both sides. The labels are those beyond, even if no curve is found.
+    The labels are those beyond, even if no curve is found.
     """
+    i: cython.Py_ssize_t
     aim(front, past)
     front.problem.bound(front.newton.z)
     front.here.margin[:] = front.problem.margin
-    if not front.newton.look():
+    if not onwards(front, past):
         return False
-    bear(front, 1.0 if front.newton.orientation == front.here.orientation else -1.0)
+    front.here.tangent[:] = front.newton.tangent
+    for i in range(front.guess.shape[0]):
+        front.guess[i] = front.newton.scale[i] * front.here.tangent[i]
+    if front.problem.outputs:
+        front.problem.report(front.here.z, front.guess)
+        front.here.growth[:] = front.problem.growth
     return True
 
 
@@ -78,43 +146,3 @@ def aim(front: Front, past: cython.double) -> cython.void:
     for i in range(front.here.z.shape[0]):
         front.newton.row[i] = front.here.tangent[i]
         front.newton.z[i] = front.here.z[i] + past * front.newton.scale[i] * front.here.tangent[i]
-
-
-@cython.cfunc
-@cython.exceptval(-1, check=False)
-def bear(front: Front, sign: cython.double) -> cython.int:
-    """Take the corrector's direction, with a sign, as that of here."""
-    i: cython.Py_ssize_t
-    front.here.orientation = sign * front.newton.orientation
-    for i in range(front.here.z.shape[0]):
-        front.here.tangent[i] = sign * front.newton.tangent[i]
-        front.guess[i] = front.newton.scale[i] * front.here.tangent[i]
-    if front.problem.outputs:
-        front.problem.report(front.here.z, front.guess)
-        front.here.growth[:] = front.problem.growth
-    return 0
-
-
-@cython.cfunc
-@cython.exceptval(-1e300, check=False)
-def beyond(front: Front, which: cython.Py_ssize_t, past: cython.double) -> cython.double:
-    """A margin of here at a length along the corrector's tangent; 0 if it is not there."""
-    i: cython.Py_ssize_t
-    for i in range(front.guess.shape[0]):
-        front.guess[i] = front.here.z[i] + past * front.newton.scale[i] * front.newton.tangent[i]
-    front.problem.bound(front.guess)
-    return front.here.asked(which, front.problem) if which >= 0 else 0.0
-
-
-@cython.cfunc
-@cython.exceptval(-1, check=False)
-def adopt(front: Front, which: cython.Py_ssize_t, before: cython.double) -> cython.int:
-    """Take the margins last asked for; one that has not changed its sign is only touched."""
-    i: cython.Py_ssize_t = -1
-    if which >= 0:
-        i = front.here.partner(which, front.problem.kind, front.problem.angle)
-    front.here.bounded(front.problem)
-    if i >= 0 and front.here.margin[i] * before > 0.0:
-        front.here.margin[i] = 0.0
-    front.here.incline(front.problem, front.newton.scale, front.guess)
-    return 0

@@ -29,6 +29,7 @@ NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: a lower peak of an output is not looked for
 SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
+LOST = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
@@ -54,15 +55,13 @@ def found(front: Front, length: float, mark: int, place: Place) -> Found:
     return Found(length, mark, np.array(place.z), direction, place.orientation, front.there.shift)
 
 
-def first_margin(front: Front) -> tuple[float, int]:
-    """Where within the step a margin changes sign first, and which."""
-    first, which = front.step, -1
+def first_margin(front: Front) -> float:
+    """Where within the step a margin changes sign first; LOST if the curve is not found there."""
+    first = front.step
     for k in range(front.problem.margins):
         if front.here.margin[k] * front.here.margin_at(k, front.there) < 0.0:
-            at = root(front, MARGIN, k, front.step)
-            if at <= first:
-                first, which = at, k
-    return first, which
+            first = min(first, root(front, MARGIN, k, front.step))
+    return first
 
 
 @cython.cfunc
@@ -166,7 +165,8 @@ def root(
 
     By the secant through the last two values of opposite sign, one of them halved when it does not move
     (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
-    root. The looks for peaks of other outputs are where it begins, and those for this one are added.
+    root; but of a margin LOST: what is there may be another part of a curve that goes back in the corner.
+    The looks for peaks of other outputs are where it begins, and those for this one are added.
     """
     low: cython.double = 0.0
     high: cython.double = step
@@ -191,8 +191,10 @@ def root(
             return low
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
-        if high - low <= FINE * step or not low < at < high or not front.put(at, kind == MARGIN, False):
+        if high - low <= FINE * step or not low < at < high:
             return high
+        if not front.put(at, kind == MARGIN, False):
+            return LOST if kind == MARGIN else high
         if kind != MARGIN and not front.sharpen(False, kind == PEAK):
             return high
         now = value(front, front.between, kind, k)

@@ -158,7 +158,8 @@ class Follower:
         while step > SHORTEST:
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
-                return self.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here))
+                front.drift(reach)
+                return self.turn(events.found(front, 0.0, Mark.CORNER, front.here))
             # curves bend more and more towards a corner, and may hide a pair of folds there
             if NEAR < reach < step and clear(front, NEARER * reach) and dip(front) == 0.0:
                 return self.smooth()
@@ -190,7 +191,7 @@ class Follower:
         count: cython.int = self.trail.count
         if self.keep(front.step):
             return self.end()
-        if self.soft is not None and not self.low <= front.there.z[self.n] <= self.high:
+        if not self.low <= front.there.z[self.n] <= self.high:
             self.trail.cut(count)  # beyond an end that was not landed on
             self.step = 0.25 * front.step
             return Status.STALLED if self.step < AFTER else None
@@ -211,23 +212,29 @@ class Follower:
         STALLED where the curve is not found up to there, or not where it was predicted.
         """
         front: Front = self.front
-        at, which = events.first_margin(front)
-        if not front.shorten((1.0 - BEFORE) * at) or not kept(front) or not good(front):
+        if not kept(front):  # what is there is another part of a curve that goes back in the corner
+            return Status.STALLED
+        at: cython.double = events.first_margin(front)
+        if at < 0.0 or not front.shorten((1.0 - BEFORE) * at) or not kept(front) or not good(front):
             return Status.STALLED
         if self.keep(front.step):
             return self.end()
         place: Place = front.between if front.put(at, True, True) else front.there
         point = events.found(front, at, Mark.CORNER, place)
-        return self.turn(come(front, place, at, which), point)
+        come(front, place, at)
+        return self.turn(point)
 
     @cython.ccall
-    def turn(self, which: cython.int, point: events.Found, past: cython.double = BEYOND) -> object:
-        """Keep the corner that is here, and turn into the direction that the curve has beyond."""
+    def turn(self, point: events.Found, past: cython.double = BEYOND) -> object:
+        """Keep the corner that is here, and turn into the direction that the curve has beyond.
+
+        past: the length at which that is looked for where the corner is a change of label.
+        """
         front: Front = self.front
         rise: cython.double = front.here.tangent[self.n]
         growth = np.array(front.here.growth)
         if self.soft is None:
-            cross(front, which, past)
+            cross(front, self.stops)
         else:
             cross_softly(front, past)
         mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)

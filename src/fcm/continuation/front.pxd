@@ -22,6 +22,7 @@ cdef class Front:
     cpdef int accept(self, Place place, double length) except -1
     cpdef bint sharpen(self, bint margins, bint outputs) except -1
     cpdef bint shorten(self, double at) except -1
+    cpdef int drift(self, double step) except -1
     cpdef double length(self, Place place) except -1e300
     cdef bint sought(self, double step) except -1
     cdef double rescale(self, Place place, double length) noexcept

@@ -186,6 +186,14 @@ class Front:
             total += self.here.tangent[i] * (place.z[i] - self.here.z[i]) / self.newton.scale[i]
         return total
 
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def drift(self, step: cython.double) -> cython.int:
+        """Go on by a step so short that the place predicted is on the curve."""
+        self.predict(step)
+        self.here.z[:] = self.guess
+        return 0
+
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def record(self, place: Place, margins: cython.bint, outputs: cython.bint) -> cython.int:

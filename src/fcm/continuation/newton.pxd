@@ -19,6 +19,7 @@ cdef class Newton:
     cpdef bint look(self) except -1
     cdef bint settled(self, double step, double ratio, int count) except -1
     cdef bint factor(self) except -1
+    cdef bint noise(self, double step, int count) except -1
     cdef int solve(self) except -1
     cdef double step(self) except -1
     cdef bint direct(self) except -1

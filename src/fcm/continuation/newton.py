@@ -75,7 +75,8 @@ class Newton:
                     return False
             if self.problem.soft and step < before and self.settled(step, step / before, count):
                 return self.direct()
-            if not step < FAR or (count > 2 and step > 2.0 * before):
+            noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
+            if not step < FAR or (count > 2 and step > 2.0 * before and not noise):
                 return False
             for i in range(size):
                 self.z[i] += self.scale[i] * self.delta[i]
@@ -88,10 +89,21 @@ class Newton:
                 continue
             if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
                 return self.direct()
-            if count > 0 and ratio > 0.25 and step < COARSEST and step < ROUNDINGS * self.rounding():
+            if noise:
                 return self.direct()
             before = step
         return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def noise(self, step: cython.double, count: cython.int) -> cython.bint:
+        """Whether a step that has not shrunk is one that rounding makes.
+
+        Of what the equations lose to cancellation within them their derivatives know nothing.
+        """
+        if self.problem.soft:
+            return False
+        return (count > 2 and step < ROUGH) or (step < COARSEST and step < ROUNDINGS * self.rounding())
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

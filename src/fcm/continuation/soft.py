@@ -46,7 +46,7 @@ class Follower(Protocol):
     def smooth(self) -> object:
         """Go on to the place there; a status where the curve ends."""
 
-    def turn(self, which: int, point: events.Found, past: float) -> object:
+    def turn(self, point: events.Found, past: float) -> object:
         """Keep the corner that is here, and turn into the direction that the curve has beyond."""
 
     def aim(self, step: float, longer: bool) -> None:
@@ -135,7 +135,7 @@ class Soft:
             self.trail.put(*self.came_so)
             past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
             self.repeated += 1
-            follower.turn(front.which, events.found(front, 0.0, Mark.CORNER, front.here), past)
+            follower.turn(events.found(front, 0.0, Mark.CORNER, front.here), past)
             if np.asarray(front.here.tangent) @ self.came > BACK:
                 return None
         return None if self.sought(follower) else Status.STALLED
