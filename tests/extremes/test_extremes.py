@@ -27,6 +27,7 @@ SAMPLE = (
     "equal-modes",
     "stiff-tangential",
     "force-1e-9",
+    "friction-100",
 )
 
 

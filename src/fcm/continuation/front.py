@@ -189,9 +189,14 @@ class Front:
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def drift(self, step: cython.double) -> cython.int:
-        """Go on by a step so short that the place predicted is on the curve."""
+        """Go on by a step so short that the place predicted is on the curve, if no nearer one is found."""
         self.predict(step)
-        self.here.z[:] = self.guess
+        self.newton.z[:] = self.guess
+        self.newton.row[:] = self.here.tangent
+        if self.newton.correct(step) and self.newton.moved < step:
+            self.here.z[:] = self.newton.z
+        else:
+            self.here.z[:] = self.guess
         return 0
 
     @cython.cfunc
