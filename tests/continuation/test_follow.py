@@ -255,6 +255,36 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
 
 
 @pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("back", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("middle", [2.0, 2.03, 2.1])
+def test_two_folds_within_one_step(step, back, middle):
+    """p = 2 + (x - m)^3 - back (x - m) goes back between x = m -+ sqrt(back / 3)."""
+
+    def f(x, p):
+        y = x - middle
+        return 2.0 + y**3 - back * y - p, 3.0 * y * y - back, -1.0
+
+    path = follow(Planar(f), start(middle - 1.0, 1.0 + back), (1.0, 3.0), True, step)
+    assert path.status is Status.COMPLETE
+    across = 2.0 * (back / 3.0) ** 1.5
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([2.0 + across, 2.0 - across], abs=1e-10)
+
+
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("back", [1e-2, 1e-3, 1e-4])
+def test_a_peak_and_a_least_value_within_one_step(step, back):
+    """x = 2 + y^3 - back y, y = p - 2, has a peak at y = -sqrt(back / 3)."""
+
+    def f(x, p):
+        y = p - 2.0
+        return x - 2.0 - y**3 + back * y, 1.0, -3.0 * y * y + back
+
+    path = follow(Planar(f), start(1.0 + back, 1.0), (1.0, 2.5), True, step)
+    (peak,) = path.where(Mark.PEAK)
+    assert path.parameter[peak] == pytest.approx(2.0 - np.sqrt(back / 3.0), abs=1e-6)
+
+
+@pytest.mark.parametrize("step", STEPS)
 def test_every_passing_of_a_station(step):
     """p = 2 on the S-shaped curve at x = -1, 0, 1."""
     path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step, stations=[2.0])

@@ -22,13 +22,13 @@ if cython.compiled:
     from cython.cimports.fcm.continuation.ahead import ahead
     from cython.cimports.fcm.continuation.corner import come, cross, cross_softly
     from cython.cimports.fcm.continuation.events import closes, quiet
-    from cython.cimports.fcm.continuation.margins import crosses, dip
+    from cython.cimports.fcm.continuation.margins import crosses, detour, dip
     from cython.cimports.fcm.continuation.step_rule import clear, extent, good, kept, next_step
 else:
     from fcm.continuation.ahead import ahead
     from fcm.continuation.corner import come, cross, cross_softly
     from fcm.continuation.events import closes, quiet
-    from fcm.continuation.margins import crosses, dip
+    from fcm.continuation.margins import crosses, detour, dip
     from fcm.continuation.step_rule import clear, extent, good, kept, next_step
 
 FIRST = cython.declare(cython.double, 1e-3)  # the first step
@@ -161,7 +161,7 @@ class Follower:
                 front.drift(reach)
                 return self.turn(events.found(front, 0.0, Mark.CORNER, front.here))
             # curves bend more and more towards a corner, and may hide a pair of folds there
-            if NEAR < reach < step and clear(front, NEARER * reach) and dip(front) == 0.0:
+            if NEAR < reach < step and clear(front, NEARER * reach) and self.hidden() == 0.0:
                 return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if crosses(front):
@@ -169,7 +169,7 @@ class Follower:
                     if status is not Status.STALLED:
                         return status
                 elif reach >= step and good(front):
-                    hidden = dip(front)
+                    hidden = self.hidden()
                     if hidden == 0.0:
                         return self.smooth()
                     step = hidden
@@ -179,6 +179,13 @@ class Follower:
                 return self.smooth()
             step = 0.25 * min(step, reach)
         return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def hidden(self) -> cython.double:
+        """Length at which the step passes by something that both its ends tell of; 0 if they do not."""
+        at: cython.double = dip(self.front)
+        return at if at > 0.0 else detour(self.front, self.most)
 
     def good(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""

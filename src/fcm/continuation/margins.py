@@ -1,4 +1,4 @@
-"""What the margins at both ends of a step tell of the way between them."""
+"""What both ends of a step tell of the way between them: of margins, of the parameter and of outputs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,12 @@ import cython
 from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.front import Front
+
+SHARP = cython.declare(cython.double, 1e-4)  # a step this short tells more of rounding than of a way back
+RISE = cython.declare(cython.double, 1e-7)  # growth of an output over its size that is not rounding
+NEARLY_GREATEST = cython.declare(
+    cython.double, 0.9
+)  # of the greatest so far: below that no peak is looked for
 
 
 @cython.cfunc
@@ -31,6 +37,62 @@ def dip(front: Front) -> cython.double:
             if 0.0 < at * front.step < first:
                 first = at * front.step
     return first if first < front.step else 0.0
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def detour(front: Front, greatest: cython.double[::1]) -> cython.double:
+    """Length at which the parameter, or an output, goes the other way than here and there; 0 if none does.
+
+    There are two folds, or a peak and the least value after it, between then. As far as the cubics through
+    both ends tell; of outputs those near their greatest.
+    """
+    k: cython.Py_ssize_t
+    n: cython.Py_ssize_t = front.problem.unknowns
+    at: cython.double
+    size: cython.double
+    step: cython.double = front.step
+    unit: cython.double = step * front.newton.scale[n]
+    along: cython.double = step / front.spread()
+    if step <= SHARP:
+        return 0.0
+    at = opposite(
+        front.there.z[n] - front.here.z[n],
+        front.here.tangent[n] * unit,
+        front.there.tangent[n] * unit / front.spread(),
+        0.0,
+    )
+    for k in range(front.problem.outputs):
+        size = max(front.here.output[k], front.there.output[k])
+        if at == 0.0 and size >= NEARLY_GREATEST * greatest[k]:
+            at = opposite(
+                front.there.output[k] - front.here.output[k],
+                front.here.growth[k] * step,
+                front.there.growth[k] * along,
+                RISE * size * step,
+            )
+    return at * step
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def opposite(
+    rise: cython.double, begin: cython.double, end: cython.double, least: cython.double
+) -> cython.double:
+    """Where in (0, 1) the cubic that rises so much, with slopes of one sign at 0 and 1, goes the other way
+    most; 0 if it does not, or by less than the least slope.
+    """
+    if not begin * end > 0.0:
+        return 0.0
+    sign: cython.double = 1.0 if begin > 0.0 else -1.0
+    a: cython.double = sign * begin
+    b: cython.double = sign * (3.0 * rise - 2.0 * begin - end)
+    c: cython.double = sign * (begin + end - 2.0 * rise)
+    if not c > 0.0:
+        return 0.0
+    x: cython.double = -b / (3.0 * c)
+    return x if 0.0 < x < 1.0 and a + x * b < -least else 0.0
 
 
 @cython.cfunc
