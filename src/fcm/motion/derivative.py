@@ -97,6 +97,32 @@ class Derivative(Along):
             missing = self._go(segments, segment, end)
         return int(missing)
 
+    def closes(
+        self,
+        segments: Segments,
+        duration: float,
+        by_state: cython.double[:, ::1],
+        by_frequency: cython.double[::1],
+    ) -> int:
+        """Fill the derivatives of x at the end of segments that last for periods, which the frequency shortens.
+
+        By x at their start, (unknown, unknown), and by the frequency; returns what `go` does.
+        """
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        last: cython.Py_ssize_t = segments.count - 1
+        end: cython.double = segments.length[last]
+        shorter: cython.double = duration / self.flows.omega
+        missing: cython.Py_ssize_t
+        with cython.nogil:
+            missing = self._go(segments, last, end)
+            if missing < 0:
+                for i in range(self.unknowns):
+                    for k in range(self.unknowns):
+                        by_state[i, k] = self.columns[k, i]
+                    by_frequency[i] = self.columns[self.unknowns, i] - shorter * self.rate[i]
+        return int(missing)
+
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.derivative import Derivative
 from fcm.motion.measure import Extreme
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
@@ -23,16 +22,11 @@ class Along(NamedTuple):
 
 def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
     """At a position (in steps) in a segment."""
-    kernel = _at(system, segments, last, position)
-    return Along(np.array(kernel.columns), np.array(kernel.rate))
-
-
-def _at(system: System, segments: Segments, last: int, position: float) -> Derivative:
     kernel = system.derivative()
     kernel.begins(segments)
     while (missing := kernel.go(segments, last, position)) >= 0:
         system.make(np.asarray(segments.states)[missing])
-    return kernel
+    return Along(np.array(kernel.columns), np.array(kernel.rate))
 
 
 def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
@@ -40,11 +34,12 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
 
     The periods shorten as the frequency grows: dT / d omega = -T / omega.
     """
-    last, u = len(segments) - 1, system.unknowns
-    kernel = _at(system, segments, last, segments.length[last])
-    columns = np.asarray(kernel.columns)
-    by_frequency = columns[u, :u] - duration / system.omega * np.asarray(kernel.rate)[:u]
-    return columns[:u, :u].T.copy(), by_frequency
+    kernel, u = system.derivative(), system.unknowns
+    by_state, by_frequency = np.empty((u, u)), np.empty(u)
+    kernel.begins(segments)
+    while (missing := kernel.closes(segments, duration, by_state, by_frequency)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    return by_state, by_frequency
 
 
 def along(
