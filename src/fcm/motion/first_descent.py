@@ -217,11 +217,13 @@ def _root(
     x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[degree]), 0.25), 1.0)
     value: cython.double
     slope: cython.double
+    bend: cython.double
     new: cython.double
     i: cython.int
     for _ in range(100):
-        value = slope = 0.0
+        value = slope = bend = 0.0  # bend is half the second derivative
         for i in range(degree, -1, -1):
+            bend = bend * x + slope
             slope = slope * x + value
             value = value * x + powers[k, i]
         if value == 0.0:
@@ -233,6 +235,8 @@ def _root(
         new = x - value / slope if slope < 0.0 else low
         if not low < new < high:
             new = 0.5 * (low + high)
+        elif fabs(bend) * (new - x) * (new - x) <= 1e-17 * fabs(slope):
+            return new  # the next step would be less than rounding
         if fabs(new - x) <= 1e-16 or not low < new < high:
             return new
         x = new

@@ -7,4 +7,3 @@ cdef class Flows(Forced):
     cdef void watch(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k, Py_ssize_t steps, double[::1] seen) noexcept nogil
     cdef void leave(self, Py_ssize_t slot, Py_ssize_t e, double[:, ::1] y, Py_ssize_t k, double[:, ::1] powers) noexcept nogil
     cdef void bound(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k, double[::1] out) noexcept nogil
-cdef void add_rows(double[:, ::1] matrix, double[::1] x, Py_ssize_t n, double[::1] out, Py_ssize_t wide) noexcept nogil

@@ -50,12 +50,29 @@ class Flows(Forced):
         """Move row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
+        p: cython.Py_ssize_t = 0
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
         sine: cython.double = y[k, n]
         cosine: cython.double = y[k, n + 1]
         self.reach(slot, j)
         for i in range(n):
             self._whole[i] = self.forced[slot, j, 0, i] * sine + self.forced[slot, j, 1, i] * cosine
-        add_rows(self.power[slot, j], y[k], n, self._whole, n)
+        while p + 4 <= n:  # four together, to go through the sums less often
+            a, b, c, d = y[k, p], y[k, p + 1], y[k, p + 2], y[k, p + 3]
+            for i in range(n):
+                self._whole[i] = (
+                    ((self._whole[i] + self.power[slot, j, p, i] * a) + self.power[slot, j, p + 1, i] * b)
+                    + self.power[slot, j, p + 2, i] * c
+                ) + self.power[slot, j, p + 3, i] * d
+            p += 4
+        while p < n:
+            a = y[k, p]
+            for i in range(n):
+                self._whole[i] += self.power[slot, j, p, i] * a
+            p += 1
         for i in range(n):
             y[k, i] = self._whole[i]
         y[k, n] = self.turn[slot, j, 0] * sine + self.turn[slot, j, 1] * cosine
@@ -94,12 +111,29 @@ class Flows(Forced):
         wide: cython.Py_ssize_t = (steps + 1) * 3 * self.exits[slot]
         n: cython.Py_ssize_t = self.linear
         w: cython.Py_ssize_t
+        i: cython.Py_ssize_t = 0
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
         self.look(slot, steps)
         for w in range(wide):
             seen[w] = self.table_forced[slot, 0, w] * x + self.table_forced[slot, 1, w] * other
-        add_rows(self.table[slot], y[k], n, seen, wide)
+        while i + 4 <= n:
+            a, b, c, d = y[k, i], y[k, i + 1], y[k, i + 2], y[k, i + 3]
+            for w in range(wide):
+                seen[w] = (
+                    ((seen[w] + self.table[slot, i, w] * a) + self.table[slot, i + 1, w] * b)
+                    + self.table[slot, i + 2, w] * c
+                ) + self.table[slot, i + 3, w] * d
+            i += 4
+        while i < n:
+            a = y[k, i]
+            for w in range(wide):
+                seen[w] += self.table[slot, i, w] * a
+            i += 1
 
     @cython.cfunc
     @cython.nogil
@@ -148,34 +182,3 @@ class Flows(Forced):
             for i in range(n):
                 out[i] += self.sizes[slot, p, i] * x
         out[n] = out[n + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
-
-
-@cython.cfunc
-@cython.nogil
-@cython.exceptval(check=False)
-def add_rows(
-    matrix: cython.double[:, ::1],
-    x: cython.double[::1],
-    n: cython.Py_ssize_t,
-    out: cython.double[::1],
-    wide: cython.Py_ssize_t,
-) -> cython.void:
-    """Add to out (wide,) the first n rows of a matrix times x; four together, to go through out less often."""
-    i: cython.Py_ssize_t = 0
-    w: cython.Py_ssize_t
-    a: cython.double
-    b: cython.double
-    c: cython.double
-    d: cython.double
-    while i + 4 <= n:
-        a, b, c, d = x[i], x[i + 1], x[i + 2], x[i + 3]
-        for w in range(wide):
-            out[w] = (
-                ((out[w] + matrix[i, w] * a) + matrix[i + 1, w] * b) + matrix[i + 2, w] * c
-            ) + matrix[i + 3, w] * d
-        i += 4
-    while i < n:
-        a = x[i]
-        for w in range(wide):
-            out[w] += matrix[i, w] * a
-        i += 1
