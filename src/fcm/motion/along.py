@@ -39,7 +39,8 @@ class Along:
         self.columns = np.zeros((unknowns + 2, flows.size))
         self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._room = np.zeros((unknowns + 1, flows.linear))
-        self._matrix = np.zeros((flows.linear, flows.linear))
+        self._flat = np.zeros(flows.linear**2)
+        self._matrix = np.asarray(self._flat).reshape(flows.linear, -1)
 
     @cython.cfunc
     @cython.nogil
@@ -128,20 +129,17 @@ class Along:
         """The derivatives by the start by a part x of a step: by its matrix, or, where that is more work, row by row."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
-        p: cython.Py_ssize_t
         j: cython.Py_ssize_t
         size: cython.double
         if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
             return
         size = x
-        for p in range(n):
-            for i in range(n):
-                self._matrix[p, i] = self.flows.terms[slot, 0, p, i]
+        for i in range(n * n):
+            self._flat[i] = self.flows.terms[slot, 0, i]
         for j in range(1, orders + 1):
-            for p in range(n):
-                for i in range(n):
-                    self._matrix[p, i] += size * self.flows.terms[slot, j, p, i]
+            for i in range(n * n):
+                self._flat[i] += size * self.flows.terms[slot, j, i]
             size *= x
         self._times(self._matrix, self.unknowns)
 

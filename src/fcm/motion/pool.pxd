@@ -10,8 +10,8 @@ cdef class Pool:
     cdef readonly Py_ssize_t[::1] exits, reached, looked
     cdef readonly Py_ssize_t[:, ::1] owner, first
     cdef readonly signed char[:, ::1] goal
-    cdef readonly double[:, :, ::1] row, table, table_forced, series, series_forced, sizes, sizes_forced
-    cdef readonly double[:, :, :, ::1] power, forced, terms
+    cdef readonly double[:, :, ::1] terms, row, table, table_forced, series, series_forced, sizes, sizes_forced
+    cdef readonly double[:, :, :, ::1] power, forced
     cdef readonly double[:, :, ::1] turn
     cdef readonly double[::1] made_for
     cdef dict _pool

@@ -86,7 +86,7 @@ class Pool:
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
         made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
         made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
-        made["terms"][k] = terms
+        made["terms"][k] = terms.reshape(terms.shape[0], -1)
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
         return k
 
@@ -95,7 +95,7 @@ class Pool:
         capacity = self.step.shape[0]
         most = max(int(MOST_BYTES / (self.bytes() / capacity)), FEWEST)
         if self.count == capacity < most:
-            capacity = min(2 * capacity, most)
+            capacity = min(4 * capacity, most)  # what is not used of it takes no memory
             self._make_room(capacity)
         if self.count == capacity:
             return int(np.argmin(np.asarray(self.used)))
@@ -108,7 +108,7 @@ class Pool:
         shapes = {
             "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,), "made_for": (), "used": (),
             "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
-            "reached": (), "looked": (), "terms": (ORDER + 1 if n <= SMALL else 0, n, n), "sizes": (n, n),
+            "reached": (), "looked": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
