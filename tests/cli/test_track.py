@@ -2,11 +2,15 @@
 
 import csv
 import json
+from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 
+import fcm as package
+
+SCENES = Path(package.__file__).parent / "scenes"
 OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
 FOLDS = ("--track", "folds", "--over", "contact.shroud.n_0", "--harmonics", "1", "--from")
 
@@ -37,6 +41,19 @@ def test_as_json_an_optimum_has_its_error_and_harmonics(fcm, optimum):
     (found,) = json.loads(done.out)["optimum"]
     assert done.code == 0 and found["kind"] == "smooth" and found["harmonics"][0] == 1
     assert 0.0 < found["error"] < 0.01
+
+
+def test_optima_of_a_sweep_have_the_harmonics_that_any_of_them_takes(fcm, tmp_path):
+    """One of them takes the second, with which alone the other is less accurate than with none."""
+    text = (SCENES / "yang1998-n5.toml").read_text("utf-8").replace("harmonics = 1", "accuracy = 1e-3")
+    sweep = '\n[sweep]\n"contact.shroud.mu" = [0.4, 0.8]\n'
+    (tmp_path / "swept.toml").write_text(text + OPTIMUM.replace("20.0", "16.0") + sweep, "utf-8")
+    done = fcm("respond", "swept.toml", "--json")
+    found = json.loads(done.out)
+    assert done.code == 0
+    for one, curve in zip(found["optimum"], found["curves"], strict=True):
+        assert one["harmonics"] == curve["harmonics"] and one["error"] < 1.1e-3
+        assert one["value"] == pytest.approx(curve["peak"]["u"]["amplitude"], rel=1e-9)
 
 
 def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
@@ -130,6 +147,11 @@ def test_no_peak_in_the_range_is_said(fcm, optimum):
         ('vary = []\nminimise = "least.u"\nof = 1', ["an empty list", "must be peak.NAME", "unknown key"]),
         ('vary = "level"\nminimise = "peak.u"\nbounds = [[3, 2]]', ["must rise"]),
         ('vary = "contact.shroud.mu"\nminimise = "peak.u"\nbounds = [[-1, 2]]', ["must be at least 0"]),
+        (
+            'vary = ["level", "contact.shroud.x", "contact.shroud.mu", "contact.shroud.mu"]\n'
+            'minimise = "peak.u"\nbounds = [[1, 2], [2, 1], [-1, 2], [0.1, "a"]]',
+            ["there can be 3", "no such number", "the same number", "must be at least 0", "two numbers"],
+        ),
         (
             'vary = ["level", "level"]\nminimise = "peak.u"\nbounds = [[1, 2]]',
             ["the same number", "for each of"],

@@ -64,12 +64,16 @@ def optimise(
     key = aim.vary[0] if len(aim.vary) == 1 else ""
     tracking = Tracking(key, "optimum", aim.bounds[0], wanted.harmonics or (1,), [])
     curves = free.each_curve()
-    for i, curve in enumerate(curves):
-        shown = part(progress, SEEKING * i / len(curves), SEEKING * (i + 1) / len(curves))
-        found, tracked = _optimum(_Task(curve, numbers, wanted.accuracy), wanted.harmonics, shown)
-        tracking.optima.append(found)
-        tracking.curves += tracked
-    tracking.harmonics = tuple(sorted({h for one in tracking.optima for h in one.harmonics}))
+    tasks = [_Task(curve, numbers, wanted.accuracy) for curve in curves]
+    found = []
+    for i, task in enumerate(tasks):
+        shown = part(progress, SEEKING * i / len(tasks), SEEKING * (i + 1) / len(tasks))
+        found.append(_optimum(task, wanted.harmonics, shown))
+    if wanted.harmonics is None:
+        found = _with_the_same(tasks, found)
+    tracking.harmonics = found[0][0].harmonics
+    tracking.optima = [one for one, _ in found]
+    tracking.curves = [curve for _, tracked in found for curve in tracked]
     shown = None if progress is None else part(progress, SEEKING, 1.0)
     response = trace(
         _at(free, numbers, tracking.optima), progress=shown, harmonics=tracking.harmonics, **options
@@ -115,6 +119,24 @@ def _optimum(
         if more == chosen:
             break
         chosen = more
+    return found
+
+
+def _with_the_same(
+    tasks: list[_Task], found: list[tuple[Optimal, list[TrackedCurve]]]
+) -> list[tuple[Optimal, list[TrackedCurve]]]:
+    """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
+    every = {h for one, _ in found for h in one.harmonics}
+    for _ in range(ROUNDS):
+        chosen = tuple(sorted(every))
+        found = [
+            one if one[0].harmonics == chosen else _optimum(task, chosen, None)
+            for task, one in zip(tasks, found, strict=True)
+        ]
+        for task, one in zip(tasks, found, strict=True):
+            every |= set(_enough(task, one[0], chosen))
+        if len(every) == len(chosen):
+            break
     return found
 
 

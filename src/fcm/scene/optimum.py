@@ -34,21 +34,19 @@ def read_optimum(top: Section, draft: Draft, reported: Sequence[str]) -> Optimum
     bounds = _bounds(section, numbers, draft)
     if section.mistakes.count > before:
         return None
-    return Optimum(tuple(number.key for number in numbers), tuple(bounds), tuple(aims))
+    return Optimum(tuple(number.key for number in numbers if number), tuple(bounds), tuple(aims))
 
 
-def _numbers(section: Section, draft: Draft) -> list[Number]:
-    """The numbers to vary."""
+def _numbers(section: Section, draft: Draft) -> list[Number | None]:
+    """The numbers to vary; None in the place of one that there is not."""
     keys = _words(section, "vary", 'a list of numbers of the scene, as ["contact.shroud.n_0"]')
     if len(keys) > MOST:
         section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
-        return []
-    found: list[Number] = []
+    found: list[Number | None] = []
     for i, key in enumerate(keys):
         number = number_in(draft, key, f"{section.at('vary')}[{i}]", section.mistakes)
-        if number is None:
-            continue
-        if any(overlap(a, b) for one in found for a in one.addresses for b in number.addresses):
+        before = [address for one in found if one for address in one.addresses]
+        if number and any(overlap(a, b) for a in before for b in number.addresses):
             section.mistakes.add(f"{section.at('vary')}[{i}]", "sets the same number as another one")
         found.append(number)
     return found
@@ -86,18 +84,19 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
     return found
 
 
-def _bounds(section: Section, numbers: list[Number], draft: Draft) -> list[tuple[float, float]]:
+def _bounds(section: Section, numbers: list[Number | None], draft: Draft) -> list[tuple[float, float]]:
     """From and to of each number: a list for each, or one for a single number, or a table by the keys."""
     value = section.data.get("bounds")
     if not numbers:
         return []
     if value is None:
-        return [_wide(section, number, draft) for number in numbers]
+        return [_wide(section, number, draft) for number in numbers if number]
     pairs: Any = None
     if isinstance(value, Mapping):
-        for key in set(value) - {number.key for number in numbers}:
+        keys = _words(section, "vary", "")
+        for key in sorted(set(value) - set(keys)):
             section.wrong("bounds", f"{quoted(key)} is not among those that vary")
-        pairs = [value.get(number.key) for number in numbers]
+        pairs = [value.get(key) for key in keys]
     else:
         single = isinstance(value, list | tuple) and all(as_float(one) is not None for one in value)
         pairs = [value] if single else value if isinstance(value, list | tuple) else None
@@ -106,7 +105,7 @@ def _bounds(section: Section, numbers: list[Number], draft: Draft) -> list[tuple
             "bounds", f"must be [from, to] for each of the {len(numbers)} that vary, is {_said(value)}"
         )
         return []
-    return [_pair(section, number, pair) for number, pair in zip(numbers, pairs, strict=True)]
+    return [_pair(section, number, pair) for number, pair in zip(numbers, pairs, strict=True) if number]
 
 
 def _said(value: object) -> str:
