@@ -1,13 +1,20 @@
-"""One contact, dimensionless (sections 2 to 4.2 of the paper): cycle, loop, Fourier coefficients."""
+"""One contact, dimensionless (sections 2 to 4.2 of the paper): cycle, loop, Fourier coefficients.
+
+The names below are imported when first used: a balance needs few of them.
+"""
 
 import warnings
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from fcm.contact import normal_load
-from fcm.contact.fourier import fourier_coefficients, fourier_gradients
-from fcm.contact.loop import Loop, hysteresis_loop
-from fcm.contact.normal import normal_coefficients, normal_gradients
-from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
-from fcm.contact.periodic.loop import PeriodicLoop, periodic_loop
+
+if TYPE_CHECKING:
+    from fcm.contact.fourier import fourier_coefficients, fourier_gradients
+    from fcm.contact.loop import Loop, hysteresis_loop
+    from fcm.contact.normal import normal_coefficients, normal_gradients
+    from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
+    from fcm.contact.periodic.loop import PeriodicLoop, periodic_loop
 
 __all__ = [
     "Loop",
@@ -22,6 +29,27 @@ __all__ = [
     "periodic_gradients",
     "periodic_loop",
 ]
+
+_HOME = {
+    "Loop": "loop",
+    "PeriodicGradients": "periodic.coefficients",
+    "PeriodicLoop": "periodic.loop",
+    "fourier_coefficients": "fourier",
+    "fourier_gradients": "fourier",
+    "hysteresis_loop": "loop",
+    "normal_coefficients": "normal",
+    "normal_gradients": "normal",
+    "periodic_forces": "periodic.coefficients",
+    "periodic_gradients": "periodic.coefficients",
+    "periodic_loop": "periodic.loop",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(f"fcm.contact.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'fcm.contact' has no attribute {name!r}")
+
 
 if normal_load.__file__.endswith(".py"):
     import multiprocessing

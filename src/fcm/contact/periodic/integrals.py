@@ -12,6 +12,8 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import sin
 
+from fcm.contact.periodic.gauss import gauss
+
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI, Cycle
     from cython.cimports.fcm.contact.periodic.motion import FORCE, REACH
@@ -29,8 +31,7 @@ LONG = cython.declare(cython.int, 3)  # sticks that are integrated in closed for
 # A stick is short up to two radians of the highest harmonic in it: eight points are then exact to rounding.
 SHORT = cython.declare(cython.double, 2.0)
 POINTS = cython.declare(cython.int, 8)
-_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
-_GAUSS = 0.5 * (1.0 + _NODES), 0.5 * _SHARES  # POINTS of them, on 0 to 1
+_GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 
 
 @cython.cclass

@@ -12,6 +12,8 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
+from fcm.contact.periodic.gauss import gauss
+
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.crossings import Crossings
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI, Cycle
@@ -49,8 +51,7 @@ LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and
 GREATEST_LOAD = cython.declare(cython.int, 11)
 TURN = cython.declare(cython.int, 12)  # of the motion
 POINTS = cython.declare(cython.int, 8)
-_NODES, _SHARES = np.polynomial.legendre.leggauss(8)
-_GAUSS = 0.5 * (1.0 + _NODES), 0.5 * _SHARES  # POINTS of them, on 0 to 1
+_GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
 

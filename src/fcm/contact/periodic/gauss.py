@@ -1,0 +1,23 @@
+"""Gauss's rule, of the few points that integrals over short pieces of a cycle take."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def gauss(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and their shares on 0 to 1, after Golub and Welsch (1969).
+
+    As `numpy.polynomial.legendre.leggauss`, which takes 5 ms to import.
+
+    >>> points, shares = gauss(2)
+    >>> bool(abs(shares @ points**3 - 1 / 4) < 1e-15)
+    True
+    """
+    k = np.arange(1.0, count)
+    beside = k / np.sqrt(4.0 * k * k - 1.0)
+    points, vectors = np.linalg.eigh(np.diag(beside, 1) + np.diag(beside, -1))
+    return 0.5 * (1.0 + points), vectors[0] ** 2
