@@ -7,7 +7,7 @@ on Ctrl-C ends it in silence, until there is someone to say so.
 
 from __future__ import annotations
 
-YOUNG = 20_000  # objects between two looks for garbage: of what is loaded, some 100 000, nothing is
+YOUNG = 100_000  # objects between two looks for garbage: of what is loaded, some 70 000, nothing is
 
 
 def run() -> None:

@@ -25,7 +25,7 @@ LEAST_MEMORY = 240_000_000  # bytes of addresses (`ulimit -v`) that numpy, scipy
 _EXIT_CODES = (
     ("fcm.scene", "SceneError", WRONG_INPUT),
     ("fcm.table", "TableError", WRONG_INPUT),
-    ("fcm.plot", "PlotError", WRONG_INPUT),
+    ("fcm.plot.errors", "PlotError", WRONG_INPUT),
     ("fcm.response", "ResponseError", WRONG_INPUT),
     ("fcm.run", "CheckpointError", WRONG_INPUT),
     ("fcm.run.cluster", "ClusterError", WRONG_INPUT),

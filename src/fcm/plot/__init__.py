@@ -1,10 +1,18 @@
-"""Pictures of results, drawn from the files that the commands write; nothing is computed here."""
+"""Pictures of results, drawn from the files that the commands write; nothing is computed here.
+
+The names below are imported when first used: a command that only shortens names needs no pictures.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from fcm.plot.errors import PlotError
-from fcm.plot.points import DrawnPoints, read_points
-from fcm.plot.read import DrawnCurve, DrawnResponse, read_response
-from fcm.plot.response import draw_response
-from fcm.plot.style import save
+
+if TYPE_CHECKING:
+    from fcm.plot.points import DrawnPoints, read_points
+    from fcm.plot.read import DrawnCurve, DrawnResponse, read_response
+    from fcm.plot.response import draw_response
+    from fcm.plot.style import save
 
 __all__ = [
     "DrawnCurve",
@@ -16,3 +24,19 @@ __all__ = [
     "read_response",
     "save",
 ]
+
+_HOME = {
+    "DrawnCurve": "read",
+    "DrawnPoints": "points",
+    "DrawnResponse": "read",
+    "draw_response": "response",
+    "read_points": "points",
+    "read_response": "read",
+    "save": "style",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(f"fcm.plot.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'fcm.plot' has no attribute {name!r}")

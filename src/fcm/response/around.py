@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from fcm.harmonic.further import HIGHEST
-from fcm.harmonic.ring_multipliers import stability_unknown
-from fcm.harmonic.system import System
 from fcm.response.trace import ResponseError, Wanted
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.model import Scene
@@ -40,6 +38,11 @@ def unknown(scene: Scene, wanted: Wanted) -> list[str]:
     """Sentences on what is not known of the curves of a scene, for want of modes or of time."""
     found: dict[str, None] = {}
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
+    if not orders:
+        return []
+    from fcm.harmonic.ring_multipliers import stability_unknown
+    from fcm.harmonic.system import System
+
     for curve in orders.values():
         assert curve.ring is not None
         lacking = curve.ring.lacking(range(1, HIGHEST + 1))

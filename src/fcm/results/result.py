@@ -12,15 +12,15 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.gist import Gist, gist_of, worst
 from fcm.results.jumps import Jump, jumps
-from fcm.results.nonlinear_mode import NonlinearMode
-from fcm.results.orbits import Orbits
-from fcm.results.tracked import Tracking
 from fcm.scene.model import Scene
 from fcm.units import in_unit
 
 if TYPE_CHECKING:
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
+    from fcm.results.nonlinear_mode import NonlinearMode
+    from fcm.results.orbits import Orbits
+    from fcm.results.tracked import Tracking
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out

@@ -11,9 +11,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from fcm.run.checkpoint import Results
-from fcm.run.elsewhere import Elsewhere
 from fcm.run.places import Again, Died, Factory, Gone, Here, Place, Threads
-from fcm.run.processes import Processes
 from fcm.run.progress import Bar
 from fcm.run.work import Attempt, Batch, Compute, Lost, Progress, Report
 
@@ -40,12 +38,16 @@ def place_for(jobs: int, *, threads: bool = False) -> Factory:
     """Where to compute on so many cores of this machine."""
     if jobs == 1:
         return lambda compute, _count: Here(compute)
+    from fcm.run.processes import Processes
+
     kind = Threads if threads else Processes
     return lambda compute, count: kind(compute, min(jobs, count))
 
 
 def place_of(executor: Executor) -> Factory:
     """An executor of the caller's, who ends it."""
+    from fcm.run.elsewhere import Elsewhere
+
     return lambda compute, _count: Elsewhere(compute, executor)
 
 

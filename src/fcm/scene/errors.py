@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
-from difflib import get_close_matches
 
 MOST_SHOWN = 30  # mistakes listed one by one; the rest are counted
 LONGEST_SHOWN = 60  # characters of a value shown in a message
@@ -69,6 +68,8 @@ def suggestion(word: str, among: Iterable[str]) -> str:
     if not word or len(word) > LONGEST_SHOWN:
         return ""
     names = {name.casefold(): name for name, _ in zip(among, range(MOST_COMPARED), strict=False)}
+    from difflib import get_close_matches
+
     close = get_close_matches(word.casefold(), names, n=1)
     return f"; did you mean {quoted(names[close[0]])}?" if close else ""
 

@@ -11,7 +11,6 @@ import numpy as np
 from fcm.scene.errors import kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
-from fcm.scene.modal_file import note_of_scale, read_modal_file
 from fcm.scene.model import FloatArray, Modal
 from fcm.scene.names import Names, checked_names
 from fcm.scene.ring_modes import complex_row, read_diameters, travelling
@@ -73,6 +72,8 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
         if section.data["file"] == "":
             section.wrong("file", "is empty; name a file of modes")
         return None, []
+    from fcm.scene.modal_file import note_of_scale, read_modal_file
+
     try:
         found = read_modal_file(name, files, waves)
     except DataFileError as error:
