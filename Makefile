@@ -153,8 +153,9 @@ build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/f
 	@mkdir -p build
 	$(BIN)/python -m fcm.report published $@
 
-bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves
+bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves; of whole commands
 	$(BIN)/python tests/benchmarks/speed.py
+	$(BIN)/python tests/benchmarks/process.py
 	$(BIN)/python tests/benchmarks/large.py
 	$(BIN)/python -m tests.benchmarks.ring
 
