@@ -60,6 +60,7 @@ CASES = [
     ("contact", [3], "contact[0]: must be a table, is 3; write [[contact]]"),
     ("contact.0.ku", 3, 'contact[0] "shroud".ku: unknown key'),
     ("contact.0.k_t", 3, 'contact[0] "shroud".k_t: unknown key; did you mean "k_u"?'),
+    ("modal.modal_mass", [1.0, 1.0], 'modal.modal_mass: unknown key; did you mean "mass"?'),
     ("contact.0.k_n", 3, 'contact[0] "shroud".k_n: unknown key; did you mean "k_v"?'),
     ("contact.0.name", GONE, "contact[0].name: missing; give a string"),
     ("contact.0.name", 7, "contact[0].name: must be a string, is 7"),
