@@ -22,8 +22,8 @@ LONGEST_NAME = (
 
 SYNONYMS = {  # as others name what has another key here
     "k_t": "k_u", "kt": "k_u", "k_tau": "k_u", "k_n": "k_v", "kn": "k_v", "friction": "mu", "preload": "n_0",
-    "clearance": "gap", "n0": "n_0", "k": "stiffness", "m": "mass", "modal_mass": "mass", "modal_masses": "mass",
-    "generalized_mass": "mass",
+    "clearance": "gap", "n0": "n_0", "k": "stiffness", "m": "mass", "modal_mass": "mass",
+    "modal_masses": "mass", "generalized_mass": "mass",
 }  # fmt: skip
 
 
