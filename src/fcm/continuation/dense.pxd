@@ -9,5 +9,3 @@ cdef class Solver:
     cpdef int solve(self) except -1
     cdef bint eliminate(self) noexcept
     cdef void substitute(self) noexcept
-    cdef bint eliminate_across(self) noexcept
-    cdef void substitute_across(self) noexcept

@@ -1,7 +1,7 @@
 """One dense linear system: factored once, solved for several right-hand sides.
 
 Small systems are eliminated here, without leaving compiled code; large ones by LAPACK, whose import takes as
-long as thousands of these. From some size on pivots are sought along rows: that suits stiff contacts.
+long as thousands of these. Pivots are sought along rows: that suits stiff contacts.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
-ACROSS = cython.declare(cython.int, 40)  # unknowns from which on pivots are sought along rows
 LARGE = cython.declare(cython.int, 80 if cython.compiled else 40)  # from here on LAPACK
 
 
@@ -35,7 +34,7 @@ class Solver:
     def factor(self) -> cython.bint:
         """Factor the matrix, in place; false if it is singular or not finite."""
         if self.size < LARGE:
-            return self.eliminate() if self.size < ACROSS else self.eliminate_across()
+            return self.eliminate()
         from scipy.linalg import lapack
 
         matrix = np.asarray(self.matrix)
@@ -53,10 +52,7 @@ class Solver:
     def solve(self) -> cython.int:
         """Replace right by the solution."""
         if self.size < LARGE:
-            if self.size < ACROSS:
-                self.substitute()
-            else:
-                self.substitute_across()
+            self.substitute()
             return 0
         from scipy.linalg import lapack
 
@@ -83,72 +79,7 @@ class Solver:
     @cython.cfunc
     @cython.exceptval(check=False)
     def eliminate(self) -> cython.bint:
-        """Gaussian elimination with row pivots: unit lower and upper triangle in the place of the matrix."""
-        a: cython.double[:, ::1] = self.matrix
-        n: cython.Py_ssize_t = self.size
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        best: cython.Py_ssize_t
-        most: cython.double
-        factor: cython.double
-        held: cython.double
-        self.orientation = 1.0
-        for k in range(n):
-            best, most = k, fabs(a[k, k])
-            for i in range(k + 1, n):
-                if fabs(a[i, k]) > most:
-                    best, most = i, fabs(a[i, k])
-            if not (0.0 < most <= 1e300):
-                self.orientation = 0.0
-                return False
-            self.swapped[k] = cython.cast(cython.int, best)
-            if best != k:
-                self.orientation = -self.orientation
-                for j in range(n):
-                    held = a[k, j]
-                    a[k, j] = a[best, j]
-                    a[best, j] = held
-            if a[k, k] < 0.0:
-                self.orientation = -self.orientation
-            for i in range(k + 1, n):
-                if a[i, k] != 0.0:
-                    factor = a[i, k] / a[k, k]
-                    a[i, k] = factor
-                    for j in range(k + 1, n):
-                        a[i, j] -= factor * a[k, j]
-        return True
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def substitute(self) -> cython.void:
-        a: cython.double[:, ::1] = self.matrix
-        x: cython.double[::1] = self.right
-        n: cython.Py_ssize_t = self.size
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        held: cython.double
-        total: cython.double
-        for i in range(n):
-            j = self.swapped[i]
-            held = x[j]
-            x[j] = x[i]
-            x[i] = held
-        for i in range(1, n):
-            total = x[i]
-            for j in range(i):
-                total -= a[i, j] * x[j]
-            x[i] = total
-        for i in range(n - 1, -1, -1):
-            total = x[i]
-            for j in range(i + 1, n):
-                total -= a[i, j] * x[j]
-            x[i] = total / a[i, i]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def eliminate_across(self) -> cython.bint:
-        """The same of the transposed matrix, as it lies: lower and unit upper triangle, columns swapped."""
+        """Gaussian elimination, pivots along rows: lower and unit upper triangle in the place of the matrix."""
         a: cython.double[:, ::1] = self.matrix
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
@@ -186,7 +117,7 @@ class Solver:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def substitute_across(self) -> cython.void:
+    def substitute(self) -> cython.void:
         a: cython.double[:, ::1] = self.matrix
         x: cython.double[::1] = self.right
         n: cython.Py_ssize_t = self.size
