@@ -1,6 +1,7 @@
 """Curves of special points against ordinary runs at several values of the number, and against similarity."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import netCDF4
 import numpy as np
@@ -19,6 +20,8 @@ from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curve import Track
+from fcm.track.envelope import Least
+from fcm.track.lowest import Search
 from fcm.track.spot import Ending, Spot
 from fcm.track.tracked import Condition, Kind
 
@@ -294,6 +297,27 @@ def two_resonances():
     forces = [{"dof": "a", "amplitude": 1.0}, {"dof": "b", "amplitude": 1.5}]
     data = {"modal": modal, "contact": [contact | {"n_0": 1.0}], "force": forces}
     return scene_from_dict(data | {"response": {"frequency": [0.7, 2.6]}})
+
+
+class FallsAndEnds(Search):
+    """A peak that falls to 1.8 and ends at 3, and one of 1.3 there that is followed only from there."""
+
+    def __init__(self):
+        self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
+
+    def best(self):
+        return Least(3.0, 1.3, (), "end") if "lower" in self.curves else Least(3.0, 1.8, (), "corner")
+
+    def visit(self, value):
+        if value in self.span:
+            return 2.6
+        self.curves.append("lower")
+        return 1.3
+
+
+def test_where_the_highest_peak_ends_the_next_one_is_the_least():
+    found = FallsAndEnds().run()
+    assert (found.best.value, found.best.kind, found.checked) == (1.3, "end", True)
 
 
 def test_two_numbers_are_chosen_together(scene):

@@ -64,6 +64,7 @@ class Search:
 
     def run(self, known: Lowest | None = None, progress: Progress | None = None) -> Lowest:
         """The least peak; from what was found with fewer harmonics, or else from both ends of the range."""
+        checked = False
         if known is None:
             for value in self.span:
                 self.visit(value)
@@ -73,9 +74,13 @@ class Search:
             if progress is not None:
                 progress(count / (count + 2.0))
             best = self.best()
-            checked = best is not None and self.visit(best.s) <= best.value * (1.0 + HIGHER)
-            if best is None or checked:
+            if best is None:
                 break
+            before = len(self.curves)
+            top = self.visit(best.s)
+            checked = top <= best.value * (1.0 + HIGHER)
+            if checked and (top >= best.value * (1.0 - HIGHER) or len(self.curves) == before):
+                break  # else a higher one is there; or lower ones, where the followed one ends
         return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> Least | None:
