@@ -50,7 +50,13 @@ def direct(force, omega):
 
 @pytest.mark.parametrize(
     "direction, moved",
-    [("x", [1, 1, 1, 0]), ("y", [0, 0, 0, 1]), ({"1x": 1, "2y": 0.5}, [1, 0, 0, 0.5]), ("3x", [0, 0, 1, 0])],
+    [
+        ("x", [1, 1, 1, 0]),
+        ("y", [0, 0, 0, 1]),
+        ({"1x": 1, "2y": 0.5}, [1, 0, 0, 0.5]),
+        ({"x": 0.6, "y": -0.8}, [0.6, 0.6, 0.6, -0.8]),
+        ("3x", [0, 0, 1, 0]),
+    ],
 )
 def test_a_base_that_moves(direction, moved):
     """Displacements relative to the base: M x'' + C x' + K x = -M d a."""
@@ -118,6 +124,9 @@ def test_the_base_is_swept():
         ({"acceleration": 1.0}, "base.direction: missing"),
         ({"acceleration": 1.0, "direction": "z"}, 'no degree of freedom is named as a node and "z"'),
         ({"acceleration": 1.0, "direction": "up"}, "base.direction: must be x, y, z or a table of weights"),
+        ({"acceleration": 1.0, "direction": {"x": "1"}}, "base.direction.x: must be a number"),
+        ({"acceleration": 1.0, "direction": {"x": 0.0}}, "base.direction: has only zero weights"),
+        ({"acceleration": 1.0, "direction": {"x": 1.0, "z": 1.0}}, 'is named as a node and "z"'),
         ({"acceleration": 1.0, "direction": 3}, "base.direction: must be a degree of freedom or a table"),
         ({"acceleration": 1.0, "direction": "x", "phase": "x"}, "base.phase: must be a number"),
         ({"accelration": 1.0, "direction": "x"}, 'did you mean "acceleration"?'),

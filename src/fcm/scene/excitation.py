@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray, Force, Load
 from fcm.scene.names import Names, at_node
-from fcm.scene.rules import RULES
+from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
 TRANSLATIONS = ("x", "y", "z")
@@ -46,16 +47,36 @@ def read_base(top: Section, dofs: Names | None, matrices: bool) -> list[dict[str
 def _direction(section: Section, dofs: Names | None) -> FloatArray | None:
     """The displacement of all degrees of freedom when the base moves by 1."""
     value = section.data.get("direction")
-    if not isinstance(value, str) or value not in TRANSLATIONS:
-        if isinstance(value, str) and dofs is not None and not dofs.find(value):
-            section.wrong("direction", f"must be x, y, z or a table of weights, is {quoted(value)}")
-            return None
-        return section.weights("direction", dofs)
+    if isinstance(value, str) and value in TRANSLATIONS:
+        return _translation(section, value, dofs)
+    if isinstance(value, Mapping) and value and set(value) <= set(TRANSLATIONS):
+        return _oblique(section, value, dofs)
+    if isinstance(value, str) and dofs is not None and not dofs.find(value):
+        section.wrong("direction", f"must be x, y, z or a table of weights, is {quoted(value)}")
+        return None
+    return section.weights("direction", dofs)
+
+
+def _oblique(section: Section, weights: Mapping[str, Any], dofs: Names | None) -> FloatArray | None:
+    """Of a motion along several axes, as { x = 0.6, y = 0.8 }."""
+    before, path = section.mistakes.count, section.at("direction")
+    each = {axis: section.checked(weight, f"{path}.{axis}", ANY) for axis, weight in weights.items()}
+    if section.mistakes.count == before and not any(each.values()):
+        section.wrong("direction", "has only zero weights, so nothing moves")
+    along = [(weight, _translation(section, axis, dofs)) for axis, weight in each.items()]
+    if section.mistakes.count > before:
+        return None
+    moved = [weight * one for weight, one in along if one is not None]
+    return np.sum(moved, axis=0, dtype=np.float64) if moved else None
+
+
+def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray | None:
+    """Of a motion by 1 along one axis."""
     if dofs is None:
         return None
-    moved = [at_node(name).endswith(value) and not at_node(name).endswith(f"r{value}") for name in dofs]
+    moved = [at_node(name).endswith(axis) and not at_node(name).endswith(f"r{axis}") for name in dofs]
     if not any(moved):
-        what = f"no degree of freedom is named as a node and {quoted(value)}; give a table of weights"
+        what = f"no degree of freedom is named as a node and {quoted(axis)}; give a table of weights"
         section.wrong("direction", what)
         return None
     return np.array(moved, dtype=np.float64)
