@@ -81,6 +81,22 @@ def forces_of(
             out[i, k] = kernel.forces[k]
 
 
+def states_of(
+    kernel: PeriodicContact,
+    x: cython.double[:, ::1],
+    first: cython.Py_ssize_t,
+    contact: cython.double[::1],
+    out: cython.int[:, ::1],
+) -> None:
+    """States of the cycles of the same, (point, piece); beyond the last as before."""
+    i: cython.Py_ssize_t
+    p: cython.int
+    for i in range(x.shape[0]):
+        kernel.evaluate(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0, False)
+        for p in range(kernel.cycle.pieces):
+            out[i, p] = kernel.cycle.state[p]
+
+
 def borne(
     kernel: PeriodicContact,
     measures: Measures,
@@ -93,7 +109,7 @@ def borne(
     i: cython.Py_ssize_t
     for i in range(x.shape[0]):
         kernel.evaluate(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0, False)
-        measures.measure(contact[1])
+        measures.bear(contact[1])
         out[i, 0] = max(measures.greatest_load, 0.0)
         out[i, 1], out[i, 2] = measures.greatest_friction, measures.slip_path
         out[i, 3] = measures.dissipation

@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.loop import sequences
-from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation import Path
 from fcm.harmonic.error import Reported, reported
-from fcm.harmonic.points import Points, borne
+from fcm.harmonic.points import Points, borne, states_of
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
-OPEN, STUCK = 0, 4  # of a whole cycle, as in `fcm.contact.periodic`
-LETTERS = {0: "E", 1: "P", -1: "N", 2: "S"}
+NONE = 3  # beside the states of a cycle: no state
+LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1
 
 IntArray = npt.NDArray[np.intp]
 ComplexArray = npt.NDArray[np.complex128]
@@ -98,27 +97,22 @@ def states(system: System, z: FloatArray) -> npt.NDArray[np.str_]:
     """
     single = system.harmonics == (1,)
     each = [
-        _single(contact, x) if single else _several(system, contact, x)
-        for contact, x in zip(system.scene.contacts, _blocks(system, z), strict=True)
+        _single(contact, x) if single else _several(system, number, z)
+        for number, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True))
     ]
     return np.stack(each, axis=1) if each else np.empty((z.shape[0], 0), dtype="<U6")
 
 
-def _several(system: System, contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
-    words = []
-    for kernel in _cycles(system, contact, x):
-        cycle = kernel.cycle
-        shown = [LETTERS[cycle.state[i]] for i in range(cycle.pieces)]
-        words.append({OPEN: "S", STUCK: "E"}.get(kernel.kind) or "".join(shown))
-    return np.array(words)
-
-
-def _cycles(system: System, contact: Contact, x: FloatArray) -> Iterator[PeriodicContact]:
-    """The cycle of a contact at each point, one after the other in the same place."""
-    kernel = periodic_contact(system.harmonics, system.harmonics)
-    for motion in np.ascontiguousarray(x):
-        kernel.at(motion, contact.mu, contact.k_u, contact.k_v, contact.n_0, 0.0, False)
-        yield kernel
+def _several(system: System, number: int, z: FloatArray) -> npt.NDArray[np.str_]:
+    """Words of a contact, (point,)."""
+    kernel, c = periodic_contact(system.harmonics, system.harmonics), system.scene.contacts[number]
+    found = np.full((z.shape[0], kernel.cycle.state.shape[0]), NONE, dtype=np.intc)
+    law, first = np.array([c.mu, c.k_u, c.k_v, c.n_0]), number * (2 + 4 * len(system.harmonics))
+    states_of(kernel, np.ascontiguousarray(z), first, law, found)
+    longest = int((found != NONE).sum(axis=1).max(initial=1))
+    letters = np.ascontiguousarray(LETTERS[found[:, :longest]])
+    words: npt.NDArray[np.str_] = letters.view(f"<U{longest}")[:, 0]
+    return words
 
 
 def cycles(system: System, z: FloatArray) -> FloatArray:

@@ -12,6 +12,8 @@ cdef class Measures:
     cdef readonly double[::1] value
     cdef double[::1] points, weights
     cdef void measure(self, double k_u) noexcept nogil
+    cdef void bear(self, double k_u) noexcept nogil
+    cdef void greatest(self) noexcept nogil
     cdef void extremes(self) noexcept nogil
     cdef void friction(self) noexcept nogil
     cdef int piece(self, double theta) noexcept nogil

@@ -98,6 +98,24 @@ class Measures:
         self.slips(k_u)
         self.sign()
 
+    def bear(self, k_u: float) -> None:
+        """Of these the greatest load and friction, the energy and the way of the slip, which cost less."""
+        self.motion.sample()
+        self.friction()
+        self.greatest()
+        self.slips(k_u)
+
+    def greatest(self) -> None:
+        """The greatest load, at one of the extremes that `friction` has found."""
+        i: cython.int
+        value: float
+        high: float = self.motion.at[LOAD, 0]
+        for i in range(self.crossings.count):
+            if self.crossings.kind[i] == GREATEST_LOAD:
+                value, _ = self.motion.evaluate(LOAD, self.crossings.angle[i])
+                high = max(high, value)
+        self.greatest_load = high * self.motion.load_scale
+
     def extremes(self) -> None:
         """Of the load and of both limits, as if the contact never opened."""
         i: cython.int
@@ -198,8 +216,7 @@ class Measures:
         for i in range(parts):
             for j in range(POINTS):
                 theta = self.cycle.begin[p] + step * (i + self.points[j])
-                _, rate = self.motion.evaluate(row, theta)
-                load, _ = self.motion.evaluate(REACH, theta)
+                rate, load = self.motion.rate_and_value(row, REACH, theta)
                 rate = max(rate * self.cycle.state[p], 0.0) * self.weights[j] * step
                 self.piece_energy += rate * max(load, 0.0)
                 self.piece_path += rate

@@ -212,6 +212,27 @@ class Motion:
             slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
         return value, slope
 
+    def rate_and_value(self, row: cython.int, other: cython.int, theta: float) -> tuple[float, float]:
+        """Slope of a row and value of another at an angle."""
+        c_1: float = cos(theta)
+        s_1: float = sin(theta)
+        c: float = c_1
+        s: float = s_1
+        turned: float
+        slope: float = 0.0
+        value: float = self.mean[other]
+        h: cython.int = 1
+        k: cython.int
+        for k in range(self.count):
+            while h < self.number[k]:
+                turned = c * c_1 - s * s_1
+                s = s * c_1 + c * s_1
+                c = turned
+                h += 1
+            slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
+            value += self.re[other, k] * c - self.im[other, k] * s
+        return slope, value
+
     def node_before(self, theta: float) -> cython.int:
         """Number of the last node at or before an angle; not reduced to one turn."""
         return cython.cast(cython.int, floor((theta - self.first) / self.step))
