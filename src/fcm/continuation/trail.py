@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.place import Place
 
-ROOM = 64  # points for which there is room at first
+ROOM = 256  # points for which there is room at first
 
 
 class Kept(NamedTuple):

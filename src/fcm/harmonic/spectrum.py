@@ -73,8 +73,10 @@ class Spectrum:
 
     def verdict(self, without_nearest: bool = False) -> Verdict:
         """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
-        real = sorted(self.positive, key=abs)[without_nearest:]
-        most = max((size for size in real if size > STABLE), default=-math.inf)
+        most = -math.inf
+        if self.positive:
+            real = sorted(self.positive, key=abs)[without_nearest:]
+            most = max((size for size in real if size > STABLE), default=most)
         growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.REAL)
         return Verdict(float(growth <= STABLE), growth, kind, self.turn)
 
