@@ -36,9 +36,8 @@ def traced(
     elsewhere, whose branches are traced too.
     """
     span = system.scene.frequency_range
-    exact = system.with_harmonics(system.harmonics)  # no table is asked for solutions to start from
     reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
-    looked = tuple(solutions(exact, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
+    looked = tuple(solutions(system, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
     starts = [*(z for found in looked for z in found.solutions), *near]
     branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
     return Traced(_steady(system, branches), looked)
