@@ -11,7 +11,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.further import HIGHEST
-from fcm.harmonic.start import Found
+from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
 from fcm.scene.model import FloatArray
@@ -71,6 +71,23 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
             return found
         found = then
     return found
+
+
+def given(system: System, progress: Progress | None = None) -> Accurate:
+    """The response with the harmonics that a system has.
+
+    Traced with half of them first, or with those that tell how far the level of all is to be followed: what
+    is beside its stable peaks with all is a start, too, as the level of the forces may not lead to it.
+    """
+    count, few = len(system.harmonics), few_of(system)
+    fewer = system.harmonics[: max(count // 2, few) if count > few else count // 2]
+    if not fewer or not system.scene.contacts:
+        return estimated(system, np.inf, progress)
+    before = system.with_harmonics(fewer)
+    response = traced(before)
+    paths = response.branches.paths
+    near = beside(before, paths, [reported(before, path).amplitude for path in paths], system.harmonics)
+    return estimated(system, np.inf, progress, response.looked, near)
 
 
 def estimated(

@@ -55,8 +55,8 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     """
     most = highest(system, omega)
     linear = min(BEFORE * least(system, omega), 1.0)
-    if reach is None and len(system.harmonics) > _few(system):
-        few = system.with_harmonics(system.harmonics[: _few(system)])
+    if reach is None and len(system.harmonics) > few_of(system):
+        few = system.with_harmonics(system.harmonics[: few_of(system)])
         reach = _reach(level_curve(few, omega, (0.0, most), linear=linear))
     top = most if reach is None else min(reach, most)
     path = level_curve(system, omega, (0.0, top), linear=linear)
@@ -65,12 +65,12 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     if not found:
         found = list(_from_linear(system, omega))
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    enough = len(system.harmonics) >= _few(system)
+    enough = len(system.harmonics) >= few_of(system)
     return Found(omega, tuple(found), complete, _reach(path) if enough else np.inf)
 
 
-def _few(system: System) -> int:
-    """How many harmonics tell how far more are to be followed."""
+def few_of(system: System) -> int:
+    """How many harmonics tell how far the level of more is to be followed."""
     contacts = max(len(system.scene.contacts), 1)
     return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
-from fcm.harmonic.choice import Accurate, accurate, estimated
+from fcm.harmonic.choice import Accurate, accurate, given
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
@@ -81,7 +81,7 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
     by_need = wanted.harmonics is None
     try:
-        found = accurate(system, wanted.accuracy) if by_need else estimated(system, np.inf)
+        found = accurate(system, wanted.accuracy) if by_need else given(system)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     if wanted.table is not None:
