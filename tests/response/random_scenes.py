@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,8 +15,14 @@ import numpy as np
 from fcm.response import Curve, trace
 from fcm.scene.model import Contact, Force, Modal, Scene
 
+if __package__:
+    from .in_time import in_time
+else:  # run as a program
+    from in_time import in_time
+
 STEPS = (0.1, 0.05, 0.02)
 AGREE = 1e-5  # relative, of peaks and folds between the steps
+SECONDS = 120  # of a processor, for a scene
 
 
 def random_scene(seed: int) -> Scene:
@@ -83,23 +88,24 @@ def outcome(seed: int) -> Outcome:
     return Outcome(seed, [trace(replace(scene, max_step=step)).curves[0] for step in STEPS])
 
 
-def main(count: int = 200) -> None:
+def main(count: int = 200, at_once: int = 2) -> None:
     reasons: Counter[str] = Counter()
-    agree, differ = 0, []
-    with ProcessPoolExecutor() as processes:
-        for done, result in enumerate(processes.map(outcome, range(count)), start=1):
-            print(f"\r{done} of {count}", end="", file=sys.stderr, flush=True)
-            reasons.update(result.reasons)
-            if result.complete:
-                good = result.disagreement < AGREE
-                agree += good
-                differ += [] if good else [(result.seed, result.disagreement)]
-    print(file=sys.stderr)
+    agree, differ, late = 0, [], []
+    for seed, result in in_time(outcome, range(count), SECONDS, at_once):
+        if result is None:
+            late.append(seed)
+            continue
+        reasons.update(result.reasons)
+        if result.complete:
+            good = result.disagreement < AGREE
+            agree += good
+            differ += [] if good else [(seed, result.disagreement)]
     print(f"{count} random scenes, each with the step limits {STEPS}")
     print(f"{agree:5d}  complete; peaks and folds agree between the steps to {AGREE:g}")
     print(f"{len(differ):5d}  complete; they differ by more (seed, by): {differ}")
     for reason, number in reasons.most_common():
         print(f"{number:5d}  stopped: {reason}")
+    print(f"{len(late):5d}  not done within {SECONDS} s: {late}")
 
 
 if __name__ == "__main__":
