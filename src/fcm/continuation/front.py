@@ -18,6 +18,7 @@ NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 SHARP = cython.declare(cython.double, 1e-4)  # a step this short may lead round a corner, so that it misses
 MISLED = cython.declare(cython.double, 0.5)  # of a step of a soft problem: one that misses by more is refused
+ROUNDINGS = cython.declare(cython.double, 8.0)  # a miss that is no longer than these is one
 FLAT = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
 
 
@@ -64,7 +65,9 @@ class Front:
             return False
         for i in range(self.guess.shape[0]):
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
-        self.step, self.missed = step, sqrt(missed) / step
+        # shorter steps would miss the curve by as much where rounding made the miss
+        missed = max(sqrt(missed) - ROUNDINGS * self.newton.unsure, 0.0)
+        self.step, self.missed = step, missed / step
         self.turn = along(self.here.tangent, self.newton.tangent)
         self.record(self.there, True, True)
         self.there.incline(self.problem, self.newton.scale, self.guess)

@@ -10,6 +10,7 @@ cdef class Newton:
     cdef public double[::1] tangent
     cdef public double orientation
     cdef public double moved
+    cdef public double unsure
     cdef public int evaluations
     cdef double[::1] guess
     cdef double[::1] delta

@@ -45,6 +45,7 @@ class Newton:
         self.z, self.guess = np.zeros(size), np.zeros(size)
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
         self.orientation, self.moved = 0.0, 0.0
+        self.unsure = 0.0  # length of the last step of `correct`, if rounding made it
         self.evaluations = 0
 
     @cython.ccall
@@ -64,6 +65,7 @@ class Newton:
         ratio: cython.double
         before: cython.double = reach
         self.guess[:] = self.z
+        self.unsure = 0.0
         for count in range(ITERATIONS):
             if not self.factor():
                 return False
@@ -90,6 +92,7 @@ class Newton:
             if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
                 return self.direct()
             if noise:
+                self.unsure = step
                 return self.direct()
             before = step
         return False
