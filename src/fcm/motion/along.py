@@ -77,7 +77,8 @@ class Along:
                 (self.flows.forced[slot, j, 0, i] * by_sine + self.flows.forced[slot, j, 1, i] * by_cosine)
                 + self.flows.forced[slot, j, 2, i] * sine
             ) + self.flows.forced[slot, j, 3, i] * cosine
-        self._turn(self.flows.turn[slot, j, 0], self.flows.turn[slot, j, 1], self.flows.step[slot] * (1 << j))
+        h: cython.double = self.flows.step[slot] * (1 << j)
+        self._turn(self.flows.turn[slot, j, 0], self.flows.turn[slot, j, 1], h)
 
     @cython.cfunc
     @cython.nogil
@@ -126,7 +127,7 @@ class Along:
     @cython.nogil
     @cython.exceptval(check=False)
     def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
-        """The derivatives by the start by a part x of a step: by its matrix, or, where that is more work, row by row."""
+        """Those by the start by a part x of a step: by its matrix or, where that is more work, row by row."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t

@@ -104,7 +104,7 @@ class Derivative(Along):
         by_state: cython.double[:, ::1],
         by_frequency: cython.double[::1],
     ) -> int:
-        """Fill the derivatives of x at the end of segments that last for periods, which the frequency shortens.
+        """Fill the derivatives of x at the end of segments that last for periods; frequency shortens them.
 
         By x at their start, (unknown, unknown), and by the frequency; returns what `go` does.
         """

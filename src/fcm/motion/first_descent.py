@@ -19,7 +19,9 @@ N = 19  # degree, ORDER of fcm.motion.pool
 DEEPEST = 50  # halvings
 _N = cython.declare(cython.int, 19)
 _DEEPEST = cython.declare(cython.int, 50)
-NOTHING = cython.declare(cython.double, 1e-20)  # of what the powers add up to: those above the last that is more are left out
+NOTHING = cython.declare(
+    cython.double, 1e-20
+)  # of what the powers add up to: those above the last that is more are left out
 
 
 def _weights(degree: int) -> FloatArray:
@@ -211,8 +213,8 @@ def _root(
 ) -> cython.double:
     """Newton's method, kept inside a bracket with the only root: positive at low, negative at high.
 
-    The first of `ends` and that of the degree are the values there, but for rounding; it begins on the line between,
-    away from low, where there may be a root as well, of a touch.
+    The first of `ends` and that of the degree are the values there, but for rounding; it begins on the line
+    between, away from low, where there may be a root as well, of a touch.
     """
     x: cython.double = low + (high - low) * min(max(ends[0] / (ends[0] - ends[degree]), 0.25), 1.0)
     value: cython.double

@@ -154,9 +154,7 @@ class Flows(Forced):
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
         for j in range(_ORDER + 1):
-            powers[e, j] = (
-                self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
-            )
+            powers[e, j] = self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
         for i in range(n):
             x = y[k, i]
             if x != 0.0:

@@ -1,7 +1,8 @@
 """The integrals of the modal displacements over a motion, and of their products with sin and cos.
 
 Over a step a displacement is the polynomial with its first `TERMS` Taylor coefficients at both ends; that and
-its integrals times exp(i theta) are exact to rounding: what is left out is of the order 1e-19.
+its integrals times exp(i theta) are exact to rounding: what is left out is of the order 1e-19. All that is
+linear in the state vector, so the vectors of all whole steps are summed before their coefficients are made.
 """
 
 from __future__ import annotations
@@ -51,8 +52,8 @@ class Integrals(Walk):
         Walk.__init__(self, flows)
         self.sums = np.zeros((3, flows.modes))
         self._nodes, self._shares = _ON_ONE
-        self._weights, self._part = np.zeros((3, 2 * TERMS)), np.zeros((3, flows.modes))
-        self._near, self._far = np.zeros((TERMS, flows.size)), np.zeros((TERMS, flows.size))
+        self._weights, self._terms = np.zeros((3, 2 * TERMS)), np.zeros((TERMS, flows.size))
+        self._there, self._sums = np.zeros((2, flows.size)), np.zeros((6, flows.size))
 
     def begins(self, segments: Segments) -> None:
         """Stand before the first segment, with nothing summed."""
@@ -67,44 +68,79 @@ class Integrals(Walk):
     @cython.nogil
     @cython.exceptval(check=False)
     def visit(self, slot: cython.Py_ssize_t) -> cython.void:
-        """Step by step, and over what is left of one."""
-        left: cython.double = self.segments.length[self.at]
+        """Over all whole steps, and over what is left of one."""
         h: cython.double = self.flows.step[slot]
+        whole: cython.longlong = cython.cast(cython.longlong, self.segments.length[self.at])
+        x: cython.double = self.segments.length[self.at] - whole
         i: cython.Py_ssize_t
-        j: cython.int
-        size: cython.double = 1.0
+        b: cython.int
         for i in range(self.flows.size):
-            self._near[0, i] = self.segments.y[self.at, i]
-        self.flows.extend(slot, self._near, _TERMS - 1, h, self._near, False)
-        if left >= 1.0:
-            self._weigh(self.flows.omega * h)
-        while left >= 1.0:
-            for i in range(self.flows.size):
-                self._far[0, i] = self._near[0, i]
-            self.flows.advance(slot, 0, self._far, 0)
-            self.flows.extend(slot, self._far, _TERMS - 1, h, self._far, False)
-            self._add(h)
-            for j in range(_TERMS):
+            self._there[0, i] = self.segments.y[self.at, i]
+        if whole > 0:
+            for b in range(6):
                 for i in range(self.flows.size):
-                    self._near[j, i] = self._far[j, i]
-            left -= 1.0
-        if left > 0.0:
+                    self._sums[b, i] = 0.0
+            self._steps(slot, whole)
+            self._weigh(self.flows.omega * h)
+            for b in range(2):
+                self._take(slot, self._sums, 3 * b, h, b, 1.0, 0.0, 0.0)
+                self._take(slot, self._sums, 3 * b + 1, h, b, 0.0, 1.0, 0.0)
+                self._take(slot, self._sums, 3 * b + 2, h, b, 0.0, 0.0, 1.0)
+        if x > 0.0:
+            self._weigh(self.flows.omega * x * h)
+            sine: cython.double = self._there[0, self.flows.linear]
+            cosine: cython.double = self._there[0, self.flows.linear + 1]
+            self._take(slot, self._there, 0, x * h, 0, 1.0, sine, cosine)
+            self.flows.part(slot, x, self._there, 0, 1)
+            self._take(slot, self._there, 0, x * h, 1, 1.0, sine, cosine)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _steps(self, slot: cython.Py_ssize_t, whole: cython.longlong) -> cython.void:
+        """Sum the state vectors at both ends of whole steps, times 1, sin(theta), cos(theta) at the first."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        while self.span > 0 and whole >= self.span:
             for i in range(self.flows.size):
-                self._far[0, i] = self._near[0, i]
-            self.flows.part(slot, left, self._far, 0, 1)
-            self.flows.extend(slot, self._far, _TERMS - 1, left * h, self._far, False)
-            for j in range(_TERMS):
-                for i in range(self.flows.modes):
-                    self._near[j, i] *= size
-                size *= left
-            self._weigh(self.flows.omega * left * h)
-            self._add(left * h)
+                self.ahead[0, i] = self._there[0, i]
+            with cython.gil:
+                self.reach(slot)
+            for k in range(self.span):
+                self._gather(self.ahead, k)
+            for i in range(self.flows.size):
+                self._there[0, i] = self.ahead[self.span, i]
+            whole -= self.span
+        while whole > 0:
+            for i in range(self.flows.size):
+                self._there[1, i] = self._there[0, i]
+            self.flows.advance(slot, 0, self._there, 1)
+            self._gather(self._there, 0)
+            for i in range(self.flows.size):
+                self._there[0, i] = self._there[1, i]
+            whole -= 1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _gather(self, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
+        """Add the step from row k of y to the next."""
+        i: cython.Py_ssize_t
+        sine: cython.double = y[k, self.flows.linear]
+        cosine: cython.double = y[k, self.flows.linear + 1]
+        for i in range(self.flows.size):
+            self._sums[0, i] += y[k, i]
+            self._sums[1, i] += sine * y[k, i]
+            self._sums[2, i] += cosine * y[k, i]
+            self._sums[3, i] += y[k + 1, i]
+            self._sums[4, i] += sine * y[k + 1, i]
+            self._sums[5, i] += cosine * y[k + 1, i]
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _weigh(self, angle: cython.double) -> cython.void:
-        """The weights of the coefficients in the integrals of q, q sin(angle x) and q cos(angle x) over [0, 1]."""
+        """The weights of the coefficients in the integrals of q times 1, sin(angle x), cos(angle x)."""
         i: cython.int
         j: cython.int
         real: cython.double
@@ -123,22 +159,36 @@ class Integrals(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _add(self, h: cython.double) -> cython.void:
-        """Over a step of that length [s]."""
+    def _take(
+        self,
+        slot: cython.Py_ssize_t,
+        y: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        h: cython.double,
+        end: cython.int,
+        one: cython.double,
+        sine: cython.double,
+        cosine: cython.double,
+    ) -> cython.void:
+        """Add what row k of y does at the first (0) or last (1) end of steps of length h [s].
+
+        It is what it is, or a sum over steps of it times sin or cos of the forces' angle at the first end.
+        """
         i: cython.Py_ssize_t
         j: cython.int
-        b: cython.int
-        sine: cython.double = h * self._near[0, self.flows.linear]
-        cosine: cython.double = h * self._near[0, self.flows.linear + 1]
-        for b in range(3):
+        w: cython.int
+        even: cython.double
+        by_sine: cython.double
+        by_cosine: cython.double
+        for i in range(self.flows.size):
+            self._terms[0, i] = y[k, i]
+        self.flows.extend(slot, self._terms, _TERMS - 1, h, self._terms, False)
+        for j in range(_TERMS):
+            w = end * _TERMS + j
+            even = h * one * self._weights[0, w]
+            by_sine = h * (sine * self._weights[2, w] + cosine * self._weights[1, w])
+            by_cosine = h * (cosine * self._weights[2, w] - sine * self._weights[1, w])
             for i in range(self.flows.modes):
-                self._part[b, i] = 0.0
-            for j in range(_TERMS):
-                for i in range(self.flows.modes):
-                    self._part[b, i] += (
-                        self._weights[b, j] * self._near[j, i] + self._weights[b, _TERMS + j] * self._far[j, i]
-                    )
-        for i in range(self.flows.modes):
-            self.sums[0, i] += h * self._part[0, i]
-            self.sums[1, i] += sine * self._part[2, i] + cosine * self._part[1, i]
-            self.sums[2, i] += cosine * self._part[2, i] - sine * self._part[1, i]
+                self.sums[0, i] += even * self._terms[j, i]
+                self.sums[1, i] += by_sine * self._terms[j, i]
+                self.sums[2, i] += by_cosine * self._terms[j, i]

@@ -1,7 +1,7 @@
 """The first exit of a segment that is passed: none missed, and most steps not looked at one by one.
 
-The exits are known on up to `BLOCK` steps at once; a cubic and a bound of what it leaves out say in which of these
-steps one may be passed, and only there its power series is searched.
+The exits are known on up to `BLOCK` steps at once; a cubic and a bound of what it leaves out say in which of
+these steps one may be passed, and only there its power series is searched.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _WHOLE = cython.declare(cython.int, 3)  # BLOCK is 2**3 steps
 
 @cython.cclass
 class Lookout:
-    """Goes along the flow `slot`; of exits that are zero at its start, `touched`, the power series in `powers`.
+    """Goes along the flow `slot`; of exits that are zero at its start, `touched`, the series are in `powers`.
 
     Where the segment ends, `there` is the state before the last part of a step, which is `inside`, at the
     position `base` + that part; `exit` is what ends it, or -1 where `left` steps have gone by. `slack` is a
@@ -50,7 +50,7 @@ class Lookout:
     @cython.nogil
     @cython.exceptval(check=False)
     def begin(self, y: cython.double[:, ::1], left: cython.double) -> cython.void:
-        """Begin a segment of at most so many steps at y, with the powers of the exits that are touched there."""
+        """Begin a segment of at most so many steps at y, the powers of the exits touched there known."""
         i: cython.Py_ssize_t
         e: cython.Py_ssize_t
         self.base, self.left, self._doubled = 0.0, left, _FIRST

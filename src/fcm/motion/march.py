@@ -44,9 +44,7 @@ class March:
         self._noise, self._failed = np.zeros(d), np.zeros(2 * c + 1, np.int8)
         self.segments = Segments(d, c)
 
-    def begins(
-        self, y: cython.double[::1], states: cython.schar[::1], duration: float, limit: int
-    ) -> None:
+    def begins(self, y: cython.double[::1], states: cython.schar[::1], duration: float, limit: int) -> None:
         """Set the state vector (d,), the contacts' states (contact,) and the time to march [s]."""
         i: cython.Py_ssize_t
         for i in range(self.flows.size):

@@ -106,9 +106,10 @@ class Pool:
         n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
-            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,), "made_for": (), "used": (),
-            "row": (e, n), "power": (POWERS, n, n), "forced": (POWERS, 4, n), "turn": (POWERS, 2),
-            "reached": (), "looked": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
+            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
+            "made_for": (), "used": (), "row": (e, n), "power": (POWERS, n, n),
+            "forced": (POWERS, 4, n), "turn": (POWERS, 2), "reached": (), "looked": (),
+            "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip

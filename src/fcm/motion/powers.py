@@ -95,9 +95,7 @@ class Powers(Walk):
                 ratio = -ratio
             rate = 0.0
             for i in range(m):
-                rate += self._y[0, m + i] * (
-                    self.flows.tangential[j, i] - ratio * self.flows.normal[j, i]
-                )
+                rate += self._y[0, m + i] * (self.flows.tangential[j, i] - ratio * self.flows.normal[j, i])
             slip += self._y[0, 2 * m + j] * rate
         self.work += weight * power
         self.slip += weight * slip

@@ -3,6 +3,7 @@ from fcm.motion.walk cimport Walk
 cdef class Rows:
     cdef readonly Py_ssize_t count
     cdef double[::1] entry
+    cdef double[:, ::1] dense
     cdef Py_ssize_t[::1] column, first
 
 cdef class Scan(Walk):
@@ -11,7 +12,10 @@ cdef class Scan(Walk):
     cdef Rows _rows
     cdef double[::1] _powers
     cdef double[:, ::1] _there, _terms, _old, _new
+    cdef double[:, :, ::1] _values
     cdef double _first, _length
+    cdef void _span(self, Py_ssize_t slot) noexcept nogil
+    cdef void _step(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k) noexcept nogil
     cdef void _look(self, Py_ssize_t slot, double[:, ::1] out) noexcept nogil
     cdef bint _may_turn(self, Py_ssize_t r) noexcept nogil
     cdef double _dot(self, Py_ssize_t r, double[:, ::1] y, Py_ssize_t k) noexcept nogil

@@ -32,7 +32,7 @@ class Rows:
 
     def __init__(self, rows: FloatArray) -> None:
         places = np.nonzero(rows)
-        self.count = rows.shape[0]
+        self.count, self.dense = rows.shape[0], np.ascontiguousarray(rows.T)
         self.entry, self.column = rows[places], places[1].copy()
         self.first = np.searchsorted(places[0], np.arange(self.count + 1))
 
@@ -51,6 +51,7 @@ class Scan(Walk):
         self.place, self._powers = np.zeros((rows.count, 4)), np.zeros(ORDER + 1)
         self._there, self._terms = np.zeros((4, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._old, self._new = np.zeros((3, rows.count)), np.zeros((3, rows.count))
+        self._values = np.zeros((3, self.span + 1, rows.count))
         self._first, self._length = 0.0, 0.0
 
     def begins(self, segments: Segments) -> None:
@@ -68,13 +69,15 @@ class Scan(Walk):
         left: cython.double = self.segments.length[self.at]
         i: cython.Py_ssize_t
         r: cython.Py_ssize_t
-        expanded: cython.bint
         self._first = 0.0
         for i in range(self.flows.size):
             self._there[0, i] = self.segments.y[self.at, i]
         self._look(slot, self._old)
         for r in range(self.greatest.shape[0]):
             self._note(r, 0.0, self._old[0, r])
+        while self.span > 0 and left >= self.span:
+            self._span(slot)
+            left -= self.span
         while left > 0.0:
             self._length = min(left, 1.0)
             for i in range(self.flows.size):
@@ -84,18 +87,64 @@ class Scan(Walk):
             else:
                 self.flows.part(slot, self._length, self._there, 0, 1)
             self._look(slot, self._new)
-            expanded = False
-            for r in range(self.greatest.shape[0]):
-                if self._may_turn(r):
-                    if not expanded:
-                        self.flows.taylor(slot, self._there, 3, self._terms)
-                        expanded = True
-                    self._extremes(r)
-                self._note(r, self._length, self._new[0, r])
-                for i in range(3):
-                    self._old[i, r] = self._new[i, r]
+            self._step(slot, self._there, 3)
             left -= 1.0
-            self._first += 1.0
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _span(self, slot: cython.Py_ssize_t) -> cython.void:
+        """Over as many whole steps as `ahead` has."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        j: cython.int
+        self._length = 1.0
+        for i in range(self.flows.size):
+            self.ahead[0, i] = self._there[0, i]
+        with cython.gil:
+            self.reach(slot)
+            self.values(slot)
+        for k in range(self.span):
+            for j in range(3):
+                for r in range(self._rows.count):
+                    self._new[j, r] = self._values[j, k + 1, r]
+            self._step(slot, self.ahead, k)
+        for i in range(self.flows.size):
+            self._there[0, i] = self.ahead[self.span, i]
+
+    def values(self, slot: cython.Py_ssize_t) -> None:
+        """What `_look` tells of the state vectors `ahead`."""
+        n: cython.Py_ssize_t = self.flows.linear
+        rows, y = np.asarray(self._rows.dense), np.asarray(self.ahead)
+        out, forces = np.asarray(self._values), np.zeros((2, 3, self.flows.size))
+        for b in range(2):
+            forces[b, 0, n + b] = 1.0
+            self.flows.extend(slot, forces[b], 2, self.flows.step[slot], forces[b], False)
+        np.matmul(y[:, :n], rows, out=out[0])
+        for j in (1, 2):
+            term = np.asarray(self.flows.terms)[slot, j].reshape(n, n)
+            by_state = np.vstack((term @ rows, forces[:, j, :n] @ rows))
+            np.matmul(y, j * by_state, out=out[j])
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _step(self, slot: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
+        """Over a step from row k of y, between what is old and what is new."""
+        r: cython.Py_ssize_t
+        i: cython.int
+        expanded: cython.bint = False
+        for r in range(self.greatest.shape[0]):
+            if self._may_turn(r):
+                if not expanded:
+                    self.flows.taylor(slot, y, k, self._terms)
+                    expanded = True
+                self._extremes(r)
+            self._note(r, self._length, self._new[0, r])
+            for i in range(3):
+                self._old[i, r] = self._new[i, r]
+        self._first += 1.0
 
     @cython.cfunc
     @cython.nogil
@@ -136,9 +185,15 @@ class Scan(Walk):
         """Of row r with row k of y."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        for i in range(self._rows.first[r], self._rows.first[r + 1]):
+        other: cython.double = 0.0  # two sums, for one would wait for each addition
+        first: cython.Py_ssize_t = self._rows.first[r]
+        half: cython.Py_ssize_t = (self._rows.first[r + 1] - first) // 2
+        for i in range(first, first + half):
             total += self._rows.entry[i] * y[k, self._rows.column[i]]
-        return total
+            other += self._rows.entry[half + i] * y[k, self._rows.column[half + i]]
+        for i in range(first + 2 * half, self._rows.first[r + 1]):
+            total += self._rows.entry[i] * y[k, self._rows.column[i]]
+        return total + other
 
     @cython.cfunc
     @cython.nogil

@@ -21,7 +21,7 @@ class Segments:
     """Arrays over segments, of which the first `count` are there.
 
     A segment begins at the time `start` [s] with the state vector `y` (d,), lasts for `length` steps of the
-    flow of its `states` (contact,), and is `ended` by the exit of that number, or (-1) by the end of the motion.
+    flow of its `states` (contact,), and is `ended` by that exit of it, or (-1) by the end of the motion.
     While it lasts, the exits of each contact are no less than `slack` (contact,).
     """
 

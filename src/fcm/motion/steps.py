@@ -21,7 +21,7 @@ MISSING = -1
 
 @cython.cclass
 class Steps:
-    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x up to `length` of `h` [s]."""
+    """The steps of segments: from `time` [s] on, y is the sum of terms[j] x**j, x to `length` of `h` [s]."""
 
     def __init__(self, flows: Flows, segments: Segments) -> None:
         self.flows, self.segments = flows, segments

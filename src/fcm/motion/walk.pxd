@@ -4,6 +4,7 @@ from fcm.motion.segments cimport Segments
 cdef class Walk:
     cdef readonly Flows flows
     cdef readonly Segments segments
-    cdef readonly Py_ssize_t at
+    cdef readonly Py_ssize_t at, span
+    cdef double[:, ::1] ahead
     cdef int _go(self) noexcept nogil
     cdef void visit(self, Py_ssize_t slot) noexcept nogil

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import cython
+import numpy as np
+
+from fcm.motion.pool import SMALL
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
@@ -12,12 +15,22 @@ else:
     from fcm.motion.segments import Segments
 
 
+DENSE = 32  # components from which many steps are sooner made at once, by BLAS
+DOUBLINGS = 7
+SPAN = 128  # steps, 2**DOUBLINGS
+
+
 @cython.cclass
 class Walk:
-    """`visit` is what is done along each segment that lasts; `at` is the one where it is."""
+    """`visit` is what is done along each segment that lasts; `at` is the one where it is.
+
+    Of a large system `ahead` are the state vectors on a `span` of so many steps; else that is 0.
+    """
 
     def __init__(self, flows: Flows) -> None:
         self.flows, self.segments, self.at = flows, Segments(flows.size, flows.contacts, 0), -1
+        self.span = SPAN if DENSE <= flows.linear <= SMALL else 0
+        self.ahead = np.zeros((self.span + 1, flows.size))
 
     def begins(self, segments: Segments) -> None:
         """Stand before the first segment."""
@@ -46,6 +59,19 @@ class Walk:
             else:
                 self.at += 1
         return 0
+
+    def reach(self, slot: cython.Py_ssize_t) -> None:
+        """Fill the rows of `ahead` after the first, each time as many as there are."""
+        self.flows.reach(slot, DOUBLINGS)
+        n, y = self.flows.linear, np.asarray(self.ahead)
+        powers, forced = np.asarray(self.flows.power)[slot], np.asarray(self.flows.forced)[slot]
+        for j in range(DOUBLINGS + 1):
+            k = 1 << j
+            last = min(2 * k, SPAN + 1)
+            old, new = y[: last - k], y[k:last]
+            new[:, :n] = old[:, :n] @ powers[j] + old[:, n:] @ forced[j, :2]
+            c, s = np.asarray(self.flows.turn)[slot, j]
+            new[:, n:] = old[:, n:] @ np.array([[c, -s], [s, c]])
 
     @cython.cfunc
     @cython.nogil
