@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from fcm.motion.cycle import Cycle
 from fcm.motion.first_descent import first_descent_of
 from fcm.motion.measure import extremes, measure
 from fcm.motion.system import System
+from fcm.scene import Contact, Force, Modal, Scene
 
 from .cases import SCENES, one_mode, two_contacts, yang
 
@@ -187,3 +189,54 @@ def test_a_stuck_contact_is_bounded_from_its_limits(n_0, omega):
     f, n = values[:, system.f][:, 0], n_0 + values[:, system.n][:, 0]
     room = min((mu * n - f).min(), (mu * n + f).min())
     assert room - 0.02 * mu * n.max() < cycle.segments.held(0) <= room
+
+
+def stuck_structure(modes=20):
+    """Enough components for many steps to be made at once, and two contacts that stick."""
+    rng = np.random.default_rng(5)
+    unit = np.eye(5)
+    modal = Modal(
+        tuple(f"x{i}" for i in range(5)),
+        np.ones(modes),
+        np.sort(rng.uniform(1.0, 40.0, modes)),
+        np.full(modes, 0.01),
+        rng.normal(size=(modes, 5)) / np.sqrt(modes),
+    )
+    contacts = tuple(Contact(f"c{j}", unit[2 * j], unit[2 * j + 1], 0.4, 1.0, 1.0, 1e6) for j in range(2))
+    return Scene("stuck", modal, contacts, (Force(unit[4], 3.0, 0.3),), (0.5, 3.0), 0.05)
+
+
+def test_a_long_stuck_motion_of_a_large_structure_is_measured_as_on_samples():
+    """Two hundred steps in one segment, beside samples and Gauss quadrature of them."""
+    omega = 1.1
+    cycle = simulate(stuck_structure(), omega, 2).cycles[-1]
+    assert len(cycle.segments) == 1 and cycle.segments.length[0] > 200.0
+    rows = cycle.system.displaced
+    assert rows.span > 0
+    found, shapes = measure(cycle), cycle.system.scene.modal.shapes
+    whole = np.zeros((shapes.shape[1], cycle.system.size))
+    whole[:, cycle.system.q] = shapes.T
+    x, weight = np.polynomial.legendre.leggauss(400)
+    times = 0.5 * cycle.duration * (x + 1.0)
+    values, share = cycle.values(whole, times), 0.5 * weight[:, None]
+    size = np.abs(values).max()
+    assert found.mean == pytest.approx((share * values).sum(axis=0), abs=1e-12 * size)
+    wave = 2.0 * (share * values * np.exp(1j * (0.5 * np.pi - omega * times))[:, None]).sum(axis=0)
+    assert found.fundamental * np.exp(1j * found.phase) == pytest.approx(wave, abs=1e-12 * size)
+    dense = cycle.values(whole, np.linspace(0.0, cycle.duration, 40_001))
+    assert (found.greatest >= dense.max(axis=0) - 1e-13 * size).all()
+    assert found.greatest == pytest.approx(dense.max(axis=0), abs=1e-5 * size)
+    assert found.least == pytest.approx(dense.min(axis=0), abs=1e-5 * size)
+
+
+def test_the_flows_of_a_scene_are_made_once_in_a_thread():
+    """Every system of a scene has the same; an equal scene has its own, and another thread."""
+    scene = yang()
+    flows = System(scene, 1.3).flows
+    assert System(scene, 0.9).flows is flows
+    others = []
+    one = Thread(target=lambda: others.append(System(scene, 1.3).flows))
+    one.start()
+    one.join()
+    assert others[0] is not flows
+    assert System(replace(scene), 1.3).flows is not flows
