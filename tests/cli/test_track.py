@@ -111,6 +111,7 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
         (["--over", "contact.shroud.n_0"], "--over needs --track"),
         (["--track", "folds"], "--track needs --over and --from and --to"),
         ([*FOLDS, "5", "--to", "4"], "must rise"),
+        ([*FOLDS[:3], "level", "--from", "0", "--to", "4"], "level is from 0"),
         ([*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"], "must be at least 0"),
         ([*FOLDS[:3], "contact.shroud.n0", "--from", "1", "--to", "4"], "did you mean"),
         ([*FOLDS, "1", "--to", "4", "--resume"], "--resume needs the -o FILE"),

@@ -31,7 +31,7 @@ from fcm.run import (
     place_for,
     sweep,
 )
-from fcm.scene.draft import Number, number_of
+from fcm.scene.draft import LEVEL, Number, number_of
 from fcm.scene.model import Scene
 from fcm.track.onset import KINDS as ONSETS
 
@@ -158,6 +158,10 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
             raise ResponseError(f"{number.key} {fault}")
     if not low < high:
         raise ResponseError(f"{number.key} is from {low:g} to {high:g}, but must rise")
+    if number.key == LEVEL and low <= 0.0:
+        raise ResponseError(
+            "level is from 0 or less, but must be positive: at 0 nothing moves, and nothing is special"
+        )
 
 
 def needed(
