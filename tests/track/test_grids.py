@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.continuation import Mark
+from fcm.continuation import Mark, Status, follow
+from fcm.continuation.newton import Newton
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
@@ -13,8 +14,12 @@ from fcm.response.optimum import optimise
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
+from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curves import tracks
+from fcm.track.seeds import moved
+from fcm.track.spot import Way
+from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
 PRELOAD, STIFFNESS = "contact.shroud.n_0", "contact.shroud.k_u"
@@ -91,3 +96,48 @@ def test_a_bound_at_which_the_gap_closes_is_a_bound(scene):
     assert found.values[PRELOAD] == 0.0 and found.kind == "bound"
     system, paths = run(scene, PRELOAD, 0.0)
     assert found.value == pytest.approx(recorded(system, paths).amplitude[:, 0].max(), rel=EXACT)
+
+
+def test_an_isolated_branch_is_between_the_turns_that_are_told():
+    """That no ordinary run with these harmonics reaches: it is followed from a fold of the track."""
+    modal = {
+        "dofs": ["u", "v"],
+        "frequency": [1.0, 3.7],
+        "damping": 0.01,
+        "shapes": [[0.3, 0.95], [0.95, -0.3]],
+    }
+    contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.05, "k_u": 0.5, "k_v": 3.0, "gap": 5.0}
+    data = {"modal": modal, "contact": [contact], "force": [{"dof": "v", "amplitude": 1.0}]}
+    scene = scene_from_dict(data | {"response": {"frequency": [0.7, 1.5]}})
+    gap, value = number_of(scene, "contact.c.gap"), 3.5
+    way = Way(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
+    curves = tracks(way.system, way.line, way.span, [Condition(Kind.FOLD)], (value,)).curves
+    turns = [(kind, curve.s[i]) for curve in curves for i, kind in curve.turns()]
+    assert [kind for kind, _ in turns] == ["isola", "isola"]
+    assert min(s for _, s in turns) < value < max(s for _, s in turns)
+    spots = [spot for curve in curves for spot in curve.spots if abs(spot.z[-1] - value) < 1e-9]
+    folds = np.unique([spot.z[-2] for spot in spots])
+    ordinary = traced(moved(way.system, gap.put(scene, value))).branches.paths
+    at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in ordinary])
+    closed = follow(
+        moved(way.system, gap.put(scene, value)).balance(),
+        beside_fold(way, max(spots, key=lambda spot: spot.z[-2]).z),
+        (0.7, 1.5),
+        True,
+        0.05,
+    )
+    at_closed = np.unique(closed.parameter[closed.where(Mark.FOLD)].round(10))
+    assert closed.status is Status.CLOSED
+    assert folds == pytest.approx(np.sort(np.concatenate((at_ordinary, at_closed))), rel=EXACT)
+
+
+def beside_fold(way, z):
+    """A point of the response next to a tracked fold."""
+    problem = way.tracked(Condition(Kind.FOLD))
+    problem.measure(z)
+    direction = problem.along(z)[0] * np.asarray(problem.scale)[:-1]
+    newton = Newton(problem.varied.balance)
+    newton.scale[:], newton.z[:] = np.asarray(problem.scale)[:-1], z[:-1] + 1e-2 * direction
+    newton.row[:] = direction / np.asarray(problem.scale)[:-1]
+    assert newton.correct(1e-2)
+    return np.array(newton.z)
