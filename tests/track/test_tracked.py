@@ -20,10 +20,12 @@ from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curve import Track
+from fcm.track.curves import tracks
 from fcm.track.envelope import Least
 from fcm.track.lowest import Search
 from fcm.track.spot import Ending, Spot
 from fcm.track.tracked import Condition, Kind
+from fcm.track.varied import along
 
 PRELOAD = "contact.shroud.n_0"
 
@@ -158,9 +160,10 @@ def test_an_interrupted_run_goes_on_to_the_same_curves(scene, folds, tmp_path):
 
 def test_the_window_in_the_level_is_the_one_in_the_preload(scene, folds):
     """Twice the forces with twice the preload is twice the motion: levels are 5 / n_0."""
-    levels = track(scene, "folds", "level", (0.55, 2.5), harmonics=1).tracking
-    assert levels.complete
-    turns = np.sort([5.0 / one["number"] for c in levels.curves for one in c.summary("rad/s")["turns"]])
+    system, line = System(scene, (1,)), along(number_of(scene, "level"))
+    levels = tracks(system, line, (0.55, 2.5), [Condition(Kind.FOLD)]).curves
+    assert all(curve.whole for curve in levels)
+    turns = np.sort([5.0 / curve.s[i] for curve in levels for i, _ in curve.turns()])
     expected = [one["number"] for curve in folds.curves for one in curve.summary("rad/s")["turns"]]
     assert turns == pytest.approx(np.sort([value for value in expected if value > 0.0]), abs=2e-6)
 
