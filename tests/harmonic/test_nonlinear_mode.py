@@ -1,5 +1,7 @@
 """Nonlinear modes against closed forms, energy, and the forced response near their resonance."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.linalg
@@ -146,3 +148,21 @@ def test_two_contacts_that_begin_to_slip_at_once():
     slips = both.amplitude > 1.2
     at = np.log(both.amplitude[slips])
     assert both.damping[slips] == pytest.approx(np.interp(at, np.log(one.amplitude), one.damping), rel=5e-3)
+
+
+def test_it_is_the_response_to_forces_that_do_what_its_negative_damping_does():
+    """At its frequency, to modal forces of 2 D omega^2 a Q ahead by a quarter, an ordinary run is there."""
+    scene = load_scene("yang1998-n5").in_use()
+    mode = nonlinear_mode(System(scene), 1, (1.0, 30.0), 0.05)
+    for i in range(5, mode.omega.size, 12):
+        omega, a = mode.omega[i], mode.amplitude[i]
+        pushed = np.linalg.solve(scene.modal.shapes, 2j * mode.damping[i] * omega**2 * a * mode.Q[i, 0])
+        forces = [
+            replace(force, direction=direction, amplitude=abs(F), phase=float(np.angle(1j * F)))
+            for force, direction, F in zip(scene.forces, np.eye(2), pushed, strict=True)
+        ]
+        there = replace(scene, forces=tuple(forces), frequency_range=(0.98 * omega, omega))
+        paths = traced(System(there)).branches.paths
+        ends = np.concatenate([path.z[path.parameter == omega] for path in paths])
+        off = np.abs(ends - mode.contacts[i]).max(axis=1) / a
+        assert off.min() < 1e-8
