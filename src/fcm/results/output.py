@@ -160,7 +160,8 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], 
         return file.createVariable(name, str, dims, **options)
     if kind.kind == "f":
         options["fill_value"] = np.nan
-    return file.createVariable(name, kind, dims, zlib=True, **options)
+    # padding is what shrinks, the digits of numbers hardly do: more effort than the least gains nothing
+    return file.createVariable(name, kind, dims, zlib=True, complevel=1, **options)
 
 
 def _storable(values: Any) -> Any:
