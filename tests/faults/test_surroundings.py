@@ -290,18 +290,40 @@ def test_ctrl_c_at_random_instants_is_never_a_traceback(program):
         assert run.returncode in (0, 3) and "Traceback" not in said and "Exception" not in said
 
 
+WAITS = "import threading\nthreading.Thread(target=threading.main_thread().join).start()"  # for the end
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_after_the_end_changes_nothing(program, number):
-    """While the interpreter takes itself apart: everything is written, and the exit code says so."""
+@pytest.mark.parametrize("thread", ["", WAITS])
+def test_a_signal_after_the_end_changes_nothing(program, number, thread):
+    """While the process ends, by itself or by the interpreter that takes itself apart."""
     late = f"""
-import os, sys
+import atexit, os, sys
 class Late:
     def __del__(self, kill=os.kill, process=os.getpid()):
         kill(process, {int(number)})
 sys.late = Late()
+atexit.register(Late().__del__)
+{thread}
 """
     done = program("plot", "normal", "-o", "a.svg", before=late)
     assert done.returncode == 0 and done.err == "wrote a.svg\n"
+
+
+def test_what_is_to_be_done_at_the_end_is_done(program):
+    """Functions that wait for the exit of the process, and threads that go on after the program."""
+    after = """
+import atexit, pathlib, threading
+atexit.register(pathlib.Path("at_exit").touch)
+def last():
+    threading.main_thread().join()
+    pathlib.Path("by_thread").touch()
+"""
+    start = "threading.Thread(target=last).start()\n"
+    assert program("--help", before=after).returncode == 0
+    assert program.files == ["at_exit", "one.toml", "sweep.toml"]
+    assert program("--bad", before=after + start).returncode == 2
+    assert program.files == ["at_exit", "by_thread", "one.toml", "sweep.toml"]
 
 
 def test_what_is_told_to_ignore_a_signal_ignores_it(program):
