@@ -4,13 +4,18 @@ Knows nothing of what is computed. `sweep` is given the batches and a function t
 keeps what is finished; `fingerprint` says of what the results depend.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from fcm.run.checkpoint import Checkpoint, CheckpointError, Results
-from fcm.run.elsewhere import Elsewhere
 from fcm.run.fingerprint import fingerprint
 from fcm.run.places import Factory, Gone, Here, Place, Threads
-from fcm.run.processes import Processes
 from fcm.run.sweep import Outcome, place_for, place_of, sweep
 from fcm.run.work import Compute, Interrupted, Lost, Progress, Report
+
+if TYPE_CHECKING:
+    from fcm.run.elsewhere import Elsewhere
+    from fcm.run.processes import Processes
 
 __all__ = [
     "Checkpoint",
@@ -34,3 +39,11 @@ __all__ = [
     "place_of",
     "sweep",
 ]
+
+_HOME = {"Elsewhere": "elsewhere", "Processes": "processes"}  # places that few runs need
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME:
+        return getattr(import_module(f"fcm.run.{_HOME[name]}"), name)
+    raise AttributeError(f"module 'fcm.run' has no attribute {name!r}")
