@@ -394,6 +394,86 @@ def test_a_corner_that_only_a_label_tells_of_is_turned_at(max_step):
     assert path.z[-1, 0] > 0.5
 
 
+class Pieces(Labelled):
+    """x = sum over the slopes of the pieces of a broken line in p, with corners at 2, 3, ..."""
+
+    def __init__(self, *slopes):
+        def f(x, p):
+            k = min(max(int(np.floor(p)) - 1, 0), len(slopes) - 1)
+            at = 1.0 + max(k, 0.0)
+            return x - sum(slopes[:k]) - slopes[k] * (p - at), 1.0, -slopes[k]
+
+        Labelled.__init__(self, f, None)
+        Problem.__init__(self, 2, 1, 1)
+        self.soft = True
+
+    def bound(self, z):
+        self.margin[0] = np.floor(z[2])
+        return 0
+
+
+@pytest.mark.parametrize("max_step", STEPS)
+def test_a_spike_is_gone_round_if_its_other_side_has_another_label(max_step):
+    """The parameter goes on where all else turns back, by an angle of 176 degrees."""
+    path = follow(Pieces(10.0, -10.0), start(0.0, 1.0), (1.0, 2.8), True, max_step)
+    assert path.status is Status.COMPLETE
+    assert path.z[:, 0] == pytest.approx(10.0 - 10.0 * abs(path.parameter - 2.0), abs=1e-8)
+    assert path.z[:, 0].max() == pytest.approx(10.0, abs=1e-6)
+    assert path.where(Mark.FOLD).size == 0
+
+
+def shallow():
+    """p = 3 - 0.02 |x|: a step passes the corner."""
+
+    def f(x, p):
+        side = 0.02 * (np.sign(x) or 1.0)
+        return 3.0 - side * x - p, -side, -1.0
+
+    return Labelled(f, lambda x: float(x < 0.0))
+
+
+def soft_circle():
+    circle_ = circle()
+    return Labelled(circle_.f, lambda x: 0.0)
+
+
+def evaluations_at(problem):
+    """How often it is evaluated at a place that is new."""
+    seen, evaluate = set(), problem.evaluate
+
+    def counted(z):
+        seen.add(np.asarray(z).tobytes())
+        return evaluate(z)
+
+    problem.evaluate = counted
+    return seen
+
+
+@pytest.mark.parametrize("max_step", STEPS)
+def test_a_fold_in_a_corner_within_a_step_is_found_by_few_looks(max_step):
+    """It takes forty to enclose it by halves."""
+    problem = shallow()
+    seen = evaluations_at(problem)
+    path = follow(problem, start(-1.0, 2.98), (2.98, 4.0), True, max_step)
+    (fold,) = path.where(Mark.FOLD)
+    assert path.parameter[fold] == pytest.approx(3.0, abs=1e-12)
+    assert len(seen) < 3 * len(path.z) + 25
+
+
+@pytest.mark.parametrize("max_step", STEPS)
+def test_smooth_folds_and_peaks_of_a_soft_problem(max_step):
+    """Folds at p = 4 and 0, a peak of x = 5."""
+    problem = soft_circle()
+    seen = evaluations_at(problem)
+    path = follow(problem, start(5.0, 2.0), (-1.0, 5.0), True, max_step)
+    folds, peaks = path.where(Mark.FOLD), path.where(Mark.PEAK)
+    assert path.status is Status.CLOSED
+    assert path.parameter[folds] == pytest.approx([4.0, 0.0], abs=0.1 * CLOSE)
+    assert path.z[folds, 0] == pytest.approx(3.0, abs=1e-6)
+    assert path.z[peaks, 0] == pytest.approx(5.0, abs=1e-10)
+    assert len(seen) < 3 * len(path.z) + 15
+
+
 def test_a_curve_goes_on_from_any_stage_to_the_same_points():
     stages = []
     whole = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, watch=stages.append)

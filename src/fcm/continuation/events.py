@@ -10,6 +10,7 @@ import numpy as np
 from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.front import Front
+from fcm.continuation.looks import Look, Looks
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.place import Place
 
@@ -20,8 +21,6 @@ else:
 
 LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
 FINE = cython.declare(cython.double, 1e-11)  # of a step: a root is known to this
-HIGH = cython.declare(cython.double, 1e-11)  # of an output: a peak is known to this where looking is dear
-TURNED = cython.declare(cython.double, 1e-15)  # of the parameter, to which a fold is known there
 RISE = cython.declare(
     cython.double, 1e-7
 )  # growth of an output over its size, along a unit of arc, that is not rounding
@@ -33,9 +32,6 @@ LOST = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
-
-
-Look = tuple[float, FloatArray]  # a length along the step, and the growths of the outputs there
 
 
 class Found(NamedTuple):
@@ -53,6 +49,12 @@ def found(front: Front, length: float, mark: int, place: Place) -> Found:
     """A place to keep."""
     direction = np.asarray(front.newton.scale) * np.asarray(place.tangent)
     return Found(length, mark, np.array(place.z), direction, place.orientation, front.there.shift)
+
+
+def seen(front: Front, look: Look, mark: int) -> Found:
+    """A look to keep."""
+    scale = np.asarray(front.newton.scale)
+    return Found(look.at, mark, scale * look.z, scale * look.tangent, look.orientation, front.there.shift)
 
 
 def first_margin(front: Front) -> float:
@@ -122,23 +124,24 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     here: Place = front.here
     there: Place = front.there
     events = []
-    looks: list[Look] | None = [] if front.problem.soft else None  # which are dear there
+    looks = Looks(front) if front.problem.soft else None
     for value in values:
         if (value - here.z[n]) * (value - there.z[n]) < 0.0 and front.land(value):
             events.append(found(front, front.length(front.between), Mark.STATION, front.between))
     if here.tangent[n] * there.tangent[n] < 0.0:
-        events += located(front, FOLD, 0, limit, Mark.FOLD)
+        events += located(front, FOLD, 0, limit, Mark.FOLD, looks)
     for k in range(front.problem.outputs):
         if turns(here, there, k, most[k]):
             events += located(front, PEAK, k, limit, Mark.PEAK, looks)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 
 
-def located(
-    front: Front, kind: int, k: int, limit: float, mark: int, looks: list[Look] | None = None
-) -> list[Found]:
+def located(front: Front, kind: int, k: int, limit: float, mark: int, looks: Looks | None) -> list[Found]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
-    at = root(front, kind, k, front.step, looks)
+    if looks is not None:
+        look = looks.turn(None if kind == FOLD else k)
+        return [] if look is None or look.at > limit else [seen(front, look, mark)]
+    at = root(front, kind, k, front.step)
     return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
 
 
@@ -154,19 +157,12 @@ def value(front: Front, place: Place, kind: cython.int, k: cython.Py_ssize_t) ->
 
 
 @cython.cfunc
-def root(
-    front: Front,
-    kind: cython.int,
-    k: cython.Py_ssize_t,
-    step: cython.double,
-    looks: list[Look] | None = None,
-) -> cython.double:
+def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.double) -> cython.double:
     """Length at which a function changes sign between here and there.
 
     By the secant through the last two values of opposite sign, one of them halved when it does not move
     (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
     root; but of a margin LOST: what is there may be another part of a curve that goes back in the corner.
-    The looks for peaks of other outputs are where it begins, and those for this one are added.
     """
     low: cython.double = 0.0
     high: cython.double = step
@@ -174,21 +170,8 @@ def root(
     after: cython.double = value(front, front.there, kind, k)
     at: cython.double
     now: cython.double
-    bend: cython.double
     last: cython.int = 0
-    n: cython.Py_ssize_t = front.problem.unknowns
     count: cython.int
-    for at, growths in looks or ():
-        if low < at < high and growths[k] * before > 0.0:
-            low, before = at, growths[k]
-        elif low < at < high:
-            high, after = at, growths[k]
-    if looks:  # for peaks: there is an output
-        bend = 2.0 * HIGH * abs(after - before) / (high - low) * front.here.output[k]
-        if after * after < bend:
-            return high
-        if before * before < bend:
-            return low
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high:
@@ -198,18 +181,8 @@ def root(
         if kind != MARGIN and not front.sharpen(False, kind == PEAK):
             return high
         now = value(front, front.between, kind, k)
-        if looks is not None:
-            looks.append((at, np.array(front.between.growth)))
         if now == 0.0:
             return at
-        if kind == PEAK and front.problem.soft:
-            bend = abs(after - before) / (high - low)
-            if now * now < 2.0 * HIGH * bend * front.between.output[k]:
-                return at
-        if kind == FOLD and front.problem.soft:
-            bend = abs(after - before) / (high - low)
-            if now * now * front.newton.scale[n] < 2.0 * TURNED * bend * front.between.z[n]:
-                return at
         if now * before > 0.0:
             after = 0.5 * after if last == 1 else after
             low, before, last = at, now, 1

@@ -13,17 +13,25 @@ cdef class Front:
     cdef public double turn
     cdef public int which
     cdef public double[::1] bend
+    cdef public double[::1] second
+    cdef public double[::1] third
+    cdef public bint known
+    cdef public bint cubic
     cdef double past
     cdef double[::1] guess
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
     cpdef bint go(self, double step) except -1
     cpdef bint put(self, double at, bint margins, bint outputs) except -1
+    cpdef bint near(self, double at, double[::1] guess) except -1
     cpdef bint land(self, double parameter) except -1
     cpdef int accept(self, Place place, double length) except -1
     cpdef bint sharpen(self, bint margins, bint outputs) except -1
     cpdef bint shorten(self, double at) except -1
     cpdef int drift(self, double step) except -1
     cpdef double length(self, Place place) except -1e300
+    cpdef void straighten(self) noexcept
+    cdef void learn(self, Place place, double length) noexcept
+    cdef void curve(self, Place place) noexcept
     cdef bint sought(self, double step) except -1
     cdef double rescale(self, Place place, double length) noexcept
     cdef int record(self, Place place, bint margins, bint outputs) except -1

@@ -2,6 +2,10 @@
 
 Lengths are measured in the problem's scale at the place `here`. A place at the length s lies in the plane
 through here + s tangent whose normal is that tangent.
+
+The place of a step is predicted by a parabola: by the tangent here, and the bend on the way of the last step.
+Where a problem is soft, and so every place dear, the cubic through the last place and here with both tangents
+is the other prediction, and that one is taken which would have foretold the last step better.
 """
 
 from __future__ import annotations
@@ -31,6 +35,8 @@ class Front:
         self.problem, self.newton = problem, Newton(problem)
         self.here, self.there, self.between = Place(problem), Place(problem), Place(problem)
         self.bend, self.guess = np.zeros(size), np.zeros(size)
+        self.second, self.third = np.zeros(size), np.zeros(size)
+        self.known, self.cubic = False, False
         self.step, self.missed, self.turn, self.which = 0.0, 0.0, 1.0, -1
         self.past = 0.0  # up to here the margins beyond a corner are taken as known
 
@@ -49,8 +55,15 @@ class Front:
         if not self.newton.correct(1.0):
             return 0
         self.record(self.here, True, True)
-        self.bend[:] = 0.0
+        self.straighten()
         return 1
+
+    @cython.ccall
+    @cython.exceptval(check=False)
+    def straighten(self) -> cython.void:
+        """Predict by the tangent alone: nothing is known of the way here."""
+        self.bend[:] = 0.0
+        self.known, self.cubic = False, False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -109,6 +122,15 @@ class Front:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
+    def near(self, at: cython.double, guess: cython.double[::1]) -> cython.bint:
+        """Find the place between here and there at a length, from a guess, with its outputs; its direction
+        is that exactly there."""
+        self.newton.z[:] = guess
+        self.newton.row[:] = self.here.tangent
+        return self.newton.correct(at) and self.sharpen(False, True)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def land(self, parameter: cython.double) -> cython.bint:
         """Find the place between here and there with a value of the parameter between theirs."""
         n: cython.Py_ssize_t = self.problem.unknowns
@@ -130,11 +152,64 @@ class Front:
         """Go on from a place at a length from here, 0 beyond a corner, in the scale that is right for it."""
         unit: cython.double
         self.problem.measure(place.z)
+        if self.problem.soft:
+            self.learn(place, length)
         unit = self.rescale(place, length)
         self.newton.scale[:] = self.problem.scale
         self.here.like(place, unit)
         self.past = 0.0
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def learn(self, place: Place, length: cython.double) -> cython.void:
+        """Which prediction was the better one of a place; and the cubic through here and there, for the next.
+
+        Its second and third derivative along the tangent there, in the problem's scale.
+        """
+        i: cython.Py_ssize_t
+        off: cython.double
+        parabola: cython.double = 0.0
+        cubic: cython.double = 0.0
+        across: cython.double = along(self.here.tangent, place.tangent)
+        if not (length > 0.0 and across > FLAT):
+            self.known, self.cubic = False, False
+            return
+        for i in range(self.bend.shape[0]):
+            off = (place.z[i] - self.here.z[i]) / self.newton.scale[i] - length * self.here.tangent[i]
+            parabola += (off - 0.5 * length * length * self.bend[i]) ** 2
+            cubic += (off - length * length * (0.5 * self.second[i] + length * self.third[i] / 6.0)) ** 2
+        self.cubic = self.known and cubic < parabola
+        self.known = True
+        self.curve(place)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def curve(self, place: Place) -> cython.void:
+        """The derivatives of the cubic back from a place through here."""
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.bend.shape[0]
+        unit: cython.double = 0.0
+        back: cython.double = 0.0
+        slope: cython.double = 0.0
+        for i in range(size):
+            self.guess[i] = place.tangent[i] * self.newton.scale[i] / self.problem.scale[i]
+            unit += self.guess[i] * self.guess[i]
+        unit = sqrt(unit)
+        for i in range(size):
+            self.guess[i] /= unit
+            back += self.guess[i] * (self.here.z[i] - place.z[i]) / self.problem.scale[i]
+            slope += self.guess[i] * self.here.tangent[i] * self.newton.scale[i] / self.problem.scale[i]
+        for i in range(size):
+            aside: cython.double = (self.here.z[i] - place.z[i]) / self.problem.scale[i] - back * self.guess[
+                i
+            ]
+            rate: cython.double = (
+                self.here.tangent[i] * self.newton.scale[i] / (self.problem.scale[i] * slope)
+            )
+            rate -= self.guess[i]
+            self.second[i] = 2.0 * (3.0 * aside - back * rate) / (back * back)
+            self.third[i] = 6.0 * (back * rate - 2.0 * aside) / (back * back * back)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -224,8 +299,14 @@ class Front:
     @cython.cfunc
     @cython.exceptval(check=False)
     def predict(self, step: cython.double) -> cython.void:
-        """A parabola from here along the tangent, with the bend of the last step."""
+        """A parabola from here along the tangent, with the bend of the last step, or the cubic."""
         i: cython.Py_ssize_t
+        if self.cubic:
+            for i in range(self.guess.shape[0]):
+                self.guess[i] = self.here.z[i] + self.newton.scale[i] * step * (
+                    self.here.tangent[i] + step * (0.5 * self.second[i] + step * self.third[i] / 6.0)
+                )
+            return
         for i in range(self.guess.shape[0]):
             self.guess[i] = self.here.z[i] + self.newton.scale[i] * step * (
                 self.here.tangent[i] + 0.5 * step * self.bend[i]

@@ -25,6 +25,7 @@ MOST = 4.0  # of that, with which a step is good
 GENTLY = 0.5  # cosine of the turn of a step
 ASTRAY = 0.5  # of its length, by which a step may miss the curve
 SHORTER, REFUSED, LONGER = 0.3, (0.1, 0.5), 3.0  # of a step to the next, to the one in its place: limits
+WARY = 1.0  # and to the one after a shortened one
 STRAIGHT = 0.999  # cosine beyond which a change of orientation is a branch point and not a way back
 SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends before it
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
@@ -33,7 +34,8 @@ MET = 1e-6  # and this near, where no curve is found up to there
 TURNS = 5  # looks beyond one place, each ten times as far
 AROUND = 16  # directions in which a way out of a corner is sought at last,
 REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
-BACK = -0.99  # cosine below which a curve goes back on the way that it came
+BACK = -0.99  # cosine below which a curve goes back on the way that it came, unless its label there is new:
+SPIKE = -1.0 + 1e-6  # then below this one. Where damping is light, most unknowns may turn back at a corner
 AFTER = 1e-5  # the first step beyond a corner, and the least
 
 
@@ -53,12 +55,12 @@ class Follower(Protocol):
         """Make the next step at most that long, or at least."""
 
 
-def growth(error: float) -> float:
+def growth(error: float, cubic: bool = False) -> float:
     """Of a step that has missed the curve by so much, to one that misses it by what is aimed at.
 
-    The prediction is a parabola, and what it misses grows as the third power.
+    The prediction is a parabola, and what it misses grows as the third power; or a cubic: as the fourth.
     """
-    return float(0.9 * (ERROR / max(error, 1e-12)) ** (1.0 / 3.0))
+    return float(0.9 * (ERROR / max(error, 1e-12)) ** (0.25 if cubic else 1.0 / 3.0))
 
 
 def within(value: float, low: float, high: float) -> float:
@@ -72,23 +74,25 @@ class Soft:
     def __init__(self, front: Front, trail: Trail) -> None:
         self.front, self.trail = front, trail
         self.repeated = 0  # corners at one point
-        self.came: FloatArray = np.zeros(0)  # direction in which the curve came there
+        self.came: FloatArray = np.zeros(0)  # direction in which the curve came there,
+        self.label: FloatArray = np.zeros(0)  # and its labels before
 
     def advance(self, follower: Follower, step: float) -> object:
         """One step; a status where the curve ends. Close to a change there may be no curve to be found."""
         front = self.front
-        step = max(step, AFTER)  # what led to a corner may have been shorter
+        step = asked = max(step, AFTER)  # what led to a corner may have been shorter
         while step > SHORTEST:
             if front.go(step) and self.good(follower):
-                return self.smooth(follower)
+                return self.smooth(follower, WARY if step < asked else LONGER)
             if step > SHARP:
-                step = max(SHARP, step * within(growth(front.newton.moved), *REFUSED))
+                step = max(SHARP, step * within(growth(front.newton.moved, front.cubic), *REFUSED))
+                front.cubic = False
                 continue
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
                 return self.turn(follower, reach)
             if reach < step and front.go(reach * (1.0 - SHORT_OF)) and self.good(follower):
-                status = self.smooth(follower)
+                status = self.smooth(follower, LONGER)
                 follower.aim(SHARP, False)
                 return status
             step = 0.25 * min(step, reach)
@@ -110,13 +114,14 @@ class Soft:
         went = there.z[-1] - here.z[-1]
         return bool(went * here.tangent[-1] < 0.0 and went * there.tangent[-1] < 0.0)
 
-    def smooth(self, follower: Follower) -> object:
-        """Go on to the place there."""
+    def smooth(self, follower: Follower, longer: float) -> object:
+        """Go on to the place there; the next step may be so many times as long."""
         count = self.trail.count
-        step, error = self.front.step, self.front.missed * self.front.step
+        step, error, cubic = self.front.step, self.front.missed * self.front.step, self.front.cubic
         status = follower.smooth()
         if self.trail.count > count:
-            follower.aim(step * within(growth(error), SHORTER, LONGER), True)
+            follower.aim(step * within(growth(error, cubic), SHORTER, longer), True)
+            follower.aim(step * longer, False)
             self.repeated = 0
         return status
 
@@ -127,18 +132,26 @@ class Soft:
             return Status.STALLED
         if self.repeated == 0:
             self.came = np.array(front.here.tangent)
+            self.label = np.array(front.here.margin)
             self.came_so = self.trail.tail()
         while self.repeated < TURNS:
             np.asarray(front.here.tangent)[:] = self.came
-            np.asarray(front.bend)[:] = 0.0
+            front.straighten()
             self.trail.drop()
             self.trail.put(*self.came_so)
             past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
             self.repeated += 1
             follower.turn(events.found(front, 0.0, Mark.CORNER, front.here), past)
-            if np.asarray(front.here.tangent) @ self.came > BACK:
+            new = np.array(front.here.tangent)
+            front.problem.bound(np.asarray(front.here.z) + past * np.asarray(front.newton.scale) * new)
+            if self.leads_on(float(new @ self.came)):
                 return None
         return None if self.sought(follower) else Status.STALLED
+
+    def leads_on(self, cosine: float) -> bool:
+        """Whether a direction at that angle to the old one is another, the problem being bound on the way."""
+        new = not np.array_equal(np.asarray(self.front.problem.margin), self.label)
+        return cosine > (SPIKE if new else BACK)
 
     def sought(self, follower: Follower) -> bool:
         """Whether the curve leaves a corner into any of the pieces around it: then it is turned there."""
@@ -152,7 +165,7 @@ class Soft:
                 if self.leaves(reach, way):
                     np.asarray(front.here.tangent)[:] = front.newton.row
                     np.asarray(front.here.margin)[:] = front.problem.margin
-                    np.asarray(front.bend)[:] = 0.0
+                    front.straighten()
                     follower.aim(reach, True)
                     return True
         return False
@@ -174,4 +187,5 @@ class Soft:
         step = (np.asarray(newton.z) - here) / scale
         length = np.linalg.norm(step)
         self.front.problem.bound(newton.z)
-        return bool(np.asarray(newton.tangent) @ step > 0.5 * length and self.came @ step > BACK * length)
+        forward = np.asarray(newton.tangent) @ step > 0.5 * length
+        return bool(forward and self.leads_on(float(self.came @ step / length)))

@@ -19,6 +19,9 @@ class Stage(NamedTuple):
     scale: FloatArray  # (n + 1,)
     tangent: FloatArray  # (n + 1,) in units of the scale
     bend: FloatArray  # (n + 1,)
+    cubic: tuple[
+        FloatArray, FloatArray, bool, bool
+    ]  # second and third derivative; if known, and if it is used
     margin: FloatArray
     output: FloatArray
     growth: FloatArray
@@ -45,7 +48,14 @@ def state_of(front: Front) -> dict[str, Any]:
     """What of a stage the front knows."""
     copies = {name: np.array(getattr(front.here, name)) for name in _OF_PLACE}
     more = {"scale": np.array(front.newton.scale), "bend": np.array(front.bend)}
-    return {**copies, **more, "orientation": front.here.orientation, "evaluations": front.newton.evaluations}
+    cubic = np.array(front.second), np.array(front.third), bool(front.known), bool(front.cubic)
+    return {
+        **copies,
+        **more,
+        "cubic": cubic,
+        "orientation": front.here.orientation,
+        "evaluations": front.newton.evaluations,
+    }
 
 
 def put_back(front: Front, stage: Stage) -> None:
@@ -55,4 +65,5 @@ def put_back(front: Front, stage: Stage) -> None:
     front.here.orientation = stage.orientation
     np.asarray(front.newton.scale)[:] = stage.scale
     np.asarray(front.bend)[:] = stage.bend
+    np.asarray(front.second)[:], np.asarray(front.third)[:], front.known, front.cubic = stage.cubic
     front.newton.evaluations = stage.evaluations
