@@ -15,6 +15,7 @@ from fcm.orbit.shooting import Shooting, Shot
 from fcm.scene.model import FloatArray, Scene
 
 KEPT = 15_000_000  # numbers of periods that are remembered: a place is asked for more than once
+LASTING = 0.7  # of them for points of curves, which are asked for again at the end
 INSTANT = 1e-9  # of a period: what lasts less is no state of its own
 STILL = 1e-9  # of the greatest amplitude: what moves less is not reported
 
@@ -54,6 +55,7 @@ class OrbitProblem(Problem):
         self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size
         self._shots: dict[bytes, Shot | None] = {}
         self._numbers = 0  # in them
+        self._points: set[bytes] = set()  # of them those to which a curve has come
         self._rates = scene.modal.frequency
 
     def z(self, state: State, omega: float) -> FloatArray:
@@ -66,12 +68,18 @@ class OrbitProblem(Problem):
         key = z.tobytes()
         if key not in self._shots:
             shot = self._made(z)
-            self._numbers += 0 if shot is None else shot.segments.y.size + 3 * shot.x.size**2
+            self._numbers += _size(shot)
             if self._numbers > KEPT:
-                self._shots.clear()
-                self._numbers = 0
+                self._forget()
             self._shots[key] = shot
         return self._shots[key]
+
+    def _forget(self) -> None:
+        """Forget the periods that no curve has come to; all of them, if those are too many."""
+        self._shots = {key: self._shots[key] for key in self._points if key in self._shots}
+        self._numbers = sum(_size(shot) for shot in self._shots.values())
+        if self._numbers > LASTING * KEPT:
+            self._shots, self._points, self._numbers = {}, set(), 0
 
     def _made(self, z: FloatArray) -> Shot | None:
         self.periods += 1
@@ -106,6 +114,7 @@ class OrbitProblem(Problem):
         shot = self.shot(z)
         if shot is None:
             return 0
+        self._points.add(np.asarray(z).tobytes())
         system, scale = shot.system, shot.scale.copy()
         y = shot.segments.largest()
         rates = np.maximum(self._rates, system.omega)
@@ -145,6 +154,11 @@ class OrbitProblem(Problem):
     def _rates_at(shot: Shot, places: list[Extreme], way: FloatArray, rate: float) -> FloatArray:
         """The derivative of the modal displacements along a way at places: (place, mode)."""
         return along(shot.system, shot.segments, places, way, rate)[:, shot.system.q]
+
+
+def _size(shot: Shot | None) -> int:
+    """Numbers that a period consists of."""
+    return 0 if shot is None else shot.segments.y.size + 3 * shot.x.size**2
 
 
 def _label(shot: Shot) -> float:
