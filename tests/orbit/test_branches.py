@@ -10,12 +10,16 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import fcm
-from fcm.motion import simulate
+from fcm.continuation import Status, follow
+from fcm.motion import State, simulate
 from fcm.orbit import OrbitProblem, harmonic_state, periodic
+from fcm.orbit.branch import incomplete
+from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
 from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
 
 from ..motion.cases import one_mode, two_contacts, yang
+from ..response.random_scenes import random_scene
 from .curves import between, curve_of
 
 
@@ -53,6 +57,47 @@ def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
     assert last.amplitude == pytest.approx(curve.amplitude[k], rel=1e-6)
     rest = simulate(scene, omega, 400).measures(last=1)[0]
     assert rest.amplitude[1] < 0.5 * last.amplitude[1]
+
+
+def lightly_damped(seed):
+    scene = random_scene(seed)
+    damping = np.full(scene.modal.mass.size, 1e-4)
+    return replace(scene, modal=replace(scene.modal, damping=damping))
+
+
+def off_after_a_period(scene, z):
+    """By how much the simulated state after a period differs from that at its start, relative to its size."""
+    m = scene.modal.mass.size
+    x = np.zeros(2 * m + len(scene.contacts))
+    x[OrbitProblem(scene).free] = z[:-1]
+    start = State(x[:m], x[m : 2 * m], x[2 * m :])
+    end = simulate(scene, z[-1], 1, start).end
+    return np.abs(end.q - start.q).max() / np.abs(start.q).max()
+
+
+def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
+    """At 1.11365 most of the state turns back by nearly half a turn, and the frequency goes on."""
+    scene = lightly_damped(8)
+    problem = OrbitProblem(scene)
+    (orbit,) = near_balance(scene, inner_resonances(scene)[0])
+    path = follow(problem, first_point(problem, orbit), (0.9, 1.12), True, scene.max_step)
+    assert path.status is Status.COMPLETE and path.parameter[-1] == 1.12
+    assert off_after_a_period(scene, path.z[-1]) < 1e-9
+    at = int(np.argmin(np.abs(path.parameter - 1.11364864)))
+    size = np.abs(path.z[at]).max()
+    chord = [(path.z[at + k] - path.z[at])[:-1] / size for k in (-3, 3)]
+    cosine = chord[0] @ chord[1] / np.linalg.norm(chord[0]) / np.linalg.norm(chord[1])
+    assert cosine > 0.9
+
+
+def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
+    scene = lightly_damped(20)
+    found, reason = starts(OrbitProblem(scene))
+    (z,) = found
+    low, high = scene.frequency_range
+    assert low < z[-1] < high and "has not become periodic" in reason
+    assert off_after_a_period(scene, z) < 1e-9
+    assert reason in incomplete(scene, [], reason)
 
 
 class Interrupt:

@@ -96,8 +96,7 @@ class Soft:
                 follower.aim(SHARP, False)
                 return status
             step = 0.25 * min(step, reach)
-        reach = ahead(front, MET)
-        return self.turn(follower, reach) if reach < MET or self.repeated else Status.STALLED
+        return self.turn(follower, ahead(front, MET))
 
     def good(self, follower: Follower) -> bool:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""

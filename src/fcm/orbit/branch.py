@@ -86,11 +86,12 @@ def trace_orbits(
 
 
 def explore(problem: OrbitProblem, along: Follow = follow) -> tuple[list[Path], str]:
-    """All branches of a scene as paths, and why there is no solution to start from, else ''."""
+    """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
     found, reason = starts(problem)
-    branches = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along)
-    return list(branches.paths), "" if branches.paths else reason
+    paths = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along).paths
+    reached = all(any((path.parameter == end).any() for path in paths) for end in scene.frequency_range)
+    return list(paths), "" if reached else reason
 
 
 def branch_of(problem: OrbitProblem, path: Path) -> Branch:
@@ -105,7 +106,7 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     reasons = dict.fromkeys(
         f"stopped at {shown(scene, path.parameter[-1])}: {path.status.value}" for path in broken
     )
-    return "; ".join(reasons) or ("" if paths else problem or "no solution was found to start from")
+    return "; ".join(reasons) or problem or ("" if paths else "no solution was found to start from")
 
 
 def shown(scene: Scene, omega: float) -> str:

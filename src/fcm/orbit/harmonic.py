@@ -14,6 +14,7 @@ from fcm.motion.system import System, has_friction
 from fcm.scene.model import Contact, FloatArray, Scene
 
 FEW, MANY = (1, 2, 3), 5  # harmonics of a guess; contacts from which on it has one
+MORE = tuple(range(1, 8))  # harmonics of a guess where few lead to nothing
 FURTHER = 3  # times the highest of them, to which the forces of a guess reach
 
 
@@ -73,15 +74,14 @@ def harmonic_state(
     return _modal(system, wave, steady, friction)
 
 
-def balanced_states(scene: Scene, frequency: float) -> list[State]:
+def balanced_states(scene: Scene, frequency: float, harmonics: tuple[int, ...] = FEW) -> list[State]:
     """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there."""
     if not (scene.modal.frequency.all() and scene.contacts):
         return []
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
-    few = FEW if len(scene.contacts) < MANY else (1,)
-    balanced = Balanced(scene, few)
+    balanced = Balanced(scene, harmonics if len(scene.contacts) < MANY else (1,))
     found = solutions(balanced, frequency).solutions
     return [state_of(scene, balanced.harmonics, z) for z in found]
 

@@ -10,11 +10,12 @@ from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
 from fcm.motion.system import System
 from fcm.orbit.family import chosen
-from fcm.orbit.harmonic import balanced_states
+from fcm.orbit.harmonic import FEW, MORE, balanced_states
 from fcm.orbit.periodic import Orbit, periodic, shoot
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
+PLACES = 8  # between which the range is looked at with more harmonics, where nothing else was found
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
@@ -22,7 +23,8 @@ def starts(problem: OrbitProblem) -> tuple[list[FloatArray], str]:
     """Points z from which all branches are followed, and why there is none at an end of the range.
 
     At both ends, and at the resonances inside, near every solution of the balance; where that leads to no
-    stable motion at an end, also the one that a motion from rest comes to.
+    stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
+    the first solution of the balance with more harmonics that leads to a motion, anywhere in the range.
     """
     scene, found, reason = problem.scene, list[FloatArray](), ""
     inside = inner_resonances(scene)
@@ -35,7 +37,19 @@ def starts(problem: OrbitProblem) -> tuple[list[FloatArray], str]:
                 _add(problem, found, first_point(problem, orbit))
         except SimulationError as error:
             reason = str(error) if omega not in inside else reason
-    return found, reason
+    return found or _anywhere(problem), reason
+
+
+def _anywhere(problem: OrbitProblem) -> list[FloatArray]:
+    """The first point that the balance with more harmonics leads to, at frequencies across the range."""
+    scene = problem.scene
+    for omega in np.linspace(*scene.frequency_range, PLACES + 1)[:0:-1].tolist():
+        for orbit in near_balance(scene, omega, MORE):
+            try:
+                return [first_point(problem, orbit)]
+            except SimulationError:
+                continue
+    return []
 
 
 def solution_at(scene: Scene, omega: float) -> Orbit:
@@ -51,9 +65,9 @@ def solution_at(scene: Scene, omega: float) -> Orbit:
     return (stable or _from_rest(scene, omega, bool(near)) or near)[0]
 
 
-def near_balance(scene: Scene, omega: float) -> Iterator[Orbit]:
+def near_balance(scene: Scene, omega: float, harmonics: tuple[int, ...] = FEW) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
-    for guess in balanced_states(scene, omega):
+    for guess in balanced_states(scene, omega, harmonics):
         try:
             orbit = shoot(System(scene, omega), guess)
         except SimulationError:
