@@ -87,17 +87,19 @@ def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
     size = np.abs(path.z[at]).max()
     chord = [(path.z[at + k] - path.z[at])[:-1] / size for k in (-3, 3)]
     cosine = chord[0] @ chord[1] / np.linalg.norm(chord[0]) / np.linalg.norm(chord[1])
-    assert cosine > 0.9
+    assert cosine > 0.5  # where it goes on it is near -1
 
 
 def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
     scene = lightly_damped(20)
-    found, reason = starts(OrbitProblem(scene))
+    problem = OrbitProblem(scene)
+    found, missed = starts(problem)
     (z,) = found
     low, high = scene.frequency_range
-    assert low < z[-1] < high and "has not become periodic" in reason
+    assert low < z[-1] < high and set(missed) == {low, high}
     assert off_after_a_period(scene, z) < 1e-9
-    assert reason in incomplete(scene, [], reason)
+    piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), True, scene.max_step)
+    assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""
 
 
 class Interrupt:

@@ -140,7 +140,7 @@ def located(front: Front, kind: int, k: int, limit: float, mark: int, looks: Loo
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     if looks is not None:
         look = looks.turn(None if kind == FOLD else k)
-        return [] if look is None or look.at > limit else [seen(front, look, mark)]
+        return [seen(front, look, mark)] if look.at <= limit else []
     at = root(front, kind, k, front.step)
     return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
 

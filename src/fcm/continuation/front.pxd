@@ -32,6 +32,7 @@ cdef class Front:
     cpdef void straighten(self) noexcept
     cdef void learn(self, Place place, double length) noexcept
     cdef void curve(self, Place place) noexcept
+    cdef bint exactly(self) except -1
     cdef bint sought(self, double step) except -1
     cdef double rescale(self, Place place, double length) noexcept
     cdef int record(self, Place place, bint margins, bint outputs) except -1

@@ -74,7 +74,7 @@ class Front:
         self.predict(step)
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
-        if not self.sought(step):
+        if not self.sought(step) or not self.exactly():
             return False
         for i in range(self.guess.shape[0]):
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
@@ -85,6 +85,20 @@ class Front:
         self.record(self.there, True, True)
         self.there.incline(self.problem, self.newton.scale, self.guess)
         return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def exactly(self) -> cython.bint:
+        """Give the corrector the direction exactly where it is, if the problem is soft.
+
+        That from before its last step may be of another smooth piece, and no margin tells so.
+        """
+        moved: cython.double = self.newton.moved
+        if not self.problem.soft:
+            return True
+        found: cython.bint = self.newton.look()
+        self.newton.moved = moved
+        return found
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -47,8 +47,8 @@ class Looks:
         self.front, self.scale = front, np.array(front.newton.scale)
         self.known = [self._look(0.0, front.here), self._look(front.step, front.there)]
 
-    def turn(self, output: int | None) -> Look | None:
-        """Where an output is greatest, or the parameter turns back; None where the curve is not found."""
+    def turn(self, output: int | None) -> Look:
+        """Where an output is greatest, or the parameter turns back, as near as the curve is found."""
         low, high = self._between(output)
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True
@@ -64,9 +64,9 @@ class Looks:
                 guess = self._corner(low, high, upper, again)
             else:
                 guess = _middle(low, high)
-            look = self._put(*guess)
+            look = self._put(*guess) or self._put(*_middle(low, high))
             if look is None:
-                return None
+                return high
             side = self._slope(look, output) * sense <= 0.0
             better = abs(self._slope(look, output)) < BETTER * abs(self._slope(high if side else low, output))
             again = again + 1 if side == upper else 0

@@ -22,6 +22,7 @@ ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, tho
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
 CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian from before it will do
+HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
 CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
 ROUNDINGS = cython.declare(
     cython.double, 8.0
@@ -78,7 +79,8 @@ class Newton:
             if self.problem.soft and step < before and self.settled(step, step / before, count):
                 return self.direct()
             noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
-            if not step < FAR or (count > 2 and step > 2.0 * before and not noise):
+            worse: cython.double = HOPELESS if self.problem.soft else 2.0
+            if not step < FAR or (count > 2 and step > worse * before and not noise):
                 return False
             for i in range(size):
                 self.z[i] += self.scale[i] * self.delta[i]

@@ -36,6 +36,7 @@ AROUND = 16  # directions in which a way out of a corner is sought at last,
 REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
 BACK = -0.99  # cosine below which a curve goes back on the way that it came, unless its label there is new:
 SPIKE = -1.0 + 1e-6  # then below this one. Where damping is light, most unknowns may turn back at a corner
+SAME, LOOP = 1e-8, 20  # distance of two folds that are one; points that a closed curve has at least
 AFTER = 1e-5  # the first step beyond a corner, and the least
 
 
@@ -118,11 +119,25 @@ class Soft:
         count = self.trail.count
         step, error, cubic = self.front.step, self.front.missed * self.front.step, self.front.cubic
         status = follower.smooth()
+        if status is None and self.goes_round(count):
+            return Status.STALLED
         if self.trail.count > count:
             follower.aim(step * within(growth(error, cubic), SHORTER, longer), True)
             follower.aim(step * longer, False)
             self.repeated = 0
         return status
+
+    def goes_round(self, count: int) -> bool:
+        """Whether a fold beyond the first so many points is an old one: a step has led to a closed curve."""
+        if self.trail.count < count + 2:  # nothing within the step
+            return False
+        kept = self.trail.state()
+        folds = np.flatnonzero(kept.mark & Mark.FOLD)
+        new = folds[folds >= count]
+        if not new.size:
+            return False
+        away = (kept.z[folds[folds < count - LOOP]] - kept.z[new[-1]]) / np.asarray(self.front.newton.scale)
+        return bool((np.abs(away).max(axis=1, initial=0.0) < SAME).any())
 
     def turn(self, follower: Follower, reach: float) -> object:
         """Turn at a change of label that is this near; if nothing new leads on, look further beyond it."""

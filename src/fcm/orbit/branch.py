@@ -88,10 +88,10 @@ def trace_orbits(
 def explore(problem: OrbitProblem, along: Follow = follow) -> tuple[list[Path], str]:
     """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
-    found, reason = starts(problem)
+    found, missed = starts(problem)
     paths = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along).paths
-    reached = all(any((path.parameter == end).any() for path in paths) for end in scene.frequency_range)
-    return list(paths), "" if reached else reason
+    ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
+    return list(paths), "; ".join(missed[end] for end in ends)
 
 
 def branch_of(problem: OrbitProblem, path: Path) -> Branch:

@@ -19,25 +19,28 @@ PLACES = 8  # between which the range is looked at with more harmonics, where no
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
-def starts(problem: OrbitProblem) -> tuple[list[FloatArray], str]:
-    """Points z from which all branches are followed, and why there is none at an end of the range.
+def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
+    """Points z from which all branches are followed, and of ends of the range why one was not found there.
 
     At both ends, and at the resonances inside, near every solution of the balance; where that leads to no
     stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
     the first solution of the balance with more harmonics that leads to a motion, anywhere in the range.
     """
-    scene, found, reason = problem.scene, list[FloatArray](), ""
+    scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside = inner_resonances(scene)
     for omega in (*scene.frequency_range, *inside):
+        orbits = list(near_balance(scene, omega))
         try:
-            orbits = list(near_balance(scene, omega))
             if omega not in inside and not any(orbit.stable for orbit in orbits):
                 orbits += _from_rest(scene, omega, bool(orbits))
-            for orbit in orbits:
-                _add(problem, found, first_point(problem, orbit))
         except SimulationError as error:
-            reason = str(error) if omega not in inside else reason
-    return found or _anywhere(problem), reason
+            missed[omega] = str(error)
+        for orbit in orbits:
+            try:
+                _add(problem, found, first_point(problem, orbit))
+            except SimulationError as error:
+                missed[omega] = str(error)
+    return found or _anywhere(problem), {omega: missed[omega] for omega in missed if omega not in inside}
 
 
 def _anywhere(problem: OrbitProblem) -> list[FloatArray]:
