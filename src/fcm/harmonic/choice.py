@@ -10,36 +10,24 @@ import numpy as np
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
-from fcm.harmonic.further import HIGHEST
+from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
 from fcm.scene.model import FloatArray
 
 ROUNDS = 8  # of tracing, estimating, choosing
-FIRST = 4  # harmonics that are added at most after the first round, and as many as there are after the others
-SPARE = 0.5  # of the accuracy, to which the harmonics left out are chosen to come
-UNKNOWN = 3.0  # times what harmonics do without feedback, what they do, as long as the estimate fails
-NOTHING = 1e-6  # of the greatest amplitude: degrees of freedom that move less have no peak
-WORK = 1e8  # evaluations times unknowns squared, about a minute, beyond which no more is tried
+WORK = 1e8  # evaluations times unknowns squared of a tracing, beyond which no more is tried,
+WORTH = 10.0  # or times this, where it is told what would be enough
 
 
 @dataclass(frozen=True)
-class Accurate:
-    """A response, its errors, and whether they are below what was asked for.
-
-    shown, errors (path,) belong to the branches' paths; peak (dof,) is the relative error of the greatest
-    amplitude over all of them, and worst the greatest of these and of the errors of the folds. NaN where it
-    cannot be told.
-    """
+class Outline:
+    """A response whose errors are not known yet; shown (path,) belongs to the branches' paths."""
 
     system: System
     traced: Traced
     shown: tuple[Reported, ...]
-    errors: tuple[Errors, ...]
-    peak: FloatArray
-    worst: float
-    reached: bool
 
     @property
     def work(self) -> float:
@@ -47,30 +35,59 @@ class Accurate:
         unknowns = len(self.system.scene.contacts) * (2.0 + 4.0 * len(self.system.harmonics))
         return sum(path.evaluations for path in self.traced.branches.paths) * unknowns**2
 
+    def ahead(self, accuracy: float) -> Foreseen:
+        """What more harmonics would do, and those that an accuracy takes."""
+        paths = self.traced.branches.paths
+        if not paths:
+            return Foreseen(0.0, True, self.system.harmonics)
+        return foreseen(self.system, paths, [one.amplitude for one in self.shown], accuracy)
+
+
+@dataclass(frozen=True)
+class Accurate(Outline):
+    """A response, its errors, and whether they are below what was asked for.
+
+    errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
+    amplitude over all of them, and worst the greatest of these and of the errors of the folds. NaN where it
+    cannot be told.
+    """
+
+    errors: tuple[Errors, ...]
+    peak: FloatArray
+    worst: float
+    reached: bool
+
 
 def accurate(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
     Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from
-    its true place than the accuracy (relative), the harmonics that would do most are added, and all is
-    traced again, from starts of its own: a branch of few harmonics may not exist with more. What is beside
-    its stable peaks with more is a start, too, as the level of the forces may not lead to it. Whether the
-    branches are complete is another question, see their status.
+    its true place than the accuracy (relative), the harmonics are added that it takes, as far as that can be
+    foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
+    more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
+    to it. Only what is foreseen to be enough has its errors estimated point by point. Whether the branches
+    are complete is another question, see their status.
     """
-    found = estimated(system, accuracy, progress)
+    found = outlined(system, progress)
     for _ in range(ROUNDS - 1):
-        if found.reached or found.work > WORK:
-            return found
-        more = enlarged(found, accuracy)
+        ahead = found.ahead(accuracy)
+        dear = found.work > WORK * (WORTH if ahead.told else 1.0)
+        if dear or (ahead.told and ahead.change <= accuracy):
+            sure = judged(found, accuracy)
+            if sure.reached or found.work > WORK:
+                return sure
+            more = enlarged(sure, accuracy)
+        else:
+            more = ahead.harmonics
         if more == found.system.harmonics:
-            return found
+            break
         shown = [one.amplitude for one in found.shown]
         near = beside(found.system, found.traced.branches.paths, shown, more)
-        then = estimated(system.with_harmonics(more), accuracy, progress, found.traced.looked, near)
+        then = outlined(system.with_harmonics(more), progress, found.traced.looked, near)
         if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
-            return found
+            break
         found = then
-    return found
+    return judged(found, accuracy)
 
 
 def given(system: System, progress: Progress | None = None) -> Accurate:
@@ -83,24 +100,16 @@ def given(system: System, progress: Progress | None = None) -> Accurate:
     fewer = system.harmonics[: max(count // 2, few) if count > few else count // 2]
     if not fewer or not system.scene.contacts:
         return estimated(system, np.inf, progress)
-    before = system.with_harmonics(fewer)
-    response = traced(before)
-    paths = response.branches.paths
-    near = beside(before, paths, [reported(before, path).amplitude for path in paths], system.harmonics)
-    return estimated(system, np.inf, progress, response.looked, near)
+    before = outlined(system.with_harmonics(fewer))
+    shown = [one.amplitude for one in before.shown]
+    near = beside(before.system, before.traced.branches.paths, shown, system.harmonics)
+    return judged(outlined(system, progress, before.traced.looked, near), np.inf)
 
 
-def estimated(
-    system: System,
-    accuracy: float,
-    progress: Progress | None = None,
-    fewer: tuple[Found, ...] = (),
-    near: Sequence[FloatArray] = (),
-) -> Accurate:
-    """The response of a system, with its errors; fewer and near as of `traced`."""
-    response = traced(system, progress, fewer, near)
+def judged(outline: Outline, accuracy: float) -> Accurate:
+    """A response with its errors."""
+    system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
-    shown = tuple(reported(system, path) for path in paths)
     errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
@@ -110,6 +119,22 @@ def estimated(
     matter = peak[height > NOTHING * height.max()]
     worst = float(np.concatenate((matter, *(one.fold for one in errors))).max(initial=0.0))
     return Accurate(system, response, shown, errors, peak, worst, worst <= accuracy)
+
+
+def outlined(
+    system: System,
+    progress: Progress | None = None,
+    fewer: tuple[Found, ...] = (),
+    near: Sequence[FloatArray] = (),
+) -> Outline:
+    """The response of a system; fewer and near as of `traced`."""
+    response = traced(system, progress, fewer, near)
+    return Outline(system, response, tuple(reported(system, path) for path in response.branches.paths))
+
+
+def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
+    """The response of a system, with its errors."""
+    return judged(outlined(system, progress), accuracy)
 
 
 def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
@@ -139,10 +164,4 @@ def enlarged(found: Accurate, accuracy: float) -> tuple[int, ...]:
     if not total > 0.0:
         return found.system.harmonics
     gain = found.worst / total if np.isfinite(found.worst) else UNKNOWN
-    order = np.argsort(-share)
-    left = total - np.cumsum(share[order])
-    needed = 1 + int(np.count_nonzero(gain * left > SPARE * accuracy))
-    has = len(found.system.harmonics)
-    count = min(needed, max(FIRST, has), HIGHEST - has)
-    chosen = order[:count][share[order[:count]] > 0.0]
-    return tuple(sorted({*found.system.harmonics, *(int(k) + 1 for k in chosen)}))
+    return needed(share, found.system.harmonics, gain, accuracy)

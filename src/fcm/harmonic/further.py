@@ -62,21 +62,31 @@ class Further:
             forces_of(kernel, z, j * width, np.array([c.mu, c.k_u, c.k_v, c.n_0]), made, linear)
             yield made, linear
 
-    def shares(self, z: FloatArray, force: npt.NDArray[np.complex128], amplitude: FloatArray) -> FloatArray:
+    def shares(
+        self,
+        z: FloatArray,
+        force: npt.NDArray[np.complex128],
+        amplitude: FloatArray,
+        known: tuple[int, ...] | None = None,
+    ) -> FloatArray:
         """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
 
-        The greatest of all degrees of freedom; zero for harmonics of the balance. force as by `forces`.
+        The greatest of all degrees of freedom; zero for known harmonics, those of the balance unless others
+        are given: then, for harmonics of the balance, what they have. force as by `forces`.
         """
-        others = self.others
+        others, orders = self.others, self.orders
+        if known is not None:
+            others = np.setdiff1d(np.arange(self.highest), np.array(known) - 1)
+            orders = 1.0 + others.astype(np.float64)
         size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
-        answer = np.abs(self.system.linear.answers(self.orders, z[:, -1], force[:, others]))
+        answer = np.abs(self.system.linear.answers(orders, z[:, -1], force[:, others]))
         share = np.zeros((len(z), self.highest))
         share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
         return share
 
 
 def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:
-    """Unknowns (unknown + 1,) of a balance as those of one with more harmonics, which are zero."""
+    """Unknowns (unknown + 1,) of a balance as those of one with other harmonics: what it lacks is zero."""
     width, wide = 2 + 4 * len(harmonics), 2 + 4 * len(more)
     contacts = (len(z) - 1) // width
     out = np.zeros(contacts * wide + 1)
@@ -84,7 +94,8 @@ def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> Floa
     old = z[:-1].reshape(contacts, width)
     blocks[:, :2] = old[:, :2]
     for j, h in enumerate(harmonics):
-        at = 2 + 4 * more.index(h)
-        blocks[:, at : at + 4] = old[:, 2 + 4 * j : 6 + 4 * j]
+        if h in more:
+            at = 2 + 4 * more.index(h)
+            blocks[:, at : at + 4] = old[:, 2 + 4 * j : 6 + 4 * j]
     out[-1] = z[-1]
     return out
