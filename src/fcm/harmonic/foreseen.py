@@ -39,6 +39,7 @@ BESIDE = (
 )  # points from a top, where the curve may be found if it is not at the top
 FOLDS = 24  # folds of a path that are looked at, at most
 DEAR = 240  # unknowns, beyond which it costs too much to leave out single harmonics
+LOW = 3  # up to this no single harmonic is left out: stability between folds may hang on it
 NOTHING = 1e-6  # of the greatest amplitude: degrees of freedom that move less have no peak
 FIRST = 4  # harmonics that are added at most to one, and as many as there are to more, where nothing is told
 FEW = 6  # or as many as there are: more are not believed to be needed where not all is told
@@ -205,9 +206,11 @@ class _Choice:
         while few < enough:
             middle = (few + enough) // 2
             few, enough = (few, middle) if self.near(order[:middle]) else (middle + 1, enough)
-        chosen = list(order[:enough])
+        low = [h for h in order[:enough] if h <= LOW]
+        chosen = [*low, *(h for h in order[:enough] if h > LOW)]
         unknowns = len(self.many.scene.contacts) * (2 + 4 * (enough + len(self.least)))
-        return _joined(self.least, self.without(chosen, 0, enough - 1) if unknowns <= DEAR else chosen)
+        chosen = self.without(chosen, len(low), enough - 1) if unknowns <= DEAR else chosen
+        return _joined(self.least, chosen)
 
     def without(self, chosen: list[int], first: int, end: int) -> list[int]:
         """What remains of others when those that matter least are left out, of first to end: all at once, or
