@@ -1,5 +1,7 @@
 """Harmonics foreseen from a curve of one, beside what curves of these and of many harmonics are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -58,3 +60,11 @@ def test_harmonics_that_are_not_wanted_are_taken_away():
     assert (
         padded(fewer, (1, 3), (1, 2, 3)) == np.where(np.isin(z % 14, (6, 7, 8, 9)) & (z < 28), 0.0, z)
     ).all()
+
+
+def test_where_nothing_moves_no_more_is_needed():
+    still = scene("yang1998", 5)
+    still = replace(still, forces=tuple(replace(force, amplitude=0.0) for force in still.forces))
+    ahead = outlined(System(still)).ahead(1e-2)
+    assert ahead.harmonics == (1,)
+    assert ahead.change == 0.0

@@ -80,6 +80,8 @@ def foreseen(
     """From paths of a system with their amplitudes (point, dof)."""
     height = np.max([amplitude.max(axis=0) for amplitude in amplitudes], axis=0)
     tops = list(_places(paths, amplitudes, height, RIVAL))
+    if not tops:  # nothing moves
+        return Foreseen(0.0, True, system.harmonics)
     found = _ahead(system, tops, height, accuracy)
     if found is None:
         found = _ahead(system, list(_places(paths, amplitudes, height, 0.0)), height, accuracy)
