@@ -24,7 +24,6 @@ cdef class Balance(Problem):
     cdef double[::1] rate
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
     cdef int contact_forces(self, double[::1] z) except -1
-    cdef void residuals(self, double[::1] z, bint gradient) noexcept
-    cdef void means(self, int columns) noexcept
-    cdef void harmonic(self, int j, int columns) noexcept
+    cdef void means(self) noexcept
+    cdef void harmonic(self, int j) noexcept
     cdef void by_parameter(self) noexcept

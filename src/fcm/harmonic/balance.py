@@ -61,47 +61,20 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
+        j: cython.int
         self.seen.at(z[self.unknowns])
         self.contact_forces(z)
-        self.residuals(z, not self.rank)
-        self.by_parameter()
-        if not self.rank:
-            for i in range(self.unknowns):
-                self.jacobian[i, i] += 1.0
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
-        """The residual alone; the tangents stay those of the last evaluation."""
-        c: cython.Py_ssize_t
-        i: cython.Py_ssize_t
-        first: cython.Py_ssize_t
-        self.seen.at(z[self.unknowns])
-        for c in range(self.contacts):
-            law: Law = self.laws[c]
-            first = c * self.width
-            law.probe(z, first)
-            for i in range(self.width):
-                self.force[first + i] = law.force[i]
-            self.force[first + 1] -= self.counted[c] * z[first + 1]
-        self.residuals(z, False)
-        return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def residuals(self, z: cython.double[::1], gradient: cython.bint) -> cython.void:
-        """From the forces at z; if wanted with G dF/dX in the place of the Jacobian."""
-        i: cython.Py_ssize_t
-        j: cython.int
-        columns: cython.int = self.width if gradient else 0
-        self.means(columns)
+        self.means()
         for j in range(self.seen.count):
-            self.harmonic(j, columns)
+            self.harmonic(j)
+        self.by_parameter()
         self.evaluated[self.unknowns] = z[self.unknowns]
         for i in range(self.unknowns):
             self.evaluated[i] = z[i]
             self.residual[i] += z[i]
+            if not self.rank:
+                self.jacobian[i, i] += 1.0
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -125,8 +98,8 @@ class Balance(Problem):
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def means(self, columns: cython.int) -> cython.void:
-        """Rows of the means: the static answer to the mean forces. columns: of each block of the Jacobian."""
+    def means(self) -> cython.void:
+        """Rows of the means: the static answer to the mean forces."""
         w: cython.Py_ssize_t = self.width
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -139,13 +112,13 @@ class Balance(Problem):
                 S_u: cython.double = self.seen.static[p, 2 * q]
                 S_v: cython.double = self.seen.static[p, 2 * q + 1]
                 self.residual[row] += S_u * self.force[q * w] + S_v * self.force[q * w + 1]
-                for k in range(columns):
+                for k in range(0 if self.rank else w):
                     self.jacobian[row, q * w + k] = S_u * self.tangent[q, 0, k] + S_v * self.tangent[q, 1, k]
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def harmonic(self, j: cython.int, columns: cython.int) -> cython.void:
-        """Rows of one harmonic: real and imaginary part of G F; columns as in `means`."""
+    def harmonic(self, j: cython.int) -> cython.void:
+        """Rows of one harmonic: real and imaginary part of G F."""
         w: cython.Py_ssize_t = self.width
         at: cython.Py_ssize_t = 2 + 4 * j  # of Re U among the unknowns of a contact; Im U, Re V, Im V follow
         row: cython.Py_ssize_t
@@ -165,7 +138,7 @@ class Balance(Problem):
                 self.residual[row] += v_re * self.force[f + 2] - v_im * self.force[f + 3]
                 self.residual[row + 1] += u_im * self.force[f] + u_re * self.force[f + 1]
                 self.residual[row + 1] += v_im * self.force[f + 2] + v_re * self.force[f + 3]
-                for k in range(columns):
+                for k in range(0 if self.rank else w):
                     a: cython.double = self.tangent[q, at, k]
                     b: cython.double = self.tangent[q, at + 1, k]
                     c: cython.double = self.tangent[q, at + 2, k]

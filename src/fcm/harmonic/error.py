@@ -178,17 +178,18 @@ def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatAr
     amplitude = corrected.amplitude
     d = np.arange(len(tops))
     now = amplitude[tops, d]
-    greatest = np.where(np.isfinite(change), amplitude * (1.0 + change), 0.0).max(axis=0)
+    found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
+    greatest = np.where(found, amplitude * (1.0 + change), 0.0).max(axis=0)
     unknown = np.zeros(len(tops), dtype=np.bool_)
     for first, end in _stretches(np.isnan(change[:, 0])):
         may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
         rivals = may | ((first <= tops) & (tops < end))
         if rivals.any():
-            found = heights(corrected, first - 1, end)
-            if found is None:
+            followed = heights(corrected, first - 1, end)
+            if followed is None:
                 unknown |= rivals
             else:
-                greatest = np.maximum(greatest, found)
+                greatest = np.maximum(greatest, followed)
     known: FloatArray = np.where(unknown, np.nan, greatest)
     return known
 

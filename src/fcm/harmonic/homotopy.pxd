@@ -4,4 +4,3 @@ cdef class Homotopy(Problem):
     cdef public Problem inner
     cdef public double taken
     cdef public double[::1] removed
-    cdef void remove(self) noexcept

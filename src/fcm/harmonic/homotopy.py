@@ -20,24 +20,11 @@ class Homotopy(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
-        self.inner.evaluate(z)
-        self.remove()
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def probe(self, z: cython.double[::1]) -> cython.int:
-        self.inner.probe(z)
-        self.remove()
-        return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def remove(self) -> cython.void:
-        """The residual without the part that is taken away."""
         i: cython.Py_ssize_t
+        self.inner.evaluate(z)
         for i in range(self.unknowns):
             self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
+        return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

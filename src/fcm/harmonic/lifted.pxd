@@ -17,4 +17,3 @@ cdef class Lifted:
     cdef bint onward(self) except -1
     cdef bint nearly(self) except -1
     cdef double away(self) except -1
-    cdef void move(self) noexcept

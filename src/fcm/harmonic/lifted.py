@@ -12,7 +12,6 @@ from fcm.harmonic.homotopy import Homotopy
 
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
-FINE = cython.declare(cython.double, 1e-2)  # `enough` from which on a step with an old Jacobian may do
 FAR = cython.declare(cython.double, 0.5)  # a displacement of this part of the solution's size is not believed
 TURNED = cython.declare(cython.double, 0.7)  # nor a curve that goes another way, by the cosine of the angle
 GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
@@ -94,11 +93,8 @@ class Lifted:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def nearly(self) -> cython.bint:
-        """As `Newton.correct`, up to the precision that a displacement needs.
-
-        Where a rough one will do, a step with the Jacobian from before tells what is left, and takes most of
-        it.
-        """
+        """As `Newton.correct`, up to the precision that a displacement needs."""
+        i: cython.Py_ssize_t
         count: cython.int
         step: cython.double
         first: cython.double = 0.0
@@ -111,25 +107,13 @@ class Lifted:
             step = newton.step()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
-            self.move()
+            for i in range(self.guess.shape[0]):
+                newton.z[i] += newton.scale[i] * newton.delta[i]
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()
-            if self.enough > FINE:
-                newton.problem.probe(newton.z)
-                if newton.step() < self.enough * first:
-                    self.move()
-                    return newton.direct()
             before = step
         return False
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def move(self) -> cython.void:
-        """Take the step that was calculated."""
-        i: cython.Py_ssize_t
-        for i in range(self.guess.shape[0]):
-            self.newton.z[i] += self.newton.scale[i] * self.newton.delta[i]
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -5,4 +5,3 @@ from fcm.harmonic.law cimport Law
 cdef class Periodic(Law):
     cdef public PeriodicContact kernel
     cdef public Margins bounds
-    cdef void forces(self, double[::1] x, Py_ssize_t first, bint gradient) noexcept

@@ -35,24 +35,12 @@ class Periodic(Law):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.forces(x, first, True)
-        self.tangent[:, :] = self.kernel.jacobian
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.forces(x, first, False)
-        return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, gradient: cython.bint) -> cython.void:
-        """Beyond the preload; if wanted the kernel's Jacobian as well."""
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, gradient)
+        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, True)
         self.force[:] = self.kernel.forces
+        self.tangent[:, :] = self.kernel.jacobian
         self.force[1] -= max(self.n_0, 0.0)
         self.mixed = self.kernel.kind == MIXED
+        return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
