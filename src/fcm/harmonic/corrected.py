@@ -180,12 +180,13 @@ def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
 
 
 def _slopes(place: FloatArray, value: FloatArray) -> FloatArray:
-    """Of values (place, column), such that cubics do not go beyond them; by what is there beside a gap."""
+    """Of values (place, column), by parabolas through neighbours; by what is there beside a gap."""
     step = np.diff(place, axis=0)
-    secant = np.diff(value, axis=0) / np.where(step > 0.0, step, 1.0)  # points may coincide
+    step = np.where(step > 0.0, step, 1.0)  # points may coincide
+    secant = np.diff(value, axis=0) / step
     before, after = np.concatenate((secant[:1], secant)), np.concatenate((secant, secant[-1:]))
-    same = before * after > 0.0
-    slope: FloatArray = np.where(same, 2.0 * before * after / np.where(same, before + after, 1.0), 0.0)
+    one, other = np.concatenate((step[:1], step)), np.concatenate((step, step[-1:]))
+    slope: FloatArray = (other * before + one * after) / (one + other)
     return np.where(np.isnan(before), after, np.where(np.isnan(after), before, slope))
 
 
