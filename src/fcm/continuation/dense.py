@@ -79,7 +79,7 @@ class Solver:
     @cython.cfunc
     @cython.exceptval(check=False)
     def eliminate(self) -> cython.bint:
-        """Gaussian elimination, pivots along rows: lower and unit upper triangle in the place of the matrix."""
+        """Gaussian elimination, pivots along rows: lower and unit upper triangle where the matrix was."""
         a: cython.double[:, ::1] = self.matrix
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
