@@ -15,6 +15,7 @@ from fcm.results.output import to_dataset, write_csv
 from fcm.scene import load_scene
 
 from ..harmonic.scenes import isola, isola_stuck, up_to, yang
+from .random_scenes import random_scene
 
 
 @pytest.mark.parametrize("harmonics", [1, 3])
@@ -55,7 +56,7 @@ def test_the_level_is_a_column_of_csv(tmp_path):
 
 def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_all():
     """Then a solution beyond may be missing: the curve says where."""
-    scene = load_scene("extreme/stiff-and-soft")
+    scene = random_scene(112)
     (curve,) = trace(scene).curves
     system = System(scene)
     for frequency in (*scene.frequency_range, *resonances(system)):
