@@ -70,7 +70,7 @@ def crossed(front: Front, step: cython.double) -> cython.bint:
     """Whether the prediction a step ahead has a margin of the other sign than here, or a label of
     another value; which is then one of those."""
     k: cython.Py_ssize_t
-    front.predict(step)
+    front.prediction.put(front.here, front.newton.scale, step, front.guess)
     front.problem.bound(front.guess)
     for k in range(front.problem.margins):
         if front.problem.soft:

@@ -15,9 +15,9 @@ from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.place import Place
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.front import along
+    from cython.cimports.fcm.continuation.prediction import along
 else:
-    from fcm.continuation.front import along
+    from fcm.continuation.prediction import along
 
 LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
 FINE = cython.declare(cython.double, 1e-11)  # of a step: a root is known to this

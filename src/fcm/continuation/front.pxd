@@ -1,5 +1,6 @@
 from fcm.continuation.newton cimport Newton
 from fcm.continuation.place cimport Place
+from fcm.continuation.prediction cimport Prediction
 from fcm.continuation.problem cimport Problem
 
 cdef class Front:
@@ -12,11 +13,7 @@ cdef class Front:
     cdef public double missed
     cdef public double turn
     cdef public int which
-    cdef public double[::1] bend
-    cdef public double[::1] second
-    cdef public double[::1] third
-    cdef public bint known
-    cdef public bint cubic
+    cdef public Prediction prediction
     cdef double past
     cdef double[::1] guess
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
@@ -29,15 +26,8 @@ cdef class Front:
     cpdef bint shorten(self, double at) except -1
     cpdef int drift(self, double step) except -1
     cpdef double length(self, Place place) except -1e300
-    cpdef void straighten(self) noexcept
-    cdef void learn(self, Place place, double length) noexcept
-    cdef void curve(self, Place place) noexcept
     cdef bint exactly(self) except -1
     cdef bint sought(self, double step) except -1
-    cdef double rescale(self, Place place, double length) noexcept
     cdef int record(self, Place place, bint margins, bint outputs) except -1
-    cdef void predict(self, double step) noexcept
     cdef double spread(self) noexcept
     cdef void interpolate(self, double at) noexcept
-
-cdef double along(double[::1] a, double[::1] b) noexcept

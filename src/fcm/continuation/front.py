@@ -2,10 +2,6 @@
 
 Lengths are measured in the problem's scale at the place `here`. A place at the length s lies in the plane
 through here + s tangent whose normal is that tangent.
-
-The place of a step is predicted by a parabola: by the tangent here, and the bend on the way of the last step.
-Where a problem is soft, and so every place dear, the cubic through the last place and here with both tangents
-is the other prediction, and that one is taken which would have foretold the last step better.
 """
 
 from __future__ import annotations
@@ -18,12 +14,16 @@ from fcm.continuation.newton import Newton
 from fcm.continuation.place import Place
 from fcm.continuation.problem import Problem
 
+if cython.compiled:
+    from cython.cimports.fcm.continuation.prediction import FLAT, Prediction, along
+else:
+    from fcm.continuation.prediction import FLAT, Prediction, along
+
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
 SHARP = cython.declare(cython.double, 1e-4)  # a step this short may lead round a corner, so that it misses
 MISLED = cython.declare(cython.double, 0.5)  # of a step of a soft problem: one that misses by more is refused
 ROUNDINGS = cython.declare(cython.double, 8.0)  # a miss that is no longer than these is one
-FLAT = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
 
 
 @cython.cclass
@@ -34,9 +34,7 @@ class Front:
         size = problem.unknowns + 1
         self.problem, self.newton = problem, Newton(problem)
         self.here, self.there, self.between = Place(problem), Place(problem), Place(problem)
-        self.bend, self.guess = np.zeros(size), np.zeros(size)
-        self.second, self.third = np.zeros(size), np.zeros(size)
-        self.known, self.cubic = False, False
+        self.prediction, self.guess = Prediction(size), np.zeros(size)
         self.step, self.missed, self.turn, self.which = 0.0, 0.0, 1.0, -1
         self.past = 0.0  # up to here the margins beyond a corner are taken as known
 
@@ -55,15 +53,8 @@ class Front:
         if not self.newton.correct(1.0):
             return 0
         self.record(self.here, True, True)
-        self.straighten()
+        self.prediction.straighten()
         return 1
-
-    @cython.ccall
-    @cython.exceptval(check=False)
-    def straighten(self) -> cython.void:
-        """Predict by the tangent alone: nothing is known of the way here."""
-        self.bend[:] = 0.0
-        self.known, self.cubic = False, False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -71,7 +62,7 @@ class Front:
         """Find the place there at a step; missed and turn say how well it was predicted."""
         i: cython.Py_ssize_t
         missed: cython.double = 0.0
-        self.predict(step)
+        self.prediction.put(self.here, self.newton.scale, step, self.guess)
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
         if not self.sought(step) or not self.exactly():
@@ -164,86 +155,16 @@ class Front:
     @cython.exceptval(-1, check=False)
     def accept(self, place: Place, length: cython.double) -> cython.int:
         """Go on from a place at a length from here, 0 beyond a corner, in the scale that is right for it."""
-        unit: cython.double
         self.problem.measure(place.z)
+        scale: cython.double[::1] = self.newton.scale
+        new: cython.double[::1] = self.problem.scale
         if self.problem.soft:
-            self.learn(place, length)
-        unit = self.rescale(place, length)
+            self.prediction.learn(self.here, place, scale, new, length)
+        unit: cython.double = self.prediction.turn(self.here, place, scale, new, length)
         self.newton.scale[:] = self.problem.scale
         self.here.like(place, unit)
         self.past = 0.0
         return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def learn(self, place: Place, length: cython.double) -> cython.void:
-        """Which prediction was the better one of a place; and the cubic through here and there, for the next.
-
-        Its second and third derivative along the tangent there, in the problem's scale.
-        """
-        i: cython.Py_ssize_t
-        off: cython.double
-        parabola: cython.double = 0.0
-        cubic: cython.double = 0.0
-        across: cython.double = along(self.here.tangent, place.tangent)
-        if not (length > 0.0 and across > FLAT):
-            self.known, self.cubic = False, False
-            return
-        for i in range(self.bend.shape[0]):
-            off = (place.z[i] - self.here.z[i]) / self.newton.scale[i] - length * self.here.tangent[i]
-            parabola += (off - 0.5 * length * length * self.bend[i]) ** 2
-            cubic += (off - length * length * (0.5 * self.second[i] + length * self.third[i] / 6.0)) ** 2
-        self.cubic = self.known and cubic < parabola
-        self.known = True
-        self.curve(place)
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def curve(self, place: Place) -> cython.void:
-        """The derivatives of the cubic back from a place through here."""
-        i: cython.Py_ssize_t
-        size: cython.Py_ssize_t = self.bend.shape[0]
-        unit: cython.double = 0.0
-        back: cython.double = 0.0
-        slope: cython.double = 0.0
-        for i in range(size):
-            self.guess[i] = place.tangent[i] * self.newton.scale[i] / self.problem.scale[i]
-            unit += self.guess[i] * self.guess[i]
-        unit = sqrt(unit)
-        for i in range(size):
-            self.guess[i] /= unit
-            back += self.guess[i] * (self.here.z[i] - place.z[i]) / self.problem.scale[i]
-            slope += self.guess[i] * self.here.tangent[i] * self.newton.scale[i] / self.problem.scale[i]
-        for i in range(size):
-            aside: cython.double = (self.here.z[i] - place.z[i]) / self.problem.scale[i] - back * self.guess[
-                i
-            ]
-            rate: cython.double = (
-                self.here.tangent[i] * self.newton.scale[i] / (self.problem.scale[i] * slope)
-            )
-            rate -= self.guess[i]
-            self.second[i] = 2.0 * (3.0 * aside - back * rate) / (back * back)
-            self.third[i] = 6.0 * (back * rate - 2.0 * aside) / (back * back * back)
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def rescale(self, place: Place, length: cython.double) -> cython.double:
-        """Tangent of a place, and bend on the way there, in the problem's scale; the unit of length in it."""
-        i: cython.Py_ssize_t
-        size: cython.Py_ssize_t = place.z.shape[0]
-        unit: cython.double
-        ratio: cython.double
-        for i in range(size):
-            ratio = self.newton.scale[i] / self.problem.scale[i]
-            self.bend[i] = (place.tangent[i] - self.here.tangent[i]) / length * ratio if length > 0.0 else 0.0
-            place.tangent[i] *= ratio
-        unit = sqrt(along(place.tangent, place.tangent))
-        for i in range(size):
-            place.tangent[i] /= unit
-        outwards: cython.double = along(place.tangent, self.bend)
-        for i in range(size):
-            self.bend[i] = (self.bend[i] - outwards * place.tangent[i]) / unit
-        return unit
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -282,7 +203,7 @@ class Front:
     @cython.exceptval(-1, check=False)
     def drift(self, step: cython.double) -> cython.int:
         """Go on by a step so short that the place predicted is on the curve, if no nearer one is found."""
-        self.predict(step)
+        self.prediction.put(self.here, self.newton.scale, step, self.guess)
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
         if self.newton.correct(step) and self.newton.moved < step:
@@ -312,22 +233,6 @@ class Front:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def predict(self, step: cython.double) -> cython.void:
-        """A parabola from here along the tangent, with the bend of the last step, or the cubic."""
-        i: cython.Py_ssize_t
-        if self.cubic:
-            for i in range(self.guess.shape[0]):
-                self.guess[i] = self.here.z[i] + self.newton.scale[i] * step * (
-                    self.here.tangent[i] + step * (0.5 * self.second[i] + step * self.third[i] / 6.0)
-                )
-            return
-        for i in range(self.guess.shape[0]):
-            self.guess[i] = self.here.z[i] + self.newton.scale[i] * step * (
-                self.here.tangent[i] + 0.5 * step * self.bend[i]
-            )
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
     def spread(self) -> cython.double:
         """Length in the plane of here that a length along the tangent there has: the cosine of the turn."""
         return self.turn if self.turn > FLAT else FLAT
@@ -349,14 +254,3 @@ class Front:
                     - slope * self.there.tangent[i] * x * x * (1.0 - x)
                 )
             )
-
-
-@cython.cfunc
-@cython.exceptval(check=False)
-def along(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
-    """The product of two vectors."""
-    i: cython.Py_ssize_t
-    total: cython.double = 0.0
-    for i in range(a.shape[0]):
-        total += a[i] * b[i]
-    return total

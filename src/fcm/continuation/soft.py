@@ -86,8 +86,8 @@ class Soft:
             if front.go(step) and self.good(follower):
                 return self.smooth(follower, WARY if step < asked else LONGER)
             if step > SHARP:
-                step = max(SHARP, step * within(growth(front.newton.moved, front.cubic), *REFUSED))
-                front.cubic = False
+                step = max(SHARP, step * within(growth(front.newton.moved, front.prediction.cubic), *REFUSED))
+                front.prediction.cubic = False
                 continue
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
@@ -117,7 +117,7 @@ class Soft:
     def smooth(self, follower: Follower, longer: float) -> object:
         """Go on to the place there; the next step may be so many times as long."""
         count = self.trail.count
-        step, error, cubic = self.front.step, self.front.missed * self.front.step, self.front.cubic
+        step, error, cubic = self.front.step, self.front.missed * self.front.step, self.front.prediction.cubic
         status = follower.smooth()
         if status is None and self.goes_round(count):
             return Status.STALLED
@@ -150,7 +150,7 @@ class Soft:
             self.came_so = self.trail.tail()
         while self.repeated < TURNS:
             np.asarray(front.here.tangent)[:] = self.came
-            front.straighten()
+            front.prediction.straighten()
             self.trail.drop()
             self.trail.put(*self.came_so)
             past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
@@ -179,7 +179,7 @@ class Soft:
                 if self.leaves(reach, way):
                     np.asarray(front.here.tangent)[:] = front.newton.row
                     np.asarray(front.here.margin)[:] = front.problem.margin
-                    front.straighten()
+                    front.prediction.straighten()
                     follower.aim(reach, True)
                     return True
         return False

@@ -19,9 +19,7 @@ class Stage(NamedTuple):
     scale: FloatArray  # (n + 1,)
     tangent: FloatArray  # (n + 1,) in units of the scale
     bend: FloatArray  # (n + 1,)
-    cubic: tuple[
-        FloatArray, FloatArray, bool, bool
-    ]  # second and third derivative; if known, and if it is used
+    cubic: tuple[FloatArray, FloatArray, bool, bool]  # second and third derivative; known, taken
     margin: FloatArray
     output: FloatArray
     growth: FloatArray
@@ -47,8 +45,9 @@ _OF_PLACE = ("z", "tangent", "margin", "output", "growth")
 def state_of(front: Front) -> dict[str, Any]:
     """What of a stage the front knows."""
     copies = {name: np.array(getattr(front.here, name)) for name in _OF_PLACE}
-    more = {"scale": np.array(front.newton.scale), "bend": np.array(front.bend)}
-    cubic = np.array(front.second), np.array(front.third), bool(front.known), bool(front.cubic)
+    way = front.prediction
+    more = {"scale": np.array(front.newton.scale), "bend": np.array(way.bend)}
+    cubic = np.array(way.second), np.array(way.third), bool(way.known), bool(way.cubic)
     return {
         **copies,
         **more,
@@ -64,6 +63,7 @@ def put_back(front: Front, stage: Stage) -> None:
         np.asarray(getattr(front.here, name))[:] = getattr(stage, name)
     front.here.orientation = stage.orientation
     np.asarray(front.newton.scale)[:] = stage.scale
-    np.asarray(front.bend)[:] = stage.bend
-    np.asarray(front.second)[:], np.asarray(front.third)[:], front.known, front.cubic = stage.cubic
+    way = front.prediction
+    np.asarray(way.bend)[:] = stage.bend
+    np.asarray(way.second)[:], np.asarray(way.third)[:], way.known, way.cubic = stage.cubic
     front.newton.evaluations = stage.evaluations

@@ -1,0 +1,18 @@
+from fcm.continuation.place cimport Place
+
+cdef double FLAT
+
+cdef class Prediction:
+    cdef public double[::1] bend
+    cdef public double[::1] second
+    cdef public double[::1] third
+    cdef public bint known
+    cdef public bint cubic
+    cdef double[::1] way
+    cpdef void straighten(self) noexcept
+    cdef void put(self, Place here, double[::1] scale, double step, double[::1] guess) noexcept
+    cdef double turn(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
+    cdef void learn(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
+    cdef void curve(self, Place here, Place place, double[::1] scale, double[::1] new) noexcept
+
+cdef double along(double[::1] a, double[::1] b) noexcept
