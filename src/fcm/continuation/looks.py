@@ -157,7 +157,7 @@ def _turn(begin: float, end: float, mean: float, otherwise: float) -> float:
     """Where in (0, 1) the cubic with the slopes at 0 and 1, and a mean slope, has none.
 
     >>> round(_turn(1.0, -1.0, 0.0, 0.0), 3), round(_turn(1.0, -2.0, -0.25, 0.0), 3)
-    (0.5, 0.378)
+    (0.5, 0.457)
     """
     a, b = 3.0 * (begin + end - 2.0 * mean), 6.0 * mean - 4.0 * begin - 2.0 * end
     root = b * b - 4.0 * a * begin
