@@ -294,6 +294,18 @@ def test_every_passing_of_a_station(step):
 
 
 @pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_a_station_next_to_a_fold_is_passed_twice(step, before):
+    """The circle turns back at p = 4, where x = 3 -+ sqrt(4 before) about."""
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), True, step, stations=[4.0 - before])
+    assert path.status is Status.CLOSED
+    found = path.z[path.where(Mark.STATION)]
+    across = np.sqrt(4.0 - (2.0 - before) ** 2)
+    assert found[:, -1].tolist() == [4.0 - before] * 2
+    assert found[:, 0] == pytest.approx([3.0 - across, 3.0 + across], abs=1e-7)
+
+
+@pytest.mark.parametrize("step", STEPS)
 def test_another_curve_that_crosses(step):
     """x (x - p + 2) = 0: x = 0 is followed past p = 2, where x = p - 2 crosses it."""
     crossed = Planar(lambda x, p: (x * (x - p + 2.03), 2.0 * x - p + 2.03, -x))

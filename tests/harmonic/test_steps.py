@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.continuation import Status
+from fcm.continuation import Mark, Status, all_branches
 
 from .scenes import Curves, gap5, up_to, yang
 
@@ -24,6 +24,20 @@ def test_the_same_for_every_step(name, count):
         assert np.sort(curves.folds) == pytest.approx(np.sort(finest.folds), rel=1e-7)
         highest = finest.amplitude.max(axis=0)
         assert curves.amplitude.max(axis=0) == pytest.approx(highest, rel=1e-7)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_solution_next_to_a_fold_lies_on_the_branch_that_passes_it(step):
+    """The points before and after a fold, where a finer step has come, are within 1e-5 of its frequency."""
+    scene = yang(5.0)
+    finest = Curves(scene, (1,), max_step=FINEST)
+    (fine,) = finest.paths
+    beside = [fine.z[fold + side] for fold in fine.where(Mark.FOLD) for side in (-1, 1)]
+    away = np.repeat(finest.folds, 2) - [z[-1] for z in beside]
+    assert np.all((np.abs(away) > 0.0) & (np.abs(away) < 1e-5))
+    starts = [fine.z[0], *beside]
+    found = all_branches(finest.system.balance, starts, scene.frequency_range, step)
+    assert found.status is Status.COMPLETE and len(found.paths) == 1
 
 
 @pytest.mark.parametrize("step", STEPS)

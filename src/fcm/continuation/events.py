@@ -32,6 +32,19 @@ LOST = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step
 FOLD = cython.declare(cython.int, 1)
 PEAK = cython.declare(cython.int, 2)
+PASSING = cython.declare(cython.int, 3)
+
+
+@cython.cclass
+class Sought:
+    """A function along a step: of margin k, of output k, of the parameter, less a level."""
+
+    kind: cython.int
+    k: cython.Py_ssize_t
+    level: cython.double
+
+    def __init__(self, kind: int, k: int = 0, level: float = 0.0) -> None:
+        self.kind, self.k, self.level = kind, k, level
 
 
 class Found(NamedTuple):
@@ -62,7 +75,7 @@ def first_margin(front: Front) -> float:
     first = front.step
     for k in range(front.problem.margins):
         if front.here.margin[k] * front.here.margin_at(k, front.there) < 0.0:
-            first = min(first, root(front, MARGIN, k, front.step))
+            first = min(first, root_within(front, Sought(MARGIN, k)))
     return first
 
 
@@ -125,11 +138,11 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     there: Place = front.there
     events = []
     looks = Looks(front) if front.problem.soft else None
-    for value in values:
-        if (value - here.z[n]) * (value - there.z[n]) < 0.0 and front.land(value):
-            events.append(found(front, front.length(front.between), Mark.STATION, front.between))
     if here.tangent[n] * there.tangent[n] < 0.0:
         events += located(front, FOLD, 0, limit, Mark.FOLD, looks)
+    fold = events[0] if events else None
+    for value in values:
+        events += passings(front, value, fold)
     for k in range(front.problem.outputs):
         if turns(here, there, k, most[k]):
             events += located(front, PEAK, k, limit, Mark.PEAK, looks)
@@ -141,46 +154,91 @@ def located(front: Front, kind: int, k: int, limit: float, mark: int, looks: Loo
     if looks is not None:
         look = looks.turn(None if kind == FOLD else k)
         return [seen(front, look, mark)] if look.at <= limit else []
-    at = root(front, kind, k, front.step)
+    at = root_within(front, Sought(kind, k))
     return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
 
 
+def passings(front: Front, value: float, fold: Found | None) -> list[Found]:
+    """Where the parameter passes a value: once on the way, or on either side of a fold.
+
+    At a value next to a fold the equations have two solutions close together, either of which may be found,
+    or none, so that there the place is looked for along the step.
+    """
+    n: cython.Py_ssize_t = front.problem.unknowns
+    begin: float = front.here.z[n] - value
+    end: float = front.there.z[n] - value
+    if fold is not None:
+        top = float(fold.z[n]) - value
+        return passing(front, value, 0.0, fold.length, begin, top) + passing(
+            front, value, fold.length, front.step, top, end
+        )
+    if begin * end < 0.0 and front.land(value) and 0.0 <= front.length(front.between) <= front.step:
+        return [found(front, front.length(front.between), Mark.STATION, front.between)]
+    return passing(front, value, 0.0, front.step, begin, end)
+
+
+def passing(front: Front, value: float, low: float, high: float, before: float, after: float) -> list[Found]:
+    """Where the parameter passes a value between two lengths, at which it is greater by before and after."""
+    if not before * after < 0.0:
+        return []
+    at = root(front, Sought(PASSING, 0, value), low, high, before, after)
+    if at == LOST or not front.put(at, False, False):
+        return []
+    front.between.z[front.problem.unknowns] = value
+    return [found(front, at, Mark.STATION, front.between)]
+
+
 @cython.cfunc
-def value(front: Front, place: Place, kind: cython.int, k: cython.Py_ssize_t) -> cython.double:
+def value(front: Front, place: Place, sought: Sought) -> cython.double:
     """A function along the step; a margin that there is not has not changed its sign."""
-    if kind == MARGIN:
+    k: cython.Py_ssize_t = sought.k
+    if sought.kind == MARGIN:
         margin: cython.double = (
             front.here.margin[k] if place is front.here else front.here.margin_at(k, place)
         )
         return margin if margin != 0.0 else front.here.margin[k]
-    return place.tangent[place.tangent.shape[0] - 1] if kind == FOLD else place.growth[k]
+    if sought.kind == PASSING:
+        return place.z[place.z.shape[0] - 1] - sought.level
+    return place.tangent[place.tangent.shape[0] - 1] if sought.kind == FOLD else place.growth[k]
 
 
 @cython.cfunc
-def root(front: Front, kind: cython.int, k: cython.Py_ssize_t, step: cython.double) -> cython.double:
-    """Length at which a function changes sign between here and there.
+def root_within(front: Front, sought: Sought) -> cython.double:
+    """Length at which a function changes sign between here and there."""
+    before: cython.double = value(front, front.here, sought)
+    return root(front, sought, 0.0, front.step, before, value(front, front.there, sought))
+
+
+@cython.cfunc
+def root(
+    front: Front,
+    sought: Sought,
+    low: cython.double,
+    high: cython.double,
+    before: cython.double,
+    after: cython.double,
+) -> cython.double:
+    """Length at which a function changes sign between two lengths, before and after which it is known.
 
     By the secant through the last two values of opposite sign, one of them halved when it does not move
     (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
     root; but of a margin LOST: what is there may be another part of a curve that goes back in the corner.
     """
-    low: cython.double = 0.0
-    high: cython.double = step
-    before: cython.double = value(front, front.here, kind, k)
-    after: cython.double = value(front, front.there, kind, k)
     at: cython.double
     now: cython.double
     last: cython.int = 0
     count: cython.int
+    step: cython.double = front.step
+    turning: cython.bint = sought.kind == FOLD or sought.kind == PEAK
     for count in range(LOOKS):  # noqa: B007
         at = (low * after - high * before) / (after - before)
         if high - low <= FINE * step or not low < at < high:
             return high
-        if not front.put(at, kind == MARGIN, False):
-            return LOST if kind == MARGIN else high
-        if kind != MARGIN and not front.sharpen(False, kind == PEAK):
+        if not front.put(at, sought.kind == MARGIN, False):
+            return high if turning else LOST
+        if turning and not front.sharpen(False, sought.kind == PEAK):
             return high
-        now = value(front, front.between, kind, k)
+        now = value(front, front.between, sought)
         if now == 0.0:
             return at
         if now * before > 0.0:
