@@ -271,6 +271,27 @@ def test_two_folds_within_one_step(step, back, middle):
 
 
 @pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("middle", [2.0, 2.03, 2.1])
+def test_two_folds_within_one_step_that_its_cubic_does_not_have(step, middle):
+    """p' = (1 - 1.1 / (1 + y^2)) / 100 with y = (x - m) / 0.08 is less than 0 for y^2 < 0.1."""
+    width, rate = 0.08, 0.01
+
+    def along(x):
+        y = (x - middle) / width
+        return 2.0 + rate * width * (y - 1.1 * np.arctan(y))
+
+    def f(x, p):
+        y = (x - middle) / width
+        return along(x) - p, rate * (1.0 - 1.1 / (1.0 + y * y)), -1.0
+
+    begin, end = along(middle - 1.0), along(middle + 1.0)
+    path = follow(Planar(f), start(middle - 1.0, begin), (begin, end), True, step)
+    assert path.status is Status.COMPLETE
+    turns = middle + width * np.sqrt(0.1) * np.array([-1.0, 1.0])
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx(along(turns), abs=1e-12)
+
+
+@pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("back", [1e-2, 1e-3, 1e-4])
 def test_a_peak_and_a_least_value_within_one_step(step, back):
     """x = 2 + y^3 - back y, y = p - 2, has a peak at y = -sqrt(back / 3)."""

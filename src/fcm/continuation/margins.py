@@ -12,6 +12,9 @@ RISE = cython.declare(cython.double, 1e-7)  # growth of an output over its size 
 NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: below that no peak is looked for
+DOUBTFUL = cython.declare(
+    cython.double, 0.25
+)  # of the lesser slope at the ends: a cubic less steep between them may hide a way back
 
 
 @cython.cfunc
@@ -42,7 +45,7 @@ def dip(front: Front) -> cython.double:
 @cython.cfunc
 @cython.exceptval(-1, check=False)
 def detour(front: Front, greatest: cython.double[::1]) -> cython.double:
-    """Length at which the parameter, or an output, goes the other way than here and there; 0 if none does.
+    """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
 
     There are two folds, or a peak and the least value after it, between then. As far as the cubics through
     both ends tell; of outputs those near their greatest.
@@ -81,7 +84,7 @@ def opposite(
     rise: cython.double, begin: cython.double, end: cython.double, least: cython.double
 ) -> cython.double:
     """Where in (0, 1) the cubic that rises so much, with slopes of one sign at 0 and 1, goes the other way
-    most; 0 if it does not, or by less than the least slope.
+    most, or hardly onwards; 0 if it goes on, or the other way by less than the least slope.
     """
     if not begin * end > 0.0:
         return 0.0
@@ -92,7 +95,7 @@ def opposite(
     if not c > 0.0:
         return 0.0
     x: cython.double = -b / (3.0 * c)
-    return x if 0.0 < x < 1.0 and a + x * b < -least else 0.0
+    return x if 0.0 < x < 1.0 and a + x * b < DOUBTFUL * min(a, sign * end) - least else 0.0
 
 
 @cython.cfunc
