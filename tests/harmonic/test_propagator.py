@@ -20,7 +20,7 @@ def system(omega, modes=7, contacts=2):
 def test_a_state_seen_again_is_carried_as_by_the_exponential_at_any_frequency():
     propagator, state = Propagator(), np.array([1, -1], dtype=np.intc)
     rng = np.random.default_rng(1)
-    assert not propagator.through(state, 1.0, 1.0, system(1.0), rng.normal(size=(16, 5)))
+    assert not propagator.through(state, 1.0, 1.0, lambda: system(1.0), rng.normal(size=(16, 5)))
     for omega, angle in ((1.0, 2.0), (0.7, 0.01), (1.6, 5.5)):
         K, D, B = system(omega)
         m, contacts = B.shape
@@ -29,7 +29,7 @@ def test_a_state_seen_again_is_carried_as_by_the_exponential_at_any_frequency():
         A[m : 2 * m] = np.hstack((-K, -np.diag(D), B))
         X = rng.normal(size=(2 * m + contacts, 5))
         expected = expm(A * angle) @ X
-        assert propagator.through(state, angle, omega, (K, D, B), X)
+        assert propagator.through(state, angle, omega, lambda made=(K, D, B): made, X)
         np.testing.assert_allclose(X, expected, rtol=1e-9, atol=1e-9)
 
 
@@ -39,4 +39,4 @@ def test_a_state_whose_eigenvectors_are_dependent_is_left_to_the_series():
     K[0], K[:, 0], D[0] = 0.0, 0.0, 0.0
     propagator, state = Propagator(), np.zeros(2, dtype=np.intc)
     for _ in range(3):
-        assert not propagator.through(state, 1.0, 1.0, (K, D, B), np.eye(16))
+        assert not propagator.through(state, 1.0, 1.0, lambda: (K, D, B), np.eye(16))

@@ -7,6 +7,6 @@ cdef class Disturbances:
     cdef int[::1] state
     cdef readonly object propagator
     cdef int propagate(self, double length) except -1
-    cdef int jump(self, double length) noexcept
+    cdef int jump(self, double length) except -1
     cdef void product(self, double[:, ::1] left, double[:, ::1] right, double factor) noexcept
     cdef int apply(self, double h) except -1

@@ -55,12 +55,12 @@ class Disturbances:
         if self.size <= FEW:
             return self.jump(length)
         s: Stiffness = self.stiffness
-        system = np.asarray(s.K), np.asarray(s.damping), np.asarray(s.image)
         columns: cython.Py_ssize_t = 2 * self.modes + self.memories
         X = np.asarray(self.X)[:, :columns]
-        if self.propagator.through(np.asarray(self.state), length, s.omega, system, X):
+        if self.propagator.through(np.asarray(self.state), length, s.omega, s.system, X):
             return 0
-        steps: cython.int = cython.cast(cython.int, ceil(self.stiffness.rate * length / REACH))
+        s.make()
+        steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / REACH))
         i: cython.int
         steps = max(steps, 1)
         for i in range(steps):  # noqa: B007
@@ -68,7 +68,7 @@ class Disturbances:
         return 0
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def jump(self, length: cython.double) -> cython.int:
         """X by the rows of the exponential for (q, q'), from a short angle by squaring."""
         m: cython.Py_ssize_t = self.modes
@@ -77,6 +77,7 @@ class Disturbances:
         j: cython.Py_ssize_t
         order: cython.int
         squarings: cython.int = 0
+        self.stiffness.make()
         while self.stiffness.rate * length > SHORT:
             length *= 0.5
             squarings += 1

@@ -9,6 +9,9 @@ So they are decomposed once for each state that comes up again, on the whole of 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -20,11 +23,21 @@ WORST = 1e6  # condition of the eigenvectors, beyond which they are not used
 ComplexArray = npt.NDArray[np.complex128]
 
 
+class _Parts(NamedTuple):
+    """The eigenvalues of a state, by time, one of each pair; shares of them as real and imaginary parts."""
+
+    values: ComplexArray  # (value,)
+    still: npt.NDArray[np.intp]  # those that are 0
+    share: FloatArray  # (2 modes, 2 values) of (q, v)
+    driven: FloatArray  # (contact, 2 values) of the places
+    back: FloatArray  # (2 values, 2 modes)
+
+
 class Propagator:
     """States by their numbers (contact,), each seen once before it is decomposed."""
 
     def __init__(self) -> None:
-        self.known: dict[bytes, tuple[ComplexArray, ...] | None] = {}
+        self.known: dict[bytes, _Parts | None] = {}
         self.seen: set[bytes] = set()
 
     def through(
@@ -32,37 +45,36 @@ class Propagator:
         state: npt.NDArray[np.intc],
         angle: float,
         omega: float,
-        system: tuple[FloatArray, FloatArray, FloatArray],
+        system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
         X: FloatArray,
     ) -> bool:
         """Carry the rows (q, dq / dangle) of X, above those of w, through an angle; false if it cannot yet.
 
-        system: K, D (mode,) and B of derivatives by the angle.
+        system makes K, D (mode,) and B of derivatives by the angle.
         """
         parts = self._parts(state.tobytes(), omega, system)
         if parts is None:
             return False
-        values, vectors, inverse, driven = parts
-        m = len(values) // 2
+        m, time = len(parts.share) // 2, angle / omega
         X[m : 2 * m] *= omega
-        z = values * (angle / omega)
-        small = np.abs(z) < 1e-8
-        held = (angle / omega) * np.where(small, 1.0 + 0.5 * z, np.expm1(z) / np.where(small, 1.0, z))
-        share = np.exp(z)[:, None] * (inverse @ X[: 2 * m]) + held[:, None] * (driven @ X[2 * m :])
-        X[: 2 * m] = (vectors @ share).real
+        more = np.expm1(parts.values * time)
+        share = (X[: 2 * m].T @ parts.share).view(np.complex128)
+        share += more * share
+        more[parts.still] = time
+        share += more * (X[2 * m :].T @ parts.driven).view(np.complex128)
+        X[: 2 * m] = (share.view(np.float64) @ parts.back).T
         X[m : 2 * m] /= omega
         return True
 
     def _parts(
-        self, key: bytes, omega: float, system: tuple[FloatArray, FloatArray, FloatArray]
-    ) -> tuple[ComplexArray, ...] | None:
-        """Eigenvalues, eigenvectors, their inverse, and what it makes of B, by time."""
+        self, key: bytes, omega: float, system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]
+    ) -> _Parts | None:
         if key in self.known:
             return self.known[key]
         if key not in self.seen or len(self.known) >= MOST:
             self.seen.add(key)
             return None
-        K, D, B = system
+        K, D, B = system()
         m = len(D)
         A = np.zeros((2 * m, 2 * m))
         A[:m, m:] = np.eye(m)
@@ -71,7 +83,7 @@ class Propagator:
         return self.known[key]
 
 
-def _decomposed(A: FloatArray, B: FloatArray) -> tuple[ComplexArray, ...] | None:
+def _decomposed(A: FloatArray, B: FloatArray) -> _Parts | None:
     """None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
@@ -81,4 +93,15 @@ def _decomposed(A: FloatArray, B: FloatArray) -> tuple[ComplexArray, ...] | None
         inverse = np.linalg.inv(vectors / unit) / unit.T
     except np.linalg.LinAlgError:
         return None
-    return tuple(np.asarray(one, dtype=np.complex128) for one in (values, vectors, inverse, inverse @ B))
+    one = values.imag >= 0.0
+    values, vectors, inverse = values[one].astype(np.complex128), vectors[:, one], inverse[one]
+    pair = np.where(values.imag > 0.0, 2.0, 1.0)
+    still = np.flatnonzero(values == 0.0)
+    # what drives grows by (exp(value time) - 1) / value, of no value by the time
+    driven = (inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]
+    return _Parts(values, still, _real(inverse), _real(driven), _real(np.conj(vectors * pair).T).T.copy())
+
+
+def _real(rows: ComplexArray) -> FloatArray:
+    """(value, n) as (n, 2 values): real and imaginary parts side by side."""
+    return np.ascontiguousarray(rows.T, dtype=np.complex128).view(np.float64)

@@ -12,15 +12,21 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs, sqrt
 
+from fcm.scene.model import FloatArray
+
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 else:
     from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 
 
+STATES = 256  # of the contacts that are remembered,
+NUMBERS = 4_000_000  # in this much memory
+
+
 @cython.cclass
 class Stiffness:
-    """`at` a frequency, `assemble` states of the contacts: K (mode, mode), image (mode, contact).
+    """`at` a frequency, `assemble` states of the contacts; `make` then K (mode, mode), image (mode, contact).
 
     damping (mode,) is the diagonal of D; rate bounds how fast the motion turns, per radian. Modes that follow
     without delay are given by their flexibility (port, port), with contacts in series.
@@ -42,17 +48,19 @@ class Stiffness:
         self.soft = flexibility is not None
         self.flexibility = np.zeros((ports, ports)) if flexibility is None else flexibility
         self.S, self.B = np.zeros((ports, ports)), np.zeros((ports, contacts))
-        self.T, self.W = np.zeros((ports, ports)), np.zeros((ports, contacts))
+        self.seen, self.W = self.shapes, np.zeros((ports, contacts))
+        self.known: dict[bytes, tuple[FloatArray, ...]] = {}
+        self.most = min(STATES, NUMBERS // max(ports * (ports + modes), 1))
         self.K, self.image = np.zeros((modes, modes)), np.zeros((modes, contacts))
         self.work, self.damping = np.zeros((modes, ports)), np.zeros(modes)
-        self.omega, self.rate = 1.0, 1.0
+        self.omega, self.rate, self.made = 1.0, 1.0, False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:
         """Take a frequency."""
         i: cython.Py_ssize_t
-        self.omega = omega
+        self.omega, self.made = omega, False
         for i in range(self.modes):
             self.damping[i] = 2.0 * self.ratio[i] * self.natural[i] / omega
         return 0
@@ -60,13 +68,35 @@ class Stiffness:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def assemble(self, state: cython.int[::1]) -> cython.int:
-        """Fill K, image and rate for the states of the contacts."""
-        self.contacts_alone(state)
-        if self.soft:
-            self.soften()
-        self.condense()
-        self.modal()
+        """Take states of the contacts, of which K, image and rate are made when they are needed."""
+        self.made = False
+        if not self.soft:
+            self.contacts_alone(state)
+            return 0
+        key = np.asarray(state).tobytes()
+        if key not in self.known:
+            if len(self.known) >= self.most:
+                self.known.clear()
+            self.S, self.B = np.empty_like(self.S), np.empty_like(self.B)
+            self.contacts_alone(state)
+            self.known[key] = self.softened()
+        self.S, self.B, self.seen, self.W = self.known[key]
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def make(self) -> cython.int:
+        """Fill K, image and rate."""
+        if not self.made:
+            self.condense()
+            self.modal()
+            self.made = True
+        return 0
+
+    def system(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """K, D (mode,) and image."""
+        self.make()
+        return np.asarray(self.K), np.asarray(self.damping), np.asarray(self.image)
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -85,17 +115,15 @@ class Stiffness:
             elif state[c] == NEGATIVE:
                 self.S[2 * c, 2 * c + 1] = -self.contact[c, 0] * self.contact[c, 2]
 
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def soften(self) -> cython.int:
-        """In series with the flexibility C: d = P q - C (S d - B w) = T P q + W w."""
+    def softened(self) -> tuple[FloatArray, ...]:
+        """S, B, and displacements of the ports by modes (mode, port) and by places (port, contact).
+
+        In series with the flexibility C: d = P q - C (S d - B w) = T P q + W w.
+        """
         S, B, C = np.asarray(self.S), np.asarray(self.B), self.flexibility
         T = np.linalg.inv(np.eye(S.shape[0]) + C @ S)
         W = T @ C @ B
-        np.asarray(self.T)[:], np.asarray(self.W)[:] = T, W
-        B -= S @ W
-        S[:] = S @ T
-        return 0
+        return S @ T, B - S @ W, np.ascontiguousarray(np.asarray(self.shapes) @ T.T), W
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -159,16 +187,15 @@ class Stiffness:
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         weight: cython.double
-        if self.soft:
-            shape = np.asarray(self.shapes) @ np.asarray(self.T)[port]
-            columns = np.asarray(X)
-            places = np.asarray(self.W)[port] @ columns[2 * self.modes :]
-            np.asarray(out)[:] = shape @ columns[: self.modes] + places
-            return 0
         for k in range(out.shape[0]):
             out[k] = 0.0
         for i in range(self.modes):
-            weight = self.shapes[i, port]
+            weight = self.seen[i, port]
             for k in range(out.shape[0]):
                 out[k] += weight * X[i, k]
+        if self.soft:
+            for i in range(self.contacts):
+                weight = self.W[port, i]
+                for k in range(out.shape[0]):
+                    out[k] += weight * X[2 * self.modes + i, k]
         return 0
