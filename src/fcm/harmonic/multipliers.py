@@ -79,6 +79,8 @@ class Multipliers:
         alone = fine.verdict(turning)
         if not fine.odd and alone.growth < -max(SAFE, SHIFT * self.finer.shift):
             return alone
+        if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
+            return even(fine, fine, turning)
         values = self._values(self.plain, omega)
         return UNKNOWN if values is None else even(fine, Spectrum.of(values), turning)
 
