@@ -238,6 +238,16 @@ def test_a_curve_that_leaves_its_range_where_it_entered(step):
 
 
 @pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_a_range_that_ends_next_to_a_fold(step, before):
+    """The circle leaves it there, and would be back within the same step."""
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 4.0 - before), True, step)
+    assert path.status is Status.COMPLETE and path.parameter.max() == path.parameter[-1] == 4.0 - before
+    across = np.sqrt(4.0 - (2.0 - before) ** 2)
+    assert path.z[-1, 0] == pytest.approx(3.0 - across, abs=1e-7)
+
+
+@pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("forward", [True, False])
 def test_a_closed_loop_from_inside_the_range(step, forward):
     path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), forward, step, stations=[3.0])
