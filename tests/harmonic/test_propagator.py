@@ -40,3 +40,14 @@ def test_a_state_whose_eigenvectors_are_dependent_is_left_to_the_series():
     propagator, state = Propagator(), np.zeros(2, dtype=np.intc)
     for _ in range(3):
         assert not propagator.through(state, 1.0, 1.0, lambda: (K, D, B), np.eye(16))
+
+
+def test_where_no_contact_sticks_the_places_do_not_matter():
+    propagator, state = Propagator(), np.zeros(2, dtype=np.intc)
+    K, D, B = system(1.0)
+    A = np.block([[np.zeros_like(K), np.eye(len(D))], [-K, -np.diag(D)]])
+    for carried in (False, True):
+        X = np.eye(16)
+        assert propagator.through(state, 1.5, 1.0, lambda: (K, D, 0.0 * B), X) == carried
+    np.testing.assert_allclose(X[:14, :14], expm(1.5 * A), rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(X[:14, 14:], 0.0)

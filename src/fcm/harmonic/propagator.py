@@ -29,7 +29,9 @@ class _Parts(NamedTuple):
     values: ComplexArray  # (value,)
     still: npt.NDArray[np.intp]  # those that are 0
     share: FloatArray  # (2 modes, 2 values) of (q, v)
-    driven: FloatArray  # (contact, 2 values) of the places
+    driven: (
+        FloatArray | None
+    )  # (contact, 2 values) of the places, of which none counts where no contact sticks
     back: FloatArray  # (2 values, 2 modes)
 
 
@@ -60,8 +62,9 @@ class Propagator:
         more = np.expm1(parts.values * time)
         share = (X[: 2 * m].T @ parts.share).view(np.complex128)
         share += more * share
-        more[parts.still] = time
-        share += more * (X[2 * m :].T @ parts.driven).view(np.complex128)
+        if parts.driven is not None:
+            more[parts.still] = time
+            share += more * (X[2 * m :].T @ parts.driven).view(np.complex128)
         X[: 2 * m] = (share.view(np.float64) @ parts.back).T
         X[m : 2 * m] /= omega
         return True
@@ -98,8 +101,8 @@ def _decomposed(A: FloatArray, B: FloatArray) -> _Parts | None:
     pair = np.where(values.imag > 0.0, 2.0, 1.0)
     still = np.flatnonzero(values == 0.0)
     # what drives grows by (exp(value time) - 1) / value, of no value by the time
-    driven = (inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]
-    return _Parts(values, still, _real(inverse), _real(driven), _real(np.conj(vectors * pair).T).T.copy())
+    driven = _real((inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]) if B.any() else None
+    return _Parts(values, still, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
 
 
 def _real(rows: ComplexArray) -> FloatArray:
