@@ -20,8 +20,8 @@ else:
     from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
 
 
-STATES = 256  # of the contacts that are remembered,
-NUMBERS = 4_000_000  # in this much memory
+STATES = 256  # of the contacts that are remembered, or fewer:
+NUMBERS = 4_000_000  # as many as these are in their matrices
 
 
 @cython.cclass
@@ -50,7 +50,7 @@ class Stiffness:
         self.S, self.B = np.zeros((ports, ports)), np.zeros((ports, contacts))
         self.seen, self.W = self.shapes, np.zeros((ports, contacts))
         self.known: dict[bytes, tuple[FloatArray, ...]] = {}
-        self.most = min(STATES, NUMBERS // max(ports * (ports + modes), 1))
+        self.most = min(STATES, NUMBERS // max(ports * (2 * ports + modes), 1))
         self.K, self.image = np.zeros((modes, modes)), np.zeros((modes, contacts))
         self.work, self.damping = np.zeros((modes, ports)), np.zeros(modes)
         self.omega, self.rate, self.made = 1.0, 1.0, False
