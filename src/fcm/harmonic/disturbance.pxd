@@ -6,6 +6,8 @@ cdef class Disturbances:
     cdef double[:, ::1] X, term, work, A, E, F
     cdef int[::1] state
     cdef readonly object propagator
+    cdef object states, rows, key
+    cdef int assemble(self) except -1
     cdef int propagate(self, double length) except -1
     cdef int jump(self, double length) except -1
     cdef void product(self, double[:, ::1] left, double[:, ::1] right, double factor) noexcept

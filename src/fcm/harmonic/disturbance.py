@@ -41,11 +41,19 @@ class Disturbances:
         modes, contacts = stiffness.modes, stiffness.contacts
         self.modes, self.contacts, self.stiffness = modes, contacts, stiffness
         self.size = 2 * modes + contacts
-        self.state = np.zeros(contacts, dtype=np.intc)
-        self.X, self.term = np.zeros((self.size, self.size)), np.zeros((2 * modes, self.size))
+        self.states, self.rows = np.zeros(contacts, dtype=np.intc), np.zeros((self.size, self.size))
+        self.state, self.X, self.key = self.states, self.rows, b""  # the same memory
+        self.term = np.zeros((2 * modes, self.size))
         self.work = np.zeros((modes, self.size))
         self.A, self.E, self.F = np.zeros((3, 2 * modes, self.size))
         self.memories, self.propagator = 0, propagator
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def assemble(self) -> cython.int:
+        """Let `stiffness` take the states."""
+        self.key = self.states.tobytes()
+        return self.stiffness.assemble(self.state, self.key)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -56,8 +64,8 @@ class Disturbances:
             return self.jump(length)
         s: Stiffness = self.stiffness
         columns: cython.Py_ssize_t = 2 * self.modes + self.memories
-        X = np.asarray(self.X)[:, :columns]
-        if self.propagator.through(np.asarray(self.state), length, s.omega, s.system, X):
+        X = self.rows[:, :columns]
+        if self.propagator.through(self.key, length, s.omega, s.system, X):
             return 0
         s.make()
         steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / REACH))

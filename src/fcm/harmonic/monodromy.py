@@ -69,7 +69,7 @@ class Monodromy(Disturbances):
                 length = s.angle[s.order[i + 1]] - s.angle[e]
             else:
                 length = s.angle[s.order[0]] + TWO_PI - s.angle[e]
-            self.stiffness.assemble(self.state)
+            self.assemble()
             if length > 0.0:
                 self.propagate(length)
         return 0
@@ -105,7 +105,7 @@ class Monodromy(Disturbances):
             if self.transitions.remembers[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1
-        return self.stiffness.assemble(self.state)
+        return self.assemble()
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

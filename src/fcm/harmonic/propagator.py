@@ -36,7 +36,7 @@ class _Parts(NamedTuple):
 
 
 class Propagator:
-    """States by their numbers (contact,), each seen once before it is decomposed."""
+    """States by their keys, each seen once before it is decomposed."""
 
     def __init__(self) -> None:
         self.known: dict[bytes, _Parts | None] = {}
@@ -44,7 +44,7 @@ class Propagator:
 
     def through(
         self,
-        state: npt.NDArray[np.intc],
+        key: bytes,
         angle: float,
         omega: float,
         system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]],
@@ -54,7 +54,7 @@ class Propagator:
 
         system makes K, D (mode,) and B of derivatives by the angle.
         """
-        parts = self._parts(state.tobytes(), omega, system)
+        parts = self._parts(key, omega, system)
         if parts is None:
             return False
         m, time = len(parts.share) // 2, angle / omega

@@ -77,7 +77,7 @@ class RingMonodromy(Monodromy):
                 self.propagate(angle - now)
                 now = angle
             self.happen(e)
-            self.stiffness.assemble(self.state)
+            self.assemble()
         self.propagate(end - now)
         return 0
 
@@ -118,7 +118,7 @@ class RingMonodromy(Monodromy):
             if self.memory[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1
-        return self.stiffness.assemble(self.state)
+        return self.assemble()
 
     def matrix(self) -> npt.NDArray[np.float64]:
         """(2 modes + memories, the same): only contacts that stick at the start remember."""

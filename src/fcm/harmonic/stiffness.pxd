@@ -11,7 +11,7 @@ cdef class Stiffness:
     cdef int most
     cdef bint made
     cdef int at(self, double omega) except -1
-    cdef int assemble(self, int[::1] state) except -1
+    cdef int assemble(self, int[::1] state, bytes key) except -1
     cdef int make(self) except -1
     cdef void contacts_alone(self, int[::1] state) noexcept
     cdef void condense(self) noexcept

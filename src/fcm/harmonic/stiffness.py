@@ -67,13 +67,12 @@ class Stiffness:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def assemble(self, state: cython.int[::1]) -> cython.int:
-        """Take states of the contacts, of which K, image and rate are made when they are needed."""
+    def assemble(self, state: cython.int[::1], key: bytes) -> cython.int:
+        """Take states of the contacts, known by a key; K, image and rate are made when they are needed."""
         self.made = False
         if not self.soft:
             self.contacts_alone(state)
             return 0
-        key = np.asarray(state).tobytes()
         if key not in self.known:
             if len(self.known) >= self.most:
                 self.known.clear()
