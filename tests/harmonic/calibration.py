@@ -61,16 +61,17 @@ def peaks(case, harmonics):
     """(estimate, truth) of the greatest amplitude of each degree of freedom, by a balance of many.
 
     What that balance does not come to from the starts of its own, as a closed branch within the range, counts
-    where the branch of fewer harmonics leads to it and the exact motion is there, too.
+    where a branch of fewer harmonics leads to it and the exact motion is there, too; for all of these.
     """
     system = System(case)
     true = estimated(system.with_harmonics(MANY), 0.0)
-    known = np.max([one.amplitude.max(axis=0) for one in true.shown], axis=0)
-    for one in harmonics:
-        found, height = estimated(system.with_harmonics(one), 0.0), known
+    height = np.max([one.amplitude.max(axis=0) for one in true.shown], axis=0)
+    few = [estimated(system.with_harmonics(one), 0.0) for one in harmonics]
+    for found in few:
         for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
             if (shown.amplitude.max(axis=0) > RIVAL * height).any():
                 height = np.maximum(height, beyond(found.system, path, shown.amplitude))
+    for found in few:
         now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
         yield np.column_stack((found.peak, np.abs(height / now - 1.0)))
 

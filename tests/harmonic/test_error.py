@@ -8,6 +8,7 @@ from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.error import errors_along
 from fcm.harmonic.system import System
+from fcm.scene import load_scene
 
 from .calibration import points
 from .truth import Truth, exact, scene
@@ -115,3 +116,14 @@ def test_a_peak_is_corrected_until_it_settles():
     many = truth.amplitude(truth.beside(path.z[top], path.direction[top]))
     change = np.abs(many - shown.amplitude[top])
     assert (np.abs(settled - many) < 0.02 * change.max()).all()
+
+
+def test_what_hardly_moves_says_nothing_of_what_moves():
+    """Rounding alone moves v, by one part in 1e16 of u."""
+    system = System(load_scene("extreme/no-normal-motion"), (1, 2, 3))
+    found, many = estimated(system, 0.0), estimated(system.with_harmonics((1, 3, 5, 7, 9)), 0.0)
+    u = list(system.scene.modal.dofs).index("u")
+    top, true = (max(one.amplitude[:, u].max() for one in each.shown) for each in (found, many))
+    assert abs(top / true - 1.0) <= 3.0 * found.peak[u] <= 3e-4
+    truncation = np.concatenate([one.truncation for one in found.errors])
+    assert np.nanmax(truncation) < 0.1

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.further import Further
+from fcm.harmonic.further import LEAST_AMPLITUDE, Further
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -25,6 +25,8 @@ Indices = npt.NDArray[np.intp]
 class Corrected:
     """From the points of a path to the corrected curve, relative: of the frequency, then of the amplitudes.
 
+    unit (point, dof) is what those of the amplitudes are relative to, the amplitude, or, of a degree of freedom
+    that hardly moves, a part of the greatest: the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is to be corrected.
     """
 
@@ -32,6 +34,8 @@ class Corrected:
         self, system: System, path: Path, amplitude: FloatArray, linear: npt.NDArray[np.bool_]
     ) -> None:
         self.path, self.amplitude, self.linear = path, amplitude, _with_ends(path, linear)
+        self.unit = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
+        self.unit[self.unit == 0.0] = 1.0
         self.further, self.corrector = Further(system), Corrector(system)
         self.place = places_along(path)
         count, dofs = amplitude.shape
@@ -81,7 +85,7 @@ class Corrected:
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
             there = np.isin(tops, group)
-            now = self.amplitude[i] * (1.0 + self.change[i, 1:])
+            now = self.amplitude[i] + self.unit[i] * self.change[i, 1:]
             z, direction = self.path.z[i], self.path.direction[i]
             settled = self.corrector.settled(z, direction, self.amplitude[i])
             factor[there] = (settled / np.where(now > 0.0, now, 1.0))[there]
@@ -166,7 +170,7 @@ class Corrected:
         for i, before, more in zip(places.tolist(), now, sets, strict=True):
             found = self.corrector.displaced(z[i], self.path.direction[i], more, before[1:])
             if found is not None:
-                self.change[i] = (found - before) / np.where(before > 0.0, before, 1.0)
+                self.change[i] = (found - before) / np.append(before[0], self.unit[i])
         self.known[places] = True
 
 
@@ -181,6 +185,8 @@ def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
 
 def _slopes(place: FloatArray, value: FloatArray) -> FloatArray:
     """Of values (place, column), by parabolas through neighbours; by what is there beside a gap."""
+    if len(value) < 2:
+        return np.zeros_like(value)
     step = np.diff(place, axis=0)
     step = np.where(step > 0.0, step, 1.0)  # points may coincide
     secant = np.diff(value, axis=0) / step

@@ -108,9 +108,11 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
     change = corrected.everywhere(turns, tops)
-    shift = _at_frequency(path, corrected.place, shown, change[:, 0], change[:, 1:])
+    shift, unit = _at_frequency(corrected, shown, change), corrected.unit
     error = np.abs(shift)
-    typical = np.median(error, axis=1, keepdims=True)
+    # what hardly moves may have any error, and says nothing of that of others
+    most = np.where(shown.amplitude < unit, 0.0, error).max(axis=1, keepdims=True)
+    typical = np.median(np.minimum(error, most), axis=1, keepdims=True)
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
     # what is covered in part only is known in part only, though the displacements cancel at a frequency
     error = np.maximum(
@@ -122,12 +124,13 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     height = np.where(
         inside,
         _heights(corrected, change[:, 1:], tops) * corrected.settled(tops),
-        now * (1.0 + shift[tops, d]),
+        now + unit[tops, d] * shift[tops, d],
     )
-    relative = np.abs(height - now) / np.where(now > 0.0, now, 1.0)
+    relative = np.abs(height - now) / unit[tops, d]
     told = relative[np.isfinite(relative)]
     relative = np.maximum(relative, CHANCE_AT_PEAKS * np.median(told) if told.size else 0.0)
     error[tops[inside], d[inside]] = relative[inside]
+    error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
     return Errors(
         amplitude=error,
@@ -139,13 +142,11 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     )
 
 
-def _at_frequency(
-    path: Path, place: FloatArray, shown: Reported, frequency: FloatArray, amplitude: FloatArray
-) -> FloatArray:
-    """Relative difference from the amplitudes to those of the corrected curve at the same frequencies."""
-    rate = path.direction[:, -1]
-    moved = path.parameter * (1.0 + frequency)
-    value = shown.amplitude * (1.0 + amplitude)
+def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:
+    """Differences from the amplitudes to those of the corrected curve at the same frequencies, in its units."""
+    path, place, rate = corrected.path, corrected.place, corrected.path.direction[:, -1]
+    moved = path.parameter * (1.0 + change[:, 0])
+    value = shown.amplitude + corrected.unit * change[:, 1:]
     beside = Beside(place, moved, rate + _slope(place, moved - path.parameter))
     out = np.empty(value.shape)
     slope = shown.growth + _slope(place, value - shown.amplitude)
@@ -156,8 +157,7 @@ def _at_frequency(
         np.ascontiguousarray(slope),
         out,
     )
-    scale = np.where(shown.amplitude > 0.0, shown.amplitude, 1.0)
-    shift: FloatArray = (out - shown.amplitude) / scale
+    shift: FloatArray = (out - shown.amplitude) / corrected.unit
     return shift
 
 
@@ -179,7 +179,7 @@ def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatAr
     d = np.arange(len(tops))
     now = amplitude[tops, d]
     found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
-    greatest = np.where(found, amplitude * (1.0 + change), 0.0).max(axis=0)
+    greatest = np.where(found, amplitude + corrected.unit * change, 0.0).max(axis=0)
     unknown = np.zeros(len(tops), dtype=np.bool_)
     for first, end in _stretches(np.isnan(change[:, 0])):
         may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
