@@ -25,8 +25,8 @@ Indices = npt.NDArray[np.intp]
 class Corrected:
     """From the points of a path to the corrected curve, relative: of the frequency, then of the amplitudes.
 
-    unit (point, dof) is what those of the amplitudes are relative to, the amplitude, or, of a degree of freedom
-    that hardly moves, a part of the greatest: the others would be lost in its rounding.
+    unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
+    freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is to be corrected.
     """
 

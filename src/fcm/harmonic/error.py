@@ -143,7 +143,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
 
 
 def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:
-    """Differences from the amplitudes to those of the corrected curve at the same frequencies, in its units."""
+    """Differences from the amplitudes to those of the corrected curve at the same frequency, in its units."""
     path, place, rate = corrected.path, corrected.place, corrected.path.direction[:, -1]
     moved = path.parameter * (1.0 + change[:, 0])
     value = shown.amplitude + corrected.unit * change[:, 1:]
