@@ -7,6 +7,7 @@ from fcm.harmonic.choice import given
 from fcm.harmonic.error import reported
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.scene import load_scene
 
 from ..response.random_scenes import random_scene
 from .scenes import up_to
@@ -25,3 +26,14 @@ def test_a_closed_branch_is_not_lost_with_more_harmonics():
     assert amplitude[top, 0] > 1.2 * max(alone)
     assert exact(system, path.z[top]) == pytest.approx(amplitude[top], rel=2e-2)
     assert np.ptp(path.parameter) < 0.2
+
+
+def test_what_lies_beside_a_peak_out_of_the_range_starts_no_branch():
+    """The highest point is at an end of the range, and the balance of more harmonics beside it is beyond."""
+    system = System(load_scene("extreme/no-normal-motion"), (1, 2, 3))
+    low, high = system.scene.frequency_range
+    alone = traced(system).branches.paths
+    beyond = np.append(alone[0].z[0, :-1], 0.99 * low)
+    for path in traced(system, near=[beyond]).branches.paths:
+        assert path.parameter.min() >= low and path.parameter.max() <= high
+    assert [path.status.name for path in given(system).traced.branches.paths] == ["COMPLETE"]

@@ -33,12 +33,13 @@ def traced(
     """Trace the branches through all solutions at the ends of the range and at the resonances inside it.
 
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
-    elsewhere, whose branches are traced too.
+    elsewhere, whose branches are traced too if they are within the range.
     """
     span = system.scene.frequency_range
     reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
     looked = tuple(solutions(system, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
-    starts = [*(z for found in looked for z in found.solutions), *near]
+    inside = [z for z in near if span[0] <= z[-1] <= span[1]]
+    starts = [*(z for found in looked for z in found.solutions), *inside]
     branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
     return Traced(_steady(system, branches), looked)
 
