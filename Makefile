@@ -155,7 +155,7 @@ build/published.json: $(SIMULATION) src/fcm/report/published.py $(wildcard src/f
 
 bench: $(VENV)/installed  ## run times in multiples of np.sin: kernels, table, scipy, curves; of whole commands
 	$(BIN)/python tests/benchmarks/speed.py
-	$(BIN)/python tests/benchmarks/process.py
+	$(BIN)/python -m tests.benchmarks.process
 	$(BIN)/python tests/benchmarks/large.py
 	$(BIN)/python -m tests.benchmarks.ring
 

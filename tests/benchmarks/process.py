@@ -1,4 +1,4 @@
-"""What whole commands cost beside the import of their libraries: python tests/benchmarks/process.py [RUNS]
+"""What whole commands cost beside the import of their libraries: python -m tests.benchmarks.process [RUNS]
 
 Processor time of a process from its beginning to its end, system included; least of some runs in turn, and as
 a multiple of the first row's. The aim for ``fcm respond yang1998`` is 1.2.
@@ -12,27 +12,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from tests.oscillator import oscillator
+
 RUNS = 10
-TINY = """
-[modal]
-dofs = ["u", "v"]
-frequency = [1.0, 10.0]
-damping = [0.01, 0.01]
-shapes = [[0.707, 0.707], [1.0, -0.5]]
-[[contact]]
-name = "shroud"
-tangential = "u"
-normal = "v"
-mu = 0.4
-k_u = 1.0
-k_v = 1.0
-n_0 = 5.0
-[[force]]
-dof = "u"
-amplitude = 1.0
-[response]
-frequency = [0.7, 1.7]
-"""
+TINY = oscillator("[response]\nfrequency = [0.7, 1.7]\n")
 PROGRAM = ("-c", "from fcm.cli.__main__ import run; run()")  # as the installed script does
 COMMANDS = {
     "import numpy, scipy.linalg, netCDF4": ("-c", "import numpy, scipy.linalg, netCDF4"),
@@ -56,7 +39,7 @@ def seconds(arguments: tuple[str, ...], folder: Path) -> float:
     _, status, used = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode:
-        raise SystemExit(f"process.py: {' '.join(arguments)} ended with {process.returncode}")
+        raise SystemExit(f"process: {' '.join(arguments)} ended with {process.returncode}")
     return used.ru_utime + used.ru_stime
 
 

@@ -15,18 +15,14 @@ from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.place import Place
 
 if cython.compiled:
+    from cython.cimports.fcm.continuation.margins import NEARLY_GREATEST, RISE
     from cython.cimports.fcm.continuation.prediction import along
 else:
+    from fcm.continuation.margins import NEARLY_GREATEST, RISE
     from fcm.continuation.prediction import along
 
 LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
 FINE = cython.declare(cython.double, 1e-11)  # of a step: a root is known to this
-RISE = cython.declare(
-    cython.double, 1e-7
-)  # growth of an output over its size, along a unit of arc, that is not rounding
-NEARLY_GREATEST = cython.declare(
-    cython.double, 0.9
-)  # of the greatest so far: a lower peak of an output is not looked for
 SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
 LOST = cython.declare(cython.double, -1.0)  # a root that is none
 MARGIN = cython.declare(cython.int, 0)  # the functions along a step

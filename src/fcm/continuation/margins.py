@@ -8,7 +8,9 @@ from cython.cimports.libc.math import sqrt
 from fcm.continuation.front import Front
 
 SHARP = cython.declare(cython.double, 1e-4)  # a step this short tells more of rounding than of a way back
-RISE = cython.declare(cython.double, 1e-7)  # growth of an output over its size that is not rounding
+RISE = cython.declare(
+    cython.double, 1e-7
+)  # growth of an output over its size, along a unit of arc, that is not rounding
 NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: below that no peak is looked for

@@ -193,23 +193,9 @@ class Motion:
 
     def evaluate(self, row: cython.int, theta: float) -> tuple[float, float]:
         """Value and slope of a row at an angle."""
-        c_1: float = cos(theta)
-        s_1: float = sin(theta)
-        c: float = c_1
-        s: float = s_1
-        turned: float
-        value: float = self.mean[row]
-        slope: float = 0.0
-        h: cython.int = 1
-        k: cython.int
-        for k in range(self.count):
-            while h < self.number[k]:
-                turned = c * c_1 - s * s_1
-                s = s * c_1 + c * s_1
-                c = turned
-                h += 1
-            value += self.re[row, k] * c - self.im[row, k] * s
-            slope -= self.order[k] * (self.re[row, k] * s + self.im[row, k] * c)
+        slope: float
+        value: float
+        slope, value = self.rate_and_value(row, row, theta)
         return value, slope
 
     def rate_and_value(self, row: cython.int, other: cython.int, theta: float) -> tuple[float, float]:
