@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, either, even
@@ -23,6 +24,7 @@ from fcm.scene.model import FloatArray
 ComplexArray = npt.NDArray[np.complex128]
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
+SMALL = 16  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
 FAR = 6.0  # times the excitation, and FURTHER times the highest harmonic
 FURTHER = 1.5
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
@@ -46,6 +48,7 @@ class Multipliers:
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
         self.fine = Monodromy(stiffness, Transitions(contact, finer))
         self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
+        self.eigenvalues = Eigenvalues(SMALL)
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
@@ -87,16 +90,25 @@ class Multipliers:
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         monodromy.follow(omega)
-        try:
-            found = np.linalg.eigvals(monodromy.matrix())
-        except np.linalg.LinAlgError:  # also where a number is not finite
+        found = self._eigenvalues(monodromy.matrix())
+        if found is None:
             return None
-        values = self.of_period(found.astype(np.complex128).tolist())
+        values = self.of_period(found)
         for _ in range(2 * self.adrift):
             nearest = min(values, key=_from_one)
             if _from_one(nearest) < NEUTRAL:
                 values.remove(nearest)
         return values
+
+    def _eigenvalues(self, matrix: FloatArray) -> list[complex] | None:
+        """None where they are not found, as where a number is not finite."""
+        if len(matrix) <= SMALL:
+            return self.eigenvalues.of(matrix)
+        try:
+            found: list[complex] = np.linalg.eigvals(matrix).astype(np.complex128).tolist()
+        except np.linalg.LinAlgError:
+            return None
+        return found
 
     def _resting(self, omega: float) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""

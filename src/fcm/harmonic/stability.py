@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isnan
 
 import numpy as np
 import numpy.typing as npt
@@ -140,8 +141,9 @@ class _Along:
         """Where the growth changes sign between neighbours of which both are told."""
         for a, b in itertools.pairwise(at.tolist()):
             one, other = self.verdicts[a], self.verdicts[b]
-            known = not np.isnan([one.growth, other.growth, one.stable, other.stable]).any()
-            if b == a + 1 and known and (one.growth > 0.0) != (other.growth > 0.0):
+            if b > a + 1 or one.unknown or other.unknown:
+                continue
+            if (one.growth > 0.0) != (other.growth > 0.0):
                 found = self._crossing(a)
                 if found is not None:
                     yield found
@@ -159,7 +161,7 @@ class _Along:
             self.evaluations += 1
             verdict = self.multipliers.verdict(curve.z)
             now = max(verdict.growth, ENOUGH)
-            if np.isnan(now):
+            if isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
             found = Crossing(a, kind, curve.z, curve.direction, curve.orientation)
@@ -184,7 +186,7 @@ def _runs(flags: npt.NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
 def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
     """Whether three verdicts agree, with growths so nearly on a line that none between has another sign."""
     verdicts = (one, middle, other)
-    if all(np.isnan(v.stable) for v in verdicts):
+    if all(isnan(v.stable) for v in verdicts):
         return True
     if not one.stable == middle.stable == other.stable:
         return False
