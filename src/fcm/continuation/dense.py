@@ -79,7 +79,10 @@ class Solver:
     @cython.cfunc
     @cython.exceptval(check=False)
     def eliminate(self) -> cython.bint:
-        """Gaussian elimination, pivots along rows: lower and unit upper triangle where the matrix was."""
+        """Gaussian elimination, pivots along rows: lower and unit upper triangle where the matrix was.
+
+        From a row those above it are taken four at a time: a number is then loaded and stored once for all.
+        """
         a: cython.double[:, ::1] = self.matrix
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
@@ -87,32 +90,45 @@ class Solver:
         k: cython.Py_ssize_t
         best: cython.Py_ssize_t
         most: cython.double
-        held: cython.double
+        p: cython.double
+        q: cython.double
+        r: cython.double
+        s: cython.double
         self.orientation = 1.0
-        for k in range(n):
-            best, most = k, fabs(a[k, k])
-            for j in range(k + 1, n):
-                if fabs(a[k, j]) > most:
-                    best, most = j, fabs(a[k, j])
+        for i in range(n):
+            k = 0
+            while k + 4 <= i:
+                p = a[i, k]
+                q = a[i, k + 1] - p * a[k, k + 1]
+                r = a[i, k + 2] - p * a[k, k + 2] - q * a[k + 1, k + 2]
+                s = a[i, k + 3] - p * a[k, k + 3] - q * a[k + 1, k + 3] - r * a[k + 2, k + 3]
+                a[i, k + 1], a[i, k + 2], a[i, k + 3] = q, r, s
+                for j in range(k + 4, n):
+                    a[i, j] = a[i, j] - p * a[k, j] - q * a[k + 1, j] - r * a[k + 2, j] - s * a[k + 3, j]
+                k += 4
+            while k < i:
+                p = a[i, k]
+                for j in range(k + 1, n):
+                    a[i, j] -= p * a[k, j]
+                k += 1
+            best, most = i, fabs(a[i, i])
+            for j in range(i + 1, n):
+                if fabs(a[i, j]) > most:
+                    best, most = j, fabs(a[i, j])
             if not (0.0 < most <= 1e300):
                 self.orientation = 0.0
                 return False
-            self.swapped[k] = cython.cast(cython.int, best)
-            if best != k:
+            self.swapped[i] = cython.cast(cython.int, best)
+            if best != i:
                 self.orientation = -self.orientation
-                for i in range(n):
-                    held = a[i, k]
-                    a[i, k] = a[i, best]
-                    a[i, best] = held
-            if a[k, k] < 0.0:
+                for k in range(n):
+                    p = a[k, i]
+                    a[k, i] = a[k, best]
+                    a[k, best] = p
+            if a[i, i] < 0.0:
                 self.orientation = -self.orientation
-            for j in range(k + 1, n):
-                a[k, j] /= a[k, k]
-            for i in range(k + 1, n):
-                held = a[i, k]
-                if held != 0.0:
-                    for j in range(k + 1, n):
-                        a[i, j] -= held * a[k, j]
+            for j in range(i + 1, n):
+                a[i, j] /= a[i, i]
         return True
 
     @cython.cfunc
@@ -123,11 +139,14 @@ class Solver:
         n: cython.Py_ssize_t = self.size
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        first: cython.Py_ssize_t = 0
         held: cython.double
         total: cython.double
-        for i in range(n):
+        while first < n and x[first] == 0.0:
+            first += 1
+        for i in range(first, n):
             total = x[i]
-            for j in range(i):
+            for j in range(first, i):
                 total -= a[i, j] * x[j]
             x[i] = total / a[i, i]
         for i in range(n - 1, -1, -1):
