@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrector import Corrector
+from fcm.harmonic.filled import Filled, places, steepness
 from fcm.harmonic.further import LEAST_AMPLITUDE, Further
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -37,11 +38,13 @@ class Corrected:
         self.unit = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
         self.further, self.corrector = Further(system), Corrector(system)
-        self.place = places_along(path)
         count, dofs = amplitude.shape
+        self.place, self.weight = np.zeros((2, count))
+        places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
+        steepness(np.ascontiguousarray(path.parameter), amplitude, STEEP, self.weight)
         self.change = np.zeros((count, 1 + dofs))
-        self.weight = np.maximum(1.0, _steepness(path, amplitude))
         self.known = self.linear.copy()
+        self.filled = Filled(self.place, self.change, self.known.view(np.uint8))
 
     def everywhere(self, places: Indices, tops: Indices) -> FloatArray:
         """Relative displacement (point, 1 + dof), interpolated between points at which it is found.
@@ -118,45 +121,23 @@ class Corrected:
         if len(beside) == 2:
             self.change[place] = 0.5 * (beside[0] + beside[1])
 
-    def interpolated(self, places: Indices) -> FloatArray:
-        """Displacements (place, 1 + dof) by cubics through those that are known, with slopes from them."""
-        known = np.flatnonzero(self.known)
-        value, place = self.change[known], self.place[known, None]
-        slope = _slopes(place, value)
-        first = np.clip(np.searchsorted(known, places, side="right") - 1, 0, max(len(known) - 2, 0))
-        last = np.minimum(first + 1, len(known) - 1)
-        length = place[last] - place[first]
-        x = (self.place[places, None] - place[first]) / np.where(length > 0.0, length, 1.0)
-        cubic: FloatArray = (
-            value[first] * (1.0 + 2.0 * x) * (1.0 - x) ** 2
-            + value[last] * x**2 * (3.0 - 2.0 * x)
-            + length * (slope[first] * x * (1.0 - x) ** 2 - slope[last] * x**2 * (1.0 - x))
-        )
-        at = self.known[places]
-        cubic[at] = self.change[places[at]]
-        return cubic
+    def interpolated(self, points: Indices) -> FloatArray:
+        """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""
+        values = np.empty((len(points), self.change.shape[1]))
+        self.filled.at(points, values)
+        return values
 
     def unforeseen(
         self, before: Indices, middle: Indices, after: Indices, expected: FloatArray
     ) -> npt.NDArray[np.bool_]:
-        """Where a displacement is not what the two around it lead to expect."""
-        found = self.change[middle]
-        off = self.sizes(middle, found - expected)
-        size = np.max([self.sizes(i, self.change[i]) for i in (before, middle, after)], axis=0)
-        differs = off > np.maximum(OFF * size, NOTHING)
-        lost, missing = np.isnan(found[:, 0]), np.isnan(expected[:, 0])
-        more: npt.NDArray[np.bool_] = differs | (lost != missing)
-        return more
-
-    def sizes(self, places: Indices, change: FloatArray) -> FloatArray:
-        """Of displacements (place, 1 + dof) at some places, as errors of an amplitude.
+        """Where a displacement is not what the two around it lead to expect, as errors of an amplitude.
 
         Along a steep part one of the frequency is a so much larger error of the amplitude.
         """
-        size: FloatArray = np.maximum(
-            np.abs(change[:, 1:]).max(axis=1), self.weight[places] * np.abs(change[:, 0])
-        )
-        return size
+        more = np.zeros(len(middle), dtype=np.uint8)
+        points = np.array((before, middle, after))
+        self.filled.unforeseen(points, expected, self.weight, OFF, NOTHING, more)
+        return more.view(np.bool_)
 
     def find(self, places: Indices, best: bool = False) -> None:
         """The displacements of some points, which are then known; with the best harmonics of each, or with
@@ -181,36 +162,3 @@ def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool
     beside[:-1] |= linear[1:]
     ends: npt.NDArray[np.bool_] = linear | (beside & ((path.mark & Mark.CORNER) > 0))
     return ends
-
-
-def _slopes(place: FloatArray, value: FloatArray) -> FloatArray:
-    """Of values (place, column), by parabolas through neighbours; by what is there beside a gap."""
-    if len(value) < 2:
-        return np.zeros_like(value)
-    step = np.diff(place, axis=0)
-    step = np.where(step > 0.0, step, 1.0)  # points may coincide
-    secant = np.diff(value, axis=0) / step
-    before, after = np.concatenate((secant[:1], secant)), np.concatenate((secant, secant[-1:]))
-    one, other = np.concatenate((step[:1], step)), np.concatenate((step, step[-1:]))
-    slope: FloatArray = (other * before + one * after) / (one + other)
-    return np.where(np.isnan(before), after, np.where(np.isnan(after), before, slope))
-
-
-def places_along(path: Path) -> FloatArray:
-    """Lengths along the path, in the unit of its directions."""
-    unit = np.full(path.z.shape[1], np.abs(path.z[:, :-1]).max(initial=1e-300))
-    unit[-1] = np.ptp(path.parameter) or 1.0
-    chord = np.linalg.norm(np.diff(path.z, axis=0) / unit, axis=1)
-    speed = np.linalg.norm(path.direction / unit, axis=1)
-    return np.concatenate(([0.0], np.cumsum(2.0 * chord / (speed[1:] + speed[:-1]))))
-
-
-def _steepness(path: Path, amplitude: FloatArray) -> FloatArray:
-    """Greatest relative change of an amplitude over that of the frequency (point,), up to STEEP."""
-    count = len(amplitude)
-    before, after = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
-    rise = np.abs(amplitude[after] - amplitude[before]) / np.where(amplitude > 0.0, amplitude, np.inf)
-    run = np.abs(path.parameter[after] - path.parameter[before]) / np.abs(path.parameter)
-    most = rise.max(axis=1)
-    steep: FloatArray = np.where(most < STEEP * run, most / np.where(run > 0.0, run, 1.0), STEEP)
-    return steep
