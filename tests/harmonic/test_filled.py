@@ -71,10 +71,10 @@ def test_what_is_off_is_unforeseen_and_so_is_what_comes_or_goes():
     assert out.tolist() == [1, 0, 0, 1, 1]
     expected[:] = 1.0
     expected[1, 0] = 0.95  # of the first value, which the weight makes large
-    weight = np.where(np.arange(9) == 3, 10.0, 1.0)
-    between.unforeseen(points[:, 1:2], expected[1:2], weight, 0.01, 0.0, out[:1])
+    weight, points = np.where(np.arange(9) == 3, 10.0, 1.0), np.array([[2], [3], [4]])
+    between.unforeseen(points, expected[1:2], weight, 0.01, 0.0, out[:1])
     assert out[0] == 1
-    between.unforeseen(points[:, 1:2], expected[1:2], weight, 0.2, 1.0, out[:1])
+    between.unforeseen(points, expected[1:2], weight, 0.2, 1.0, out[:1])
     assert out[0] == 0
 
 
