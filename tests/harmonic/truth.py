@@ -88,7 +88,7 @@ class Truth:
 
     def beside(self, z, direction):
         """The motion of many harmonics next to z, normal to the curve; None if there is none."""
-        if np.isnan(self.corrector.displaced(z, direction, self.many.harmonics, None)).any():
+        if np.isnan(self.corrector.displaced(z[None], direction[None], self.many.harmonics, None)).any():
             return None
         (lifted,) = self.corrector.known.values()
         return np.array(lifted.newton.z)

@@ -145,13 +145,17 @@ class Corrected:
         places = places[~self.known[places]]
         if not places.size:
             return
-        z, now = self.path.z, np.column_stack((self.path.parameter[places], self.amplitude[places]))
-        share = self.further.shares(z[places], self.further.forces(z[places]), now[:, 1:])
+        z, amplitude = self.path.z[places], self.amplitude[places]
+        share = self.further.shares(z, self.further.forces(z), amplitude)
         sets = [self.corrector.best(one) for one in share] if best else self.corrector.sets(share)
-        for i, before, more in zip(places.tolist(), now, sets, strict=True):
-            found = self.corrector.displaced(z[i], self.path.direction[i], more, before[1:])
+        now = np.column_stack((self.path.parameter[places], amplitude))
+        unit = np.column_stack((now[:, 0], self.unit[places]))
+        for more in dict.fromkeys(sets):
+            of = np.array([one == more for one in sets])
+            at = places[of]
+            found = self.corrector.displaced(z[of], self.path.direction[at], more, amplitude[of])
             if found is not None:
-                self.change[i] = (found - before) / np.append(before[0], self.unit[i])
+                self.change[at] = (found - now[of]) / unit[of]
         self.known[places] = True
 
 

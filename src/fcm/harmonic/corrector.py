@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.harmonic.further import Further
+from fcm.harmonic.further import Further, highest
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+
+BoolArray = npt.NDArray[np.bool_]
 
 FURTHER = 8  # harmonics beyond those of the balance: those that would do most
 FEWEST = 3  # where there are so many contacts that those would be more than
@@ -32,26 +35,29 @@ class Corrector:
         contacts = max(len(system.scene.contacts), 1)
         self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
         self.known: dict[tuple[int, ...], Lifted] = {}
+        self.covers = np.zeros((0, highest(system)))  # (set, harmonic): which harmonics each known set has
         self.second: dict[tuple[int, ...], tuple[Further, Corrector]] = {}
 
     def displaced(
         self, z: FloatArray, direction: FloatArray, more: tuple[int, ...], amplitude: FloatArray
     ) -> FloatArray | None:
-        """Frequency and amplitudes (1 + dof,) of the corrected curve in the plane normal to the curve at z.
+        """Frequency and amplitudes (point, 1 + dof) of the corrected curve in the planes normal to the curve
+        at points z (point, unknown + 1).
 
-        direction is that of the curve at z, amplitude (dof,) what it has there, more the harmonics of the
-        corrected curve. None if they are those of the curve; NaN if the corrected curve is not found, or too
-        far to be believed.
+        direction is that of the curve there, amplitude (point, dof) what it has there, more the harmonics of
+        the corrected curve. None if they are those of the curve; NaN if the corrected curve is not found, or
+        too far to be believed.
         """
         if more == self.system.harmonics:
             return None
         lifted = self.lifted(more)
-        if not lifted.beside(z, direction):
-            return np.full(len(lifted.found), np.nan)
-        found = np.array(lifted.found)
-        if self.again and np.abs(found[1:] - amplitude).max() > LARGE * amplitude.max():
-            newton = lifted.newton
-            return self.twice(more, np.array(newton.z), np.asarray(newton.tangent) * newton.scale, found)
+        found = np.empty((len(z), len(lifted.found)))
+        there = np.zeros((2, len(z), len(lifted.newton.z)))
+        lifted.all(z, direction, found, there)
+        if self.again:
+            far = np.abs(found[:, 1:] - amplitude).max(axis=1) > LARGE * amplitude.max(axis=1)
+            for i in np.flatnonzero(far).tolist():
+                found[i] = self.twice(more, there[0, i], there[1, i], found[i])
         return found
 
     def lifted(self, more: tuple[int, ...]) -> Lifted:
@@ -59,6 +65,9 @@ class Corrector:
         if more not in self.known:
             balance = self.system.with_harmonics(more).balance()
             self.known[more] = Lifted(balance, list(self.system.harmonics), list(more), self.enough)
+            covers = np.zeros((1, self.covers.shape[1]))
+            covers[0, np.array(more) - 1] = 1.0
+            self.covers = np.concatenate((self.covers, covers))
         return self.known[more]
 
     def twice(
@@ -67,8 +76,9 @@ class Corrector:
         """A corrected point corrected."""
         further, corrector = self.of(more)
         share = further.shares(z[None], further.forces(z[None]), found[None, 1:])
-        again = corrector.displaced(z, direction, corrector.sets(share)[0], found[1:])
-        return found if again is None else again
+        more = corrector.sets(share)[0]
+        again = corrector.displaced(z[None], direction[None], more, found[None, 1:])
+        return found if again is None else again[0]
 
     def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
         """Amplitudes (dof,) of a point displaced again and again, each time with the harmonics that would do
@@ -104,29 +114,28 @@ class Corrector:
         square = share * share
         most = -np.sort(-square, axis=1)[:, : self.count]
         enough = COVERED**2 * np.where(most > LEAST**2 * most[:, :1], most, 0.0).sum(axis=1)
-        chosen: list[tuple[int, ...] | None] = [None] * len(share)
-        for more in self.known:
-            self._fill(chosen, more, square, enough)
-        for i in range(len(share)):
-            if chosen[i] is None:
-                more = chosen[i] = self.best(share[i])
-                self._fill(chosen, more, square, enough)
-        return [more for more in chosen if more is not None]
+        chosen, left = [self.system.harmonics] * len(share), np.ones(len(share), dtype=np.bool_)
+        covered = square @ self.covers.T >= enough[:, None]
+        for more, of in zip(self.known, covered.T, strict=True):
+            self._take(more, of, chosen, left)
+        while left.any():
+            first = int(left.argmax())
+            more = self.best(share[first])
+            of = square[:, np.array(more) - 1].sum(axis=1) >= enough
+            of[first] = True
+            self._take(more, of, chosen, left)
+        return chosen
+
+    def _take(
+        self, more: tuple[int, ...], of: BoolArray, chosen: list[tuple[int, ...]], left: BoolArray
+    ) -> None:
+        """A set for points of which nothing is chosen yet."""
+        for i in np.flatnonzero(of & left).tolist():
+            chosen[i] = more
+        left &= ~of
 
     def best(self, share: FloatArray) -> tuple[int, ...]:
         """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point."""
         order = np.argsort(-share)[: self.count]
         order = order[share[order] > LEAST * share[order[0]]]
         return tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
-
-    def _fill(
-        self,
-        chosen: list[tuple[int, ...] | None],
-        more: tuple[int, ...],
-        square: FloatArray,
-        enough: FloatArray,
-    ) -> None:
-        """Take a set where it is enough and nothing is chosen yet."""
-        covers = square[:, np.array(more) - 1].sum(axis=1) >= enough
-        for i in np.flatnonzero(covers).tolist():
-            chosen[i] = chosen[i] or more

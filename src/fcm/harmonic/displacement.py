@@ -6,10 +6,10 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, hypot, sin
 
+from fcm.harmonic.waves import waves
 from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance
 
-SAMPLES = 12  # for each period of the highest harmonic, among which the extremes are sought
 REFINED = cython.declare(cython.int, 4)  # Newton steps from the greatest sample to the extreme, at most
 CLOSE = cython.declare(cython.double, 1e-9)  # [rad] the last of them, at which the value errs by its square
 
@@ -31,10 +31,8 @@ class Displacements:
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
         self.rest = np.zeros(dofs)
         self.attached, self.apart = linear.attached
-        harmonics = np.asarray(seen.harmonics)
-        self.samples = int(SAMPLES * harmonics[count - 1]) if count > 1 else 0
-        theta = 2.0 * np.pi * np.arange(self.samples) / self.samples
-        self.cosine, self.sine = np.cos(np.outer(harmonics, theta)), np.sin(np.outer(harmonics, theta))
+        self.cosine, self.sine = waves(tuple(np.asarray(seen.harmonics).tolist()))
+        self.samples = self.cosine.shape[1]
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
         self.value = self.rate = 0.0
 

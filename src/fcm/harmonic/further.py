@@ -26,12 +26,17 @@ AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to 
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
+def highest(system: System) -> int:
+    """Harmonic up to which the forces of a system's motions are looked at."""
+    return max(HIGHEST, int(AHEAD * max(system.harmonics)))
+
+
 class Further:
     """The harmonics of the exact forces of motions of a system's balance."""
 
     def __init__(self, system: System) -> None:
         self.system = system
-        self.highest = max(HIGHEST, int(AHEAD * max(system.harmonics)))
+        self.highest = highest(system)
         self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
         others = np.ones(self.highest, dtype=np.bool_)
         others[np.array(system.harmonics) - 1] = False
