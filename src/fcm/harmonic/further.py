@@ -20,9 +20,11 @@ from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.points import forces_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+from fcm.structure.answers import Answers
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
+FEW = 1000  # modes times ports, up to which a sum over them is faster without BLAS
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
@@ -42,13 +44,17 @@ class Further:
         others[np.array(system.harmonics) - 1] = False
         self.others = np.flatnonzero(others)
         self.orders = 1.0 + self.others.astype(np.float64)
+        linear, products = system.linear, system.linear.natural.size * system.linear.ports.shape[1]
+        few = system.scene.ring is None and products <= FEW
+        own = linear.natural, linear.damping, linear.ports, linear.dofs
+        self.answers = Answers(*own) if few else None
 
     def forces(self, z: FloatArray) -> npt.NDArray[np.complex128]:
         """Of motions (point, unknown + 1): (point, harmonic, port)."""
         out = np.zeros((len(z), self.highest, 2 * len(self.system.scene.contacts)), dtype=np.complex128)
         for j, (made, _) in enumerate(self._each(self.kernel, z)):
-            pairs = made[:, 2:].reshape(len(z), self.highest, 2, 2)
-            out[:, :, 2 * j : 2 * j + 2] = pairs[..., 0] + 1j * pairs[..., 1]
+            pairs = made[:, 2:].view(np.complex128)
+            out[:, :, 2 * j : 2 * j + 2] = pairs.reshape(len(z), self.highest, 2)
         return out
 
     def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
@@ -84,8 +90,12 @@ class Further:
             others = np.setdiff1d(np.arange(self.highest), np.array(known) - 1)
             orders = 1.0 + others.astype(np.float64)
         size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
-        answer = np.abs(self.system.linear.answers(orders, z[:, -1], force[:, others]))
         share = np.zeros((len(z), self.highest))
+        if self.answers is not None:
+            parts = force.view(np.float64).reshape(*force.shape, 2)
+            self.answers.shares(orders, np.ascontiguousarray(z[:, -1]), parts, size, share)
+            return share
+        answer = np.abs(self.system.linear.answers(orders, z[:, -1], force[:, others]))
         share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
         return share
 
