@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import sqrt
+from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.front import Front
 from fcm.continuation.looks import Look, Looks
@@ -216,20 +216,32 @@ def root(
 ) -> cython.double:
     """Length at which a function changes sign between two lengths, before and after which it is known.
 
-    By the secant through the last two values of opposite sign, one of them halved when it does not move
-    (Illinois), so that it closes in from both sides. Where the curve cannot be found, that length is the
-    root; but of a margin LOST: what is there may be another part of a curve that goes back in the corner.
+    By the secant through the last two places; or halfway between those that enclose the root, where that
+    leads out of them, or three looks have not halved their distance. Where the curve cannot be found, that
+    length is the root; but of a margin LOST: what is there may be another part of a curve that goes back in
+    the corner.
     """
     at: cython.double
     now: cython.double
-    last: cython.int = 0
+    rise: cython.double
     count: cython.int
-    step: cython.double = front.step
+    width: cython.double = high - low
+    last: cython.double = low
+    value_last: cython.double = before
+    here: cython.double = high
+    value_here: cython.double = after
+    fine: cython.double = FINE * front.step
     turning: cython.bint = sought.kind == FOLD or sought.kind == PEAK
-    for count in range(LOOKS):  # noqa: B007
-        at = (low * after - high * before) / (after - before)
-        if high - low <= FINE * step or not low < at < high:
-            return high
+    for count in range(LOOKS):
+        rise = value_here - value_last
+        at = here - value_here * (here - last) / rise if rise != 0.0 else low
+        if fabs(at - here) <= fine or high - low <= fine:
+            return min(max(at, low), high)
+        if count % 3 == 2:
+            at = at if high - low <= 0.5 * width else low
+            width = high - low
+        if not low < at < high:
+            at = 0.5 * (low + high)
         if not front.put(at, sought.kind == MARGIN, False):
             return high if turning else LOST
         if turning and not front.sharpen(False, sought.kind == PEAK):
@@ -237,10 +249,9 @@ def root(
         now = value(front, front.between, sought)
         if now == 0.0:
             return at
+        last, value_last, here, value_here = here, value_here, at, now
         if now * before > 0.0:
-            after = 0.5 * after if last == 1 else after
-            low, before, last = at, now, 1
+            low = at
         else:
-            before = 0.5 * before if last == -1 else before
-            high, after, last = at, now, -1
+            high = at
     return high

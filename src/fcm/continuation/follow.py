@@ -34,6 +34,7 @@ def follow(
     progress: Progress | None = None,
     stage: Stage | None = None,
     watch: Watch | None = None,
+    hasty: bool = False,
 ) -> Path:
     """Follow the curve through start until the parameter leaves the span, or the curve closes.
 
@@ -57,13 +58,15 @@ def follow(
         Of the same curve of a soft problem, to which it had come when it was interrupted.
     watch : callable, optional
         Is given the stage before every step of a soft problem.
+    hasty : bool
+        Whether only the passings of stations matter: corners are gone to, and left, by longer steps.
 
     Returns
     -------
     Path
         With status STALLED and without points where there is no curve at the start.
     """
-    follower = Follower(problem, span, max_step, stations, progress)
+    follower = Follower(problem, span, max_step, stations, progress, hasty)
     if stage is not None:
         follower.resume(stage)
     elif not follower.begin(start, forward):

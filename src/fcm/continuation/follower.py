@@ -38,8 +38,8 @@ BEFORE = cython.declare(cython.double, 1e-6)  # of the way to a corner: up to he
 # length past a corner at which the curve's new direction is looked for
 BEYOND = cython.declare(cython.double, 1e-7)
 TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less than BEYOND
-NEAR = cython.declare(cython.double, 1e-4)  # a corner no further away is gone to at once
-NEARER = cython.declare(cython.double, 0.9)  # a corner further away is approached by this share of the way
+NEAR = cython.declare(cython.double, 1e-4)  # where points matter, a corner further away is gone to by steps,
+NEARER = cython.declare(cython.double, 0.9)  # each this share of the way
 AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
 LONGEST = 20_000  # steps
 END = cython.declare(cython.long, int(Mark.END))
@@ -69,6 +69,8 @@ class Follower:
     first: cython.double[::1]  # point,
     head: cython.double[::1]  # and its tangent
     interior: cython.bint
+    hasty: cython.bint
+    near: cython.double  # a corner no further away is gone to at once
     attempts: int  # to go back from where no step leads on
     soft: Soft | None
     progress: Progress | None
@@ -80,10 +82,12 @@ class Follower:
         max_step: float,
         stations: Sequence[float],
         progress: Progress | None,
+        hasty: bool = False,
     ) -> None:
         self.problem, self.front, self.n = problem, Front(problem), problem.unknowns
         self.low, self.high = span
-        self.max_step, self.progress = max_step, progress
+        self.max_step, self.progress, self.hasty = max_step, progress, hasty
+        self.near = max_step if hasty else NEAR
         self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
         self.stops = np.array(self.values)
         self.trail, self.attempts = Trail(problem.unknowns + 1), 0
@@ -161,7 +165,7 @@ class Follower:
                 front.drift(reach)
                 return self.turn(events.found(front, 0.0, Mark.CORNER, front.here))
             # curves bend more and more towards a corner, and may hide a pair of folds there
-            if NEAR < reach < step and clear(front, NEARER * reach) and self.hidden() == 0.0:
+            if self.near < reach < step and clear(front, NEARER * reach) and self.hidden() == 0.0:
                 return self.smooth()
             if front.go(reach * (1.0 + PAST) + SHORTEST if reach < step else step):
                 if crosses(front):
@@ -207,7 +211,7 @@ class Follower:
             return Status.CLOSED
         turned: cython.bint = front.there.orientation != front.here.orientation
         self.trail.add(front.there, front.newton.scale, BRANCH if turned else 0, front.there.shift)
-        self.step = next_step(front, self.max_step)
+        self.step = next_step(front, self.max_step, self.hasty)
         front.accept(front.there, front.step)
         self.rise()
         return Status.UNBOUNDED if extent(front) > self.problem.boundless * self.size else None

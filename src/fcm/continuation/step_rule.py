@@ -26,7 +26,8 @@ UNEVEN = cython.declare(
 )  # change of an output, over its size, that a step aims not to have foreseen
 MOST = cython.declare(cython.double, 4.0)  # times as much a step may have
 SHRINK = cython.declare(cython.double, 0.4)  # of a step: the next one is at least that,
-GROW = cython.declare(cython.double, 2.5)  # and at most that
+GROW = cython.declare(cython.double, 2.5)  # and at most that,
+HASTE = cython.declare(cython.double, 10.0)  # or that, where points close to one another tell nothing
 SHARE = cython.declare(cython.double, 0.9)  # of the next step that all aims allow
 
 
@@ -55,11 +56,11 @@ def clear(front: Front, step: cython.double) -> cython.bint:
 
 @cython.ccall
 @cython.exceptval(-1, check=False)
-def next_step(front: Front, longest: cython.double) -> cython.double:
+def next_step(front: Front, longest: cython.double, hasty: cython.bint) -> cython.double:
     """Length of the step that follows a good one."""
     growth: cython.double = AIM / max(acos(min(front.turn, 1.0)), 1e-9)
     growth = min(growth, sqrt(MISS / max(front.missed, 1e-9)), UNEVEN / max(unforeseen(front), 1e-9))
-    return min(front.step * min(max(SHARE * growth, SHRINK), GROW), longest)
+    return min(front.step * min(max(SHARE * growth, SHRINK), HASTE if hasty else GROW), longest)
 
 
 @cython.ccall

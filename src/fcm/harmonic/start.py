@@ -53,20 +53,33 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     it does not come back. That of fewer tells: it comes back about as far. reach is what was found with them;
     otherwise a few are taken for that.
     """
-    most = highest(system, omega)
-    linear = min(BEFORE * least(system, omega), 1.0)
+    most, linear = highest(system, omega), BEFORE * least(system, omega)
     if reach is None and len(system.harmonics) > few_of(system):
         few = system.with_harmonics(system.harmonics[: few_of(system)])
-        reach = _reach(level_curve(few, omega, (0.0, most), linear=linear))
-    top = most if reach is None else min(reach, most)
-    path = level_curve(system, omega, (0.0, top), linear=linear)
-    at = np.flatnonzero(path.parameter == 1.0)
-    found = [np.append(path.z[i, :-1], omega) for i in at]
-    if not found:
+        reach = _reach(_followed(few, omega, linear, most))
+    path = _followed(system, omega, linear, most if reach is None else min(reach, most))
+    found = (
+        []
+        if path is None
+        else [np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0)]
+    )
+    if linear >= 1.0:
+        found = [np.append(next(linear_responses(system, omega, 1.0)), omega), *found]
+    elif not found:
         found = list(_from_linear(system, omega))
-    complete = path.status in (Status.COMPLETE, Status.RETURNED)
+    complete = path is None or path.status in (Status.COMPLETE, Status.RETURNED)
     enough = len(system.harmonics) >= few_of(system)
     return Found(omega, tuple(found), complete, _reach(path) if enough else np.inf)
+
+
+def _followed(system: System, omega: float, linear: float, top: float) -> Path | None:
+    """The curve of the level, for its passings of 1; nothing if all up to its top is linear."""
+    if linear >= top:
+        return None
+    path = level_curve(system, omega, (0.0, top), linear=linear, hasty=True)
+    if path.status is Status.COMPLETE:
+        return path
+    return level_curve(system, omega, (0.0, top), linear=linear)
 
 
 def few_of(system: System) -> int:
@@ -75,12 +88,14 @@ def few_of(system: System) -> int:
     return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
 
 
-def _reach(path: Path) -> float:
+def _reach(path: Path | None) -> float:
     """Up to which level the curve of more harmonics is to be followed."""
-    near = np.flatnonzero(path.parameter < NEAR)
-    if path.status is not Status.COMPLETE or not near.size:
+    if path is None:
+        return FURTHER * NEAR
+    if path.status is not Status.COMPLETE:
         return np.inf
-    return FURTHER * float(path.parameter[: near[-1] + 1].max())
+    near = np.flatnonzero(path.parameter < NEAR)
+    return FURTHER * float(path.parameter[: near[-1] + 1].max()) if near.size else FURTHER * NEAR
 
 
 def level_curve(
@@ -90,16 +105,17 @@ def level_curve(
     step: float = STEP,
     stations: tuple[float, ...] = (1.0,),
     linear: float = 0.0,
+    hasty: bool = False,
 ) -> Path:
     """Response at omega against the level of the forces, from rest, or from a level up to which it is
-    linear."""
+    linear; hasty if only its stations matter, as of `follow`."""
     path = None
     for weak in WEAK:
         low = max(span[0], weak)
         level = max(low, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            path = follow(Level(system.looking, omega), start, whole, True, step, stations)
+            path = follow(Level(system.looking, omega), start, whole, True, step, stations, hasty=hasty)
             if _back(path, low):
                 path = follow(Level(system.looking, omega), start, whole, True, FINER * step, stations)
             if _back(path, low):
