@@ -118,8 +118,9 @@ class Corrected:
                 if np.isfinite(self.change[way]).all():
                     beside.append(self.change[way])
                     break
-        if len(beside) == 2:
-            self.change[place] = 0.5 * (beside[0] + beside[1])
+            else:
+                return
+        self.change[place] = 0.5 * (beside[0] + beside[1])
 
     def interpolated(self, points: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""

@@ -1,7 +1,8 @@
 """Stretches of a curve beside which the corrected curve is not found point by point: it is followed there.
 
 Where a corner or a pair of folds has moved, no point of the corrected curve lies normal to the curve. But it
-does on both sides, and from one of them the corrected curve can be followed to the other.
+does on both sides, and from one of them the corrected curve can be followed to the other. With many contacts
+that is dear, and may lead through any number of folds, so that there is a limit to the work.
 """
 
 from __future__ import annotations
@@ -11,13 +12,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.continuation import follow
+from fcm.continuation import Path, Status, follow
+from fcm.continuation.problem import Problem
+from fcm.harmonic.balance import Balance
 from fcm.harmonic.corrected import Corrected
 from fcm.harmonic.points import Points
 from fcm.scene.model import FloatArray
 
 STEP = 0.1  # longest, along the corrected curve
 PATIENCE = 30  # reports of the follower, of 16 steps each, before it is given up
+EFFORT = (
+    8e7  # evaluations times the square of the unknowns, some second of work, before a stretch is given up
+)
+DEAR = 100  # unknowns from which on corners are passed by short steps: so many contacts have many, and slight
 SAME = 0.02  # relative difference of amplitudes, up to which the curve has come to the other side
 BEYOND = 1.0  # times the width of a stretch, how far beyond it the curve is followed
 TRIES = 8  # points at an end of a stretch, from which it is sought
@@ -25,6 +32,63 @@ TRIES = 8  # points at an end of a stretch, from which it is sought
 
 class _LostError(Exception):
     """The curve leads too far."""
+
+
+class _Budget:
+    """Evaluations of a balance that are left for a stretch."""
+
+    def __init__(self, unknowns: int) -> None:
+        self.left = EFFORT / unknowns**2
+
+    def take(self) -> None:
+        """One more."""
+        self.left -= 1.0
+        if self.left < 0.0:
+            raise _LostError
+
+
+class _Paid(Problem):
+    """A balance whose evaluations a budget pays, with its margins or without them.
+
+    Without them its corners are no events, but places at which the steps are short.
+    """
+
+    def __init__(self, inner: Balance, budget: _Budget, margins: bool) -> None:
+        Problem.__init__(self, inner.unknowns, inner.margins if margins else 0, inner.outputs, inner.rank)
+        self.inner, self.budget, self.group = inner, budget, inner.group
+        self.residual, self.jacobian, self.scale = inner.residual, inner.jacobian, inner.scale
+        self.output, self.growth = inner.output, inner.growth
+        if margins:
+            self.margin, self.angle, self.kind = inner.margin, inner.angle, inner.kind
+
+    def evaluate(self, z: FloatArray) -> int:
+        self.budget.take()
+        self.inner.evaluate(z)
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        self.inner.measure(z)
+        return 0
+
+    def bound(self, z: FloatArray) -> int:
+        self.inner.bound(z)
+        return 0
+
+    def report(self, z: FloatArray, direction: FloatArray) -> int:
+        self.inner.report(z, direction)
+        return 0
+
+    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
+        self.inner.condense(row, matrix)
+        return 0
+
+    def shorten(self, right: FloatArray, out: FloatArray) -> int:
+        self.inner.shorten(right, out)
+        return 0
+
+    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
+        self.inner.lengthen(reduced, out)
+        return 0
 
 
 def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
@@ -40,11 +104,13 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
     before = _end(corrected, more, range(first, max(first - TRIES, -1), -1))
     behind = _end(corrected, more, range(last, min(last + TRIES, len(path.z))))
     span = _span(corrected, before, behind)
+    balance = corrected.corrector.system.with_harmonics(more).balance()
+    budget = _Budget(balance.unknowns)
     pieces = []
     for begin, end in ((before, behind), (behind, before)):
         if begin is None:
             continue
-        piece = _followed(corrected, more, begin, end, span, begin.rises == (begin is before))
+        piece = _followed(balance, budget, begin, end, span, begin.rises == (begin is before))
         if piece is None:
             return None
         if piece.arrived:
@@ -82,26 +148,17 @@ def _end(corrected: Corrected, more: tuple[int, ...], places: Iterable[int]) -> 
 
 
 def _followed(
-    corrected: Corrected,
-    more: tuple[int, ...],
+    balance: Balance,
+    budget: _Budget,
     begin: _End,
     end: _End | None,
     span: tuple[float, float],
     forward: bool,
 ) -> _Piece | None:
     """The corrected curve from one end to the other, or as far as it stays in the span."""
-    balance = corrected.corrector.system.with_harmonics(more).balance()
-    reports = 0
-
-    def count(_: float) -> None:
-        nonlocal reports
-        reports += 1
-        if reports > PATIENCE:
-            raise _LostError
-
     stations = (float(end.z[-1]),) if end else ()
     try:
-        path = follow(balance, begin.z, span, forward, STEP, stations, count)
+        path = _path(balance, budget, begin.z, span, forward, stations)
     except _LostError:
         return None
     points = Points(balance, len(path.z))
@@ -113,6 +170,30 @@ def _followed(
         there = np.flatnonzero((path.parameter == end.z[-1]) & (off < SAME * end.amplitude.max()))
         last, arrived = (int(there[0]) + 1, True) if there.size else (last, False)
     return _Piece(amplitude[:last].max(axis=0, initial=0.0), arrived)
+
+
+def _path(
+    balance: Balance,
+    budget: _Budget,
+    start: FloatArray,
+    span: tuple[float, float],
+    forward: bool,
+    stations: tuple[float, ...],
+) -> Path:
+    """The curve from a start on, past its corners where these are many, and by way of them if that stalls."""
+    reports = 0
+
+    def count(_: float) -> None:
+        nonlocal reports
+        reports += 1
+        if reports > PATIENCE:
+            raise _LostError
+
+    if balance.unknowns >= DEAR:
+        path = follow(_Paid(balance, budget, False), start, span, forward, STEP, stations, count)
+        if path.status is not Status.STALLED:
+            return path
+    return follow(_Paid(balance, budget, True), start, span, forward, STEP, stations, count)
 
 
 def _span(corrected: Corrected, before: _End | None, behind: _End | None) -> tuple[float, float]:
