@@ -105,7 +105,10 @@ class Along:
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        x: cython.double
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
         if n >= DENSE:
             with cython.gil:
                 columns, room = np.asarray(self.columns)[:rows, :n], np.asarray(self._room)[:rows]
@@ -115,11 +118,27 @@ class Along:
         for k in range(rows):
             for i in range(n):
                 self._room[0, i] = 0.0
-            for p in range(n):
-                x = self.columns[k, p]
-                if x != 0.0:
+            p = 0
+            while p + 4 <= n:  # four together, to go through the sums less often
+                a, b, c, d = (
+                    self.columns[k, p],
+                    self.columns[k, p + 1],
+                    self.columns[k, p + 2],
+                    self.columns[k, p + 3],
+                )
+                if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
                     for i in range(n):
-                        self._room[0, i] += matrix[p, i] * x
+                        self._room[0, i] = (
+                            ((self._room[0, i] + matrix[p, i] * a) + matrix[p + 1, i] * b)
+                            + matrix[p + 2, i] * c
+                        ) + matrix[p + 3, i] * d
+                p += 4
+            while p < n:
+                a = self.columns[k, p]
+                if a != 0.0:
+                    for i in range(n):
+                        self._room[0, i] += matrix[p, i] * a
+                p += 1
             for i in range(n):
                 self.columns[k, i] = self._room[0, i]
 
@@ -132,16 +151,34 @@ class Along:
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         size: cython.double
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
         if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
             return
         size = x
         for i in range(n * n):
             self._flat[i] = self.flows.terms[slot, 0, i]
-        for j in range(1, orders + 1):
+        j = 1
+        while j + 3 <= orders:  # four together, as in `_times`
+            a, b, c, d = size, size * x, size * x * x, size * x * x * x
+            for i in range(n * n):
+                self._flat[i] = (
+                    (
+                        (self._flat[i] + a * self.flows.terms[slot, j, i])
+                        + b * self.flows.terms[slot, j + 1, i]
+                    )
+                    + c * self.flows.terms[slot, j + 2, i]
+                ) + d * self.flows.terms[slot, j + 3, i]
+            size = d * x
+            j += 4
+        while j <= orders:
             for i in range(n * n):
                 self._flat[i] += size * self.flows.terms[slot, j, i]
             size *= x
+            j += 1
         self._times(self._matrix, self.unknowns)
 
     @cython.cfunc
