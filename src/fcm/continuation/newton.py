@@ -23,6 +23,7 @@ EPS = cython.declare(cython.double, 2.220446049250313e-16)
 FAR = cython.declare(cython.double, 1e30)  # a step of this length, in the curve's own size, leads nowhere
 CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian from before it will do
 HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
+SLIGHT = cython.declare(cython.double, 1e-3)  # of the most: a second step this short is no sign of failure
 CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
 ROUNDINGS = cython.declare(
     cython.double, 8.0
@@ -55,15 +56,16 @@ class Newton:
         """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
-        than the most, or the second not half as long, it is given up; moved is then the first. Converged is
-        what has an error below CLOSE, for convergence of the order 1.5, that of a force whose slope changes
-        as a root.
+        than the most, or the second neither slight nor half as long, it is given up; moved is then the first.
+        Converged is what has an error below CLOSE, for convergence of the order 1.5, that of a force whose
+        slope changes as a root.
         """
         i: cython.Py_ssize_t
         size: cython.Py_ssize_t = self.problem.unknowns + 1
         count: cython.int
         step: cython.double
         ratio: cython.double
+        limit: cython.double
         before: cython.double = reach
         self.guess[:] = self.z
         self.unsure = 0.0
@@ -74,7 +76,12 @@ class Newton:
             if most < FAR:
                 if count == 0:
                     self.moved = step
-                if not step < (most if count == 0 else 0.5 * before if count == 1 else FAR):
+                    limit = most
+                elif count == 1:  # of short steps the first may be rounding, in a stiff direction
+                    limit = max(0.5 * before, SLIGHT * most)
+                else:
+                    limit = FAR
+                if not step < limit:
                     return False
             if self.problem.soft and step < before and self.settled(step, step / before, count):
                 return self.direct()
