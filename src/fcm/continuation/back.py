@@ -15,7 +15,7 @@ BACK = (1, 8, 64)  # points by which a curve is taken back: one attempt each
 
 def earlier(front: Front, trail: Trail, points: int) -> bool:
     """Whether the front is at the last plain point so many points back or more; the trail ends there then."""
-    kept = trail.state()
+    kept = trail.points()
     plain = np.flatnonzero(kept.mark[: max(trail.count - points, 0)] == 0)
     if not plain.size:
         return False

@@ -131,7 +131,7 @@ class Soft:
         """Whether a fold beyond the first so many points is an old one: a step has led to a closed curve."""
         if self.trail.count < count + 2:  # nothing within the step
             return False
-        kept = self.trail.state()
+        kept = self.trail.points()
         folds = np.flatnonzero(kept.mark & Mark.FOLD)
         new = folds[folds >= count]
         if not new.size:

@@ -14,13 +14,25 @@ from fcm.continuation.place import Place
 ROOM = 256  # points for which there is room at first
 
 
-class Kept(NamedTuple):
-    """The points of a trail."""
+class Points(NamedTuple):
+    """Points of a trail."""
 
     z: FloatArray  # (point, unknown + 1)
     direction: FloatArray
     mark: npt.NDArray[np.int64]  # (point,)
     rest: FloatArray  # (point, 2) orientation, shift
+
+
+class Kept(NamedTuple):
+    """The points of a trail: those before the last do not change any more, and are not copied."""
+
+    before: Points
+    last: tuple[FloatArray, FloatArray, int, float, float]  # to be put again
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.before.mark) + 1
 
 
 @cython.cclass
@@ -81,7 +93,7 @@ class Trail:
         return np.array(self.z[self.count - 1])
 
     def tail(self) -> tuple[FloatArray, FloatArray, int, float, float]:
-        """The last point, to be put again."""
+        """A copy of the last point, to be put again."""
         k = self.count - 1
         rest = float(self.rest[k, 0]), float(self.rest[k, 1])
         return self.last(), np.array(self.direction[k]), int(self.mark[k]), *rest
@@ -100,27 +112,32 @@ class Trail:
         first = np.array(self.z[0]), np.array(self.direction[0])
         self.put(*first, self.mark[0], self.rest[0, 0], self.rest[0, 1])
 
+    def points(self) -> Points:
+        """The points as they are now."""
+        return self._first(self.count)
+
+    def _first(self, count: int) -> Points:
+        z, direction = np.asarray(self.z)[:count], np.asarray(self.direction)[:count]
+        return Points(z, direction, np.asarray(self.mark)[:count], np.asarray(self.rest)[:count])
+
     def state(self) -> Kept:
-        """A copy of the points."""
-        kept = slice(self.count)
-        z, direction = np.array(np.asarray(self.z)[kept]), np.array(np.asarray(self.direction)[kept])
-        return Kept(
-            z, direction, np.array(np.asarray(self.mark)[kept]), np.array(np.asarray(self.rest)[kept])
-        )
+        """The points as they will be kept, whatever comes after."""
+        return Kept(self._first(self.count - 1), self.tail())
 
     def restore(self, kept: Kept) -> None:
         """Have these points and no others."""
         self.count = 0
-        for z, direction, mark, rest in zip(*kept, strict=True):
+        for z, direction, mark, rest in zip(*kept.before, strict=True):
             self.put(np.array(z), np.array(direction), mark, rest[0], rest[1])
+        self.put(*kept.last)
 
     def path(self, status: Status, evaluations: int) -> Path:
         """The points as they are."""
-        z, direction, mark, rest = self.state()
+        z, direction, mark, rest = self.points()
         return Path(
-            z=z,
-            direction=direction,
-            mark=mark,
+            z=np.array(z),
+            direction=np.array(direction),
+            mark=np.array(mark),
             orientation=np.array(rest[:, 0]),
             shift=np.array(rest[:, 1]),
             status=status,

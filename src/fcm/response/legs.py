@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from fcm.continuation import Mark, Path, Stage, Status, follow
-from fcm.continuation.trail import Kept
+from fcm.continuation.trail import Kept, Points
 from fcm.orbit.problem import OrbitProblem
 from fcm.run import Report
 from fcm.scene.model import FloatArray
@@ -26,7 +26,7 @@ class Leg:
     stage: Stage | None
 
 
-LEGS = (Leg, Path, Stage, Status, Kept, Mark)  # what is saved consists of these
+LEGS = (Leg, Path, Stage, Status, Kept, Points, Mark)  # what is saved consists of these
 
 
 class TimeOver(Exception):  # noqa: N818
@@ -84,7 +84,7 @@ class Legs:
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
-        self.report(covered, f"{len(stage.kept.z)} points")
+        self.report(covered, f"{stage.kept.count} points")
         if self.end is not None and time.process_time() > self.end:
             raise TimeOver
 
