@@ -13,7 +13,7 @@ from fcm.continuation import Mark, Status, follow
 from fcm.harmonic import multipliers as module
 from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.spectrum import Kind, Spectrum, even
-from fcm.harmonic.stability import multipliers, stability
+from fcm.harmonic.stability import multipliers, stability, with_points
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.motion import State, simulate
@@ -145,6 +145,47 @@ def test_flips_are_where_the_exact_motion_has_them():
     )
     assert between.any()
     np.testing.assert_array_equal(result.stable, np.where(between, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("n_0", "damping", "window"), [(0.0, 0.02, (0.72, 0.78)), (0.5, 0.013, (0.765, 0.795))]
+)
+@pytest.mark.parametrize("step", [0.2, 0.1])
+def test_a_window_between_two_points_is_found(n_0, damping, window, step):
+    scene = yang(n_0)
+    scene = replace(scene, modal=replace(scene.modal, damping=np.array([damping, 0.01])), max_step=step)
+    of, found = path(scene, 3, (0.6, 0.95))
+    result = stability(of, found)
+    first, last = (crossing.frequency for crossing in result.crossings)
+    grown = []  # slowly: at one frequency after the other
+    for omega in np.linspace(*window, 25):
+        (z,) = solutions(of, omega).solutions
+        grown += [omega] if np.abs(multipliers(of, z)).max() > 1.0 else []
+    assert window[0] < first < grown[0] < grown[-1] < last < window[1]
+    assert last - first < grown[-1] - grown[0] + 2.0 * (window[1] - window[0]) / 24
+    assert [crossing.kind for crossing in result.crossings] == [Kind.FLIP, Kind.FLIP]
+    whole = with_points(found, result.inserted)
+    stable = np.insert(
+        result.stable, [one.after + 1 for one in result.inserted], [one.stable for one in result.inserted]
+    )
+    inside = (whole.parameter > first) & (whole.parameter < last)
+    assert inside.any()
+    np.testing.assert_array_equal(stable, np.where(inside, 0.0, 1.0))
+    middle = 0.5 * (first + last)
+    assert not periodic(scene, middle).stable
+    assert all(periodic(scene, omega).stable for omega in window)
+
+
+def test_a_window_within_one_step_is_the_same_with_points_inside():
+    scene = yang(0.5)
+    scene = replace(scene, modal=replace(scene.modal, damping=np.array([0.013, 0.01])))
+    several = []
+    for step in (0.2, 0.05, 0.01, 0.002):
+        of, found = path(replace(scene, max_step=step), 3, (0.6, 0.95))
+        several.append([crossing.frequency for crossing in stability(of, found).crossings])
+    assert len(several[0]) == 2
+    for frequencies in several[1:]:
+        assert frequencies == pytest.approx(several[0], abs=1e-8)
 
 
 CHAOS = {

@@ -31,6 +31,7 @@ class Verdict(NamedTuple):
     turn: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
     passive: bool = False  # no contact slips or opens
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
+    values: tuple[complex, ...] = ()  # the multipliers
 
     @property
     def unknown(self) -> bool:
@@ -50,6 +51,7 @@ class Spectrum:
     other: float  # greatest of the others, -inf if there is none
     kind: Kind  # of that
     turn: float  # as in `Verdict`
+    values: tuple[complex, ...] = ()
 
     @classmethod
     def of(cls, values: list[complex]) -> Spectrum:
@@ -64,7 +66,8 @@ class Spectrum:
                 other, kind = size, Kind.PAIR if value.imag else Kind.FLIP
             if size > SMALL and value.imag != 0.0:
                 turn = min(turn, math.pi - abs(cmath.phase(value)))
-        return cls(positive, math.log(other) if other > 0.0 else -math.inf, kind, turn)
+        size = math.log(other) if other > 0.0 else -math.inf
+        return cls(positive, size, kind, turn, tuple(values))
 
     @property
     def odd(self) -> bool:
@@ -83,7 +86,7 @@ class Spectrum:
             real = sorted(self.positive, key=abs)[without_nearest:]
             most = max((size for size in real if size > STABLE), default=most)
         growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.REAL)
-        return Verdict(float(growth <= STABLE), growth, kind, self.turn)
+        return Verdict(float(growth <= STABLE), growth, kind, self.turn, values=self.values)
 
 
 def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:

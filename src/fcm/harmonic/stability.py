@@ -2,28 +2,32 @@
 
 Between two folds the number of real multipliers above +1 is even or odd throughout, as the sign of the
 balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others
-decide, at the ends and at as many points between as it takes to see that the growth keeps its sign.
+decide, at the ends and at as many points between as it takes to see that the growth keeps its sign; and
+where it may change its sign twice between neighbours, at places between these (`windows`).
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from math import isnan
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Between, Mark, Path
-from fcm.harmonic.multipliers import multipliers, multipliers_of
+from fcm.continuation import Path
+from fcm.harmonic.inserted import Crossing, Inserted, with_points
+from fcm.harmonic.looked import Looked
+from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
+from fcm.harmonic.windows import apart, dip
 from fcm.scene.model import FloatArray
 
 IntArray = npt.NDArray[np.intp]
 
-__all__ = ["Crossing", "Kind", "Stability", "multipliers", "stability"]
+__all__ = ["Crossing", "Inserted", "Kind", "Stability", "multipliers", "stability", "with_points"]
 
 SPAN = 16  # points between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
@@ -33,22 +37,9 @@ ENOUGH = -0.3  # growth that is as good as any that is less
 FINE = 1e-9  # of a step: a crossing is known to this, or to a growth of ZERO
 ZERO = 1e-10
 LOOKS = 60  # at a crossing
-
-
-@dataclass(frozen=True)
-class Crossing:
-    """A point of the curve at which stability changes without a fold."""
-
-    after: int  # the point of the path that it follows
-    kind: Kind
-    z: FloatArray  # (unknown + 1,)
-    direction: FloatArray  # (unknown + 1,) along the curve
-    orientation: float
-
-    @property
-    def frequency(self) -> float:
-        """[rad/s]"""
-        return float(self.z[-1])
+DIPS = 4  # times that a way between two points is divided in search of a window
+PHASE = 1.5  # [rad] by which multipliers that are not small turn at most between points that are looked at
+AHEAD, ABOUT = 1.5, 0.4  # times that, and [rad], by which two of them may come nearer to one another
 
 
 @dataclass(frozen=True)
@@ -58,6 +49,12 @@ class Stability:
     stable: FloatArray
     crossings: tuple[Crossing, ...]
     evaluations: int  # of multipliers
+    inside: tuple[Inserted, ...] = ()  # of windows between two points
+
+    @property
+    def inserted(self) -> list[Inserted]:
+        """Points to be added to the path, in order."""
+        return sorted((*self.crossings, *self.inside), key=lambda one: one.place)
 
 
 def stability(system: System, path: Path) -> Stability:
@@ -69,102 +66,136 @@ def stability(system: System, path: Path) -> Stability:
     return _Along(system, path).run()
 
 
-def with_points(path: Path, crossings: Sequence[Crossing]) -> Path:
-    """The path with the points of crossings on it."""
-    if not crossings:
-        return path
-    at = np.array([crossing.after for crossing in crossings]) + 1
-    return replace(
-        path,
-        z=np.insert(path.z, at, [crossing.z for crossing in crossings], axis=0),
-        direction=np.insert(path.direction, at, [crossing.direction for crossing in crossings], axis=0),
-        mark=np.insert(path.mark, at, int(Mark.CROSSING)),
-        orientation=np.insert(path.orientation, at, [crossing.orientation for crossing in crossings]),
-        shift=np.insert(path.shift, at, path.shift[at - 1]),
-    )
-
-
 class _Along:
     def __init__(self, system: System, path: Path) -> None:
-        self.system, self.path = system, path
-        self.verdicts: dict[int, Verdict] = {}
-        self.evaluations = 0
-        self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
-        self.fold = (path.mark & Mark.FOLD) != 0
+        self.path, self.looked = path, Looked(system, path)
 
     def run(self) -> Stability:
         stable = np.zeros(self.path.z.shape[0])
         crossings: list[Crossing] = []
         for first, last in _runs(self._even()):
             self._look(first, last)
-            at = np.array(sorted(i for i in self.verdicts if first <= i <= last))
-            known = np.array([self.verdicts[i].stable for i in at.tolist()])
+            self._hidden(first, last)
+            places = self.looked.among(first, last)
+            at = np.array([int(t) for t in places if t == int(t)])
+            known = np.array([self.looked.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
             stable[first : last + 1] = known[_nearer(at, first, last)]
-            crossings += self._crossings(at)
-        return Stability(stable, tuple(crossings), self.evaluations)
+            crossings += self._crossings(places)
+        return Stability(stable, tuple(crossings), self.looked.evaluations, tuple(self._inside(stable)))
 
     def _even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
         sign = self.path.orientation * np.sign(self.path.direction[:, -1])
-        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.fold
+        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.looked.fold
         return even
-
-    def _verdict(self, i: int) -> Verdict:
-        if i not in self.verdicts:
-            self.evaluations += 1
-            self.verdicts[i] = self.multipliers.verdict(self.path.z[i], bool(self.fold[i]))
-        return self.verdicts[i]
 
     def _look(self, first: int, last: int) -> None:
         """Enough points of a run."""
         parts = max(-(-(last - first) // SPAN), 1)
-        nodes = np.unique(np.linspace(first, last, parts + 1).astype(int)).tolist()
+        turned = self.looked.turned[first : last + 1]
+        turns = np.floor((turned - turned[0]) / PHASE)
+        some = np.linspace(first, last, parts + 1).astype(int)
+        nodes = np.union1d(some, first + 1 + np.flatnonzero(np.diff(turns))).tolist()
         for i in nodes:
-            self._verdict(i)
+            self.looked.verdict(i)
         for a, b in itertools.pairwise(nodes):
             self._between(a, b)
+
+    def _hidden(self, first: int, last: int) -> None:
+        """Look where a window may be hidden between two places of a run that were looked at."""
+        places = self.looked.among(first, last)
+        for k, (a, b) in enumerate(itertools.pairwise(places)):
+            self._dips(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], DIPS)
+
+    def _dips(self, before: list[float], ends: tuple[float, float], after: list[float], times: int) -> None:
+        """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
+        t = self._doubtful(before, ends, after) if times > 0 else None
+        if t is None or not ends[0] < t < ends[1]:
+            return
+        one, found, other = (self.looked.verdicts[place].stable for place in (ends[0], t, ends[1]))
+        if found in (one, other) or math.isnan(found):
+            self._dips(before, (ends[0], t), [ends[1]], times - 1)
+            self._dips([ends[0]], (t, ends[1]), after, times - 1)
+            return
+        self.looked.verdict(int(t)), self.looked.verdict(math.ceil(t))
+        self._between(math.ceil(ends[0]), int(t))
+        self._between(math.ceil(t), int(ends[1]))
+
+    def _doubtful(self, before: list[float], ends: tuple[float, float], after: list[float]) -> float | None:
+        """A place between two, with its verdict, at which stability may be another; None if there is none."""
+        one, other = (self.looked.verdicts[t] for t in ends)
+        if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
+            return None
+        if math.isnan(one.stable) != math.isnan(other.stable):
+            return self._edge(*ends)
+        if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(ends)):
+            return None
+        verdicts, seen = self.looked.verdicts, self.looked.seen
+        alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
+        low, high = (seen(t) for t in ends)
+        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive])
+        return None if length is None else self.looked.put(length)
+
+    def _edge(self, a: float, b: float) -> float | None:
+        """A place between one that is told and one that is not: this may be the edge of a window."""
+        if self.looked.grows(a) == self.looked.grows(b) or b - a > 1.0:
+            return None
+        return self.looked.put(0.5 * (self.looked.seen(a).length + self.looked.seen(b).length))
+
+    def _may_meet(self, ends: tuple[float, float]) -> bool:
+        """Whether two multipliers may meet between two places of a stable way."""
+        nearest = sum(apart(self.looked.verdicts[t]) for t in ends)
+        return nearest < AHEAD * self.looked.way(*ends) + ABOUT
+
+    def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
+        """The places between points that are stable where both neighbours are not, or the other way round."""
+        for t, one in self.looked.between.items():
+            before, after = stable[int(t) : int(t) + 2].tolist()
+            if before == after != one.stable and not math.isnan(one.stable):
+                yield one
 
     def _between(self, a: int, b: int) -> None:
         """Look between two points until neither the verdict nor a change of its sign can hide there."""
         if b - a < 2:
             return
-        one, other = self._verdict(a), self._verdict(b)
+        one, other = self.looked.verdict(a), self.looked.verdict(b)
         if one.passive and other.passive:
             return
         middle = (a + b) // 2
-        if not _straight(one, self._verdict(middle), other):
+        if not _straight(one, self.looked.verdict(middle), other):
             self._between(a, middle)
             self._between(middle, b)
 
-    def _crossings(self, at: IntArray) -> Iterator[Crossing]:
-        """Where the growth changes sign between neighbours of which both are told."""
-        for a, b in itertools.pairwise(at.tolist()):
-            one, other = self.verdicts[a], self.verdicts[b]
-            if b > a + 1 or one.unknown or other.unknown:
-                continue
-            if (one.growth > 0.0) != (other.growth > 0.0):
-                found = self._crossing(a)
+    def _crossings(self, places: list[float]) -> Iterator[Crossing]:
+        """Where the growth changes sign between places that are told, and what is not told between them."""
+        known = [t for t in places if not math.isnan(self.looked.verdicts[t].growth)]
+        told = [k for k, t in enumerate(known) if not math.isnan(self.looked.verdicts[t].stable)]
+        for first, last in itertools.pairwise(told):
+            ways = itertools.pairwise(known[first : last + 1])
+            changes = [(a, b) for a, b in ways if self.looked.grows(a) != self.looked.grows(b)]
+            if len(changes) == 1 and math.ceil(changes[0][1]) == int(changes[0][0]) + 1:
+                found = self._crossing(*changes[0])
                 if found is not None:
                     yield found
 
-    def _crossing(self, a: int) -> Crossing | None:
-        """Where the growth changes sign between point a and the next: by secants that close in (Illinois)."""
-        curve = Between(self.system.balance(), self.path, a)
-        low, high, last, found = 0.0, 1.0, 0, None
-        before, after = (max(self.verdicts[i].growth, ENOUGH) for i in (a, a + 1))
-        kind = self.verdicts[a if before > 0.0 else a + 1].kind
+    def _crossing(self, a: float, b: float) -> Crossing | None:
+        """Where the growth changes sign between two places: by secants that close in (Illinois)."""
+        first = int(a)
+        curve = self.looked.curve(first)
+        low, high, last, found = a - first, b - first, 0, None
+        before, after = (max(self.looked.verdicts[t].growth, ENOUGH) for t in (a, b))
+        kind = self.looked.verdicts[a if before > 0.0 else b].kind
         for _ in range(LOOKS):
             at = (low * after - high * before) / (after - before)
             if high - low < FINE or not curve.put(at):
                 break
-            self.evaluations += 1
-            verdict = self.multipliers.verdict(curve.z)
+            verdict = self.looked.judge(curve.z)
             now = max(verdict.growth, ENOUGH)
-            if isnan(now):
+            if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
-            found = Crossing(a, kind, curve.z, curve.direction, curve.orientation)
+            found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
             if abs(now) < ZERO:
                 break
             if (now > 0.0) == (before > 0.0):
@@ -186,7 +217,7 @@ def _runs(flags: npt.NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
 def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
     """Whether three verdicts agree, with growths so nearly on a line that none between has another sign."""
     verdicts = (one, middle, other)
-    if all(isnan(v.stable) for v in verdicts):
+    if all(math.isnan(v.stable) for v in verdicts):
         return True
     if not one.stable == middle.stable == other.stable:
         return False

@@ -16,7 +16,7 @@ from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
-from fcm.harmonic.stability import Crossing, stability, with_points
+from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.results.result import Curve, Peak
@@ -143,9 +143,10 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
     paths, shown, errors, stable = [], [], [], []
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path)
-        after = np.array([crossing.after for crossing in judged.crossings], dtype=np.intp)
-        paths.append(with_points(path, judged.crossings))
-        shown.append(_with_reported(found.system, known, judged.crossings, after))
+        inserted = judged.inserted
+        after = np.array([one.after for one in inserted], dtype=np.intp)
+        paths.append(with_points(path, inserted))
+        shown.append(_with_reported(found.system, known, inserted, after))
         errors.append(
             replace(
                 error,
@@ -153,17 +154,17 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
                 truncation=_between(error.truncation, after),
             )
         )
-        stable.append(np.insert(judged.stable, after + 1, 1.0))  # a crossing counts to the stable side
+        stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
     return replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors)), stable
 
 
-def _with_reported(system: System, known: Reported, crossings: Sequence[Crossing], after: Rows) -> Reported:
-    """With what is reported of crossings inserted after some points."""
-    if not crossings:
+def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:
+    """With what is reported of points inserted after some others."""
+    if not inserted:
         return known
-    z, direction = (np.array([getattr(one, name) for one in crossings]) for name in ("z", "direction"))
+    z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
     return known.with_rows(after, reported_at(system, z, direction))
 
 

@@ -1,0 +1,65 @@
+"""Points put between those of a path: where stability changes, and within a window between two points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.continuation import Mark, Path
+from fcm.harmonic.spectrum import Kind
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Inserted:
+    """A point of the curve between two of the path, within a window in which stability is another."""
+
+    place: float  # the point of the path that it follows, and the part of the way to the next
+    z: FloatArray  # (unknown + 1,)
+    direction: FloatArray  # (unknown + 1,) along the curve
+    orientation: float
+    stable: float = 1.0
+
+    @property
+    def after(self) -> int:
+        """The point of the path that it follows."""
+        return int(self.place)
+
+    @property
+    def mark(self) -> Mark:
+        """What it is besides a point."""
+        return Mark.NONE
+
+    @property
+    def frequency(self) -> float:
+        """[rad/s]"""
+        return float(self.z[-1])
+
+
+@dataclass(frozen=True)
+class Crossing(Inserted):
+    """A point of the curve at which stability changes without a fold; it counts to the stable side."""
+
+    kind: Kind = Kind.PAIR
+
+    @property
+    def mark(self) -> Mark:
+        """What it is besides a point."""
+        return Mark.CROSSING
+
+
+def with_points(path: Path, inserted: Sequence[Inserted]) -> Path:
+    """The path with points between its own, in order."""
+    if not inserted:
+        return path
+    at = np.array([one.after for one in inserted]) + 1
+    return replace(
+        path,
+        z=np.insert(path.z, at, [one.z for one in inserted], axis=0),
+        direction=np.insert(path.direction, at, [one.direction for one in inserted], axis=0),
+        mark=np.insert(path.mark, at, [int(one.mark) for one in inserted]),
+        orientation=np.insert(path.orientation, at, [one.orientation for one in inserted]),
+        shift=np.insert(path.shift, at, path.shift[at - 1]),
+    )

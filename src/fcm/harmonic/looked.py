@@ -1,0 +1,94 @@
+"""The places of a path at which multipliers were looked at: points, by their numbers, and places between.
+
+A place between is the number of the point that it follows, and the part of the way to the next.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fcm.continuation import Between, Mark, Path
+from fcm.harmonic.inserted import Inserted
+from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.spectrum import SMALL, Verdict
+from fcm.harmonic.system import System
+from fcm.harmonic.windows import Seen, seen
+from fcm.scene.model import FloatArray
+
+
+class Looked:
+    """The verdicts of places, those between the points of the path, and how many were calculated."""
+
+    def __init__(self, system: System, path: Path) -> None:
+        self.path, self.evaluations = path, 0
+        self.verdicts: dict[float, Verdict] = {}
+        self.between: dict[float, Inserted] = {}
+        self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
+        self.fold = (path.mark & Mark.FOLD) != 0
+        self.length, self.turned = _lengths(path), _turned(system, path)
+        self._system, self._seen = system, dict[float, Seen]()
+
+    def verdict(self, i: int) -> Verdict:
+        """Of a point."""
+        if i not in self.verdicts:
+            self.evaluations += 1
+            self.verdicts[i] = self.multipliers.verdict(self.path.z[i], bool(self.fold[i]))
+        return self.verdicts[i]
+
+    def judge(self, z: FloatArray) -> Verdict:
+        """Of a solution that is not kept."""
+        self.evaluations += 1
+        return self.multipliers.verdict(z)
+
+    def among(self, first: int, last: int) -> list[float]:
+        """The places from one point to another of which there is a verdict, in order."""
+        return sorted(t for t in self.verdicts if first <= t <= last)
+
+    def grows(self, t: float) -> bool:
+        """Whether a disturbance does at a place with a verdict."""
+        return self.verdicts[t].growth > 0.0
+
+    def seen(self, t: float) -> Seen:
+        """What is known of a place with a verdict."""
+        if t not in self._seen:
+            k, part = int(t), t - int(t)
+            length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
+            self._seen[t] = seen(float(length), self.verdicts[t])
+        return self._seen[t]
+
+    def way(self, a: float, b: float) -> float:
+        """[rad] by how much multipliers turn, about, between points around two places."""
+        return float(self.turned[math.ceil(b)] - self.turned[int(a)])
+
+    def curve(self, k: int) -> Between:
+        """From a point to the next."""
+        return Between(self._system.balance(), self.path, k)
+
+    def put(self, length: float) -> float | None:
+        """The place at a length, if it is found between two points; it has a verdict then."""
+        k = int(np.searchsorted(self.length, length)) - 1
+        t = k + float((length - self.length[k]) / (self.length[k + 1] - self.length[k]))
+        curve = self.curve(k)
+        if not k < t < k + 1 or not curve.put(t - k):
+            return None
+        self.verdicts[t] = verdict = self.judge(curve.z)
+        self.between[t] = Inserted(t, curve.z, curve.direction, curve.orientation, verdict.stable)
+        return t
+
+
+def _lengths(path: Path) -> FloatArray:
+    """Way along the path up to each point, relative to the size of the solution and to the frequency."""
+    x, omega = path.z[:, :-1], path.parameter
+    size = np.abs(x).max(axis=1, initial=np.finfo(float).tiny)[1:]
+    steps = np.abs(np.diff(x, axis=0)).max(axis=1, initial=0.0) / size + np.abs(np.diff(omega)) / omega[1:]
+    return np.concatenate(([0.0], np.cumsum(steps)))
+
+
+def _turned(system: System, path: Path) -> FloatArray:
+    """[rad] by how much multipliers that are not small have turned up to each point, about."""
+    linear, omega = system.linear, path.parameter
+    lasting = np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf)) > SMALL
+    fastest = float(np.real(linear.natural[lasting]).max(initial=0.0))
+    return np.concatenate(([0.0], np.cumsum(np.abs(np.diff(2.0 * np.pi * fastest / omega)))))

@@ -1,0 +1,116 @@
+r"""Where stability may change and change back between two places of a curve that were looked at.
+
+The growth of a disturbance is no guide there: a pair of multipliers l keeps its size until it meets another,
+or the real axis, and leaves at once. But multipliers leave where these products vanish, which vary smoothly
+along the curve whatever the multipliers do,
+
+    prod_i (1 + l_i)   at a flip,        prod_{i<j} (1 - l_i l_j)   where a pair leaves,
+
+so that the parabola through three places tells where the least value is, and whether it may be below zero.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.spectrum import SMALL, Verdict
+
+DOUBT = 0.2  # of the differences between three values, by which what they foretell may be too high
+MANY = 60  # multipliers, of which more have too many pairs
+LESS = 0.5  # size of multipliers that matter: one of a pair of 0.75 is not less as the other leaves
+NARROW = 1e-3  # a way, relative to the size of the solution, that is not divided
+LEAST = 1e-300  # a product, or a length
+NEAR = 0.1  # of the way between two places: what is that near to one of them is known
+
+
+class Seen(NamedTuple):
+    """A place that was looked at."""
+
+    length: float  # along the curve
+    stable: float
+    growth: float
+    flip: float  # logarithms of the products
+    pair: float
+
+
+def apart(verdict: Verdict) -> float:
+    """[rad] that multipliers which are not small have to turn at least until two of them meet."""
+    angles = [abs(cmath.phase(value)) for value in verdict.values if abs(value) > SMALL]
+    angles = sorted(angle for angle in angles if angle > 0.0)
+    meetings = [math.pi - angle for angle in angles[-1:]]
+    for one, other in zip(angles, angles[2:], strict=False):
+        meetings.append(other - one)
+    return min(meetings, default=math.inf)
+
+
+def seen(length: float, verdict: Verdict) -> Seen:
+    """A place with its verdict."""
+    values = np.array([value for value in verdict.values if abs(value) > LESS], dtype=np.complex128)
+    flip, pair = np.abs(1.0 + values), np.zeros(0)
+    if values.size <= MANY:
+        i, j = _pairs(values.size)
+        pair = np.abs(1.0 - values[i] * values[j])
+    sums = (float(np.log(product + LEAST).sum()) for product in (flip, pair))
+    return Seen(length, verdict.stable, verdict.growth, *sums)
+
+
+@lru_cache(maxsize=16)
+def _pairs(count: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    i, j = np.triu_indices(count, 1)
+    return i, j
+
+
+def dip(low: Seen, high: Seen, places: Sequence[Seen]) -> float | None:
+    """Length at which a product is foretold to be so small that stability may have changed; None if nowhere.
+
+    Parameters
+    ----------
+    low, high : Seen
+        Between which it is looked for; both stable or both not.
+    places : sequence of Seen
+        These and their neighbours in order, three or four.
+    """
+    near, most, at = NEAR * (high.length - low.length), 0.0, None
+    if high.length - low.length < NARROW:
+        return None
+    for k in range(len(places) - 2):
+        three = places[k : k + 3]
+        for values in _positive(three):
+            place, least = _lowest([one.length for one in three], values)
+            doubt = (DOUBT * (max(values) - least) - least) / max(values)
+            if low.length + near < place < high.length - near and doubt > most:
+                most, at = doubt, place
+    return at
+
+
+def _positive(three: Sequence[Seen]) -> list[list[float]]:
+    """Functions along the curve that are positive while stability stays what it is, of any unit."""
+    if three[0].stable == 0.0:
+        return [[one.growth for one in three]]
+    return [_relative([one.flip for one in three]), _relative([one.pair for one in three])]
+
+
+def _relative(logarithms: list[float]) -> list[float]:
+    greatest = max(logarithms)
+    return [math.exp(one - greatest) for one in logarithms]
+
+
+def _lowest(s: list[float], f: list[float]) -> tuple[float, float]:
+    """Where the parabola through three points is least, and how much that is; nan if nowhere.
+
+    >>> _lowest([0.0, 1.0, 3.0], [4.0, 1.0, 1.0])
+    (2.0, 0.0)
+    """
+    first, second = ((f[k + 1] - f[k]) / max(s[k + 1] - s[k], LEAST) for k in (0, 1))
+    bend = (second - first) / max(s[2] - s[0], LEAST)
+    if not bend > 0.0:
+        return math.nan, math.nan
+    at = 0.5 * (s[0] + s[1] - first / bend)
+    return at, f[0] + (at - s[0]) * (first + bend * (at - s[1]))
