@@ -10,7 +10,7 @@ cdef class Measures:
     cdef readonly int signature
     cdef double piece_energy, piece_path
     cdef readonly double[::1] value
-    cdef double[::1] points, weights
+    cdef double[::1] points, weights, turn_cos, turn_sin
     cdef void measure(self, double k_u) noexcept nogil
     cdef void bear(self, double k_u) noexcept nogil
     cdef void greatest(self) noexcept nogil

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import cos, fabs, sin
 
 from fcm.contact.periodic.gauss import gauss
 
@@ -85,6 +85,7 @@ class Measures:
         self.dissipation = self.slip_path = self.piece_energy = self.piece_path = 0.0
         self.signature = 0
         self.points, self.weights = _GAUSS
+        self.turn_cos, self.turn_sin = np.zeros((2, POINTS))
 
     def take(self, k_u: float) -> None:
         """`measure`, called from Python."""
@@ -209,14 +210,22 @@ class Measures:
         row: cython.int = LOWER if self.cycle.state[p] > 0 else UPPER
         parts: cython.int = cython.cast(cython.int, length * max(self.motion.highest, 1)) + 1
         step: float = length / parts
-        theta: float
+        c: float
+        s: float
         rate: float
         load: float
+        for j in range(POINTS):
+            self.turn_cos[j], self.turn_sin[j] = cos(step * self.points[j]), sin(step * self.points[j])
         self.piece_energy = self.piece_path = 0.0
         for i in range(parts):
+            c, s = cos(self.cycle.begin[p] + step * i), sin(self.cycle.begin[p] + step * i)
             for j in range(POINTS):
-                theta = self.cycle.begin[p] + step * (i + self.points[j])
-                rate, load = self.motion.rate_and_value(row, REACH, theta)
+                rate, load = self.motion.rate_and_value(
+                    row,
+                    REACH,
+                    c * self.turn_cos[j] - s * self.turn_sin[j],
+                    s * self.turn_cos[j] + c * self.turn_sin[j],
+                )
                 rate = max(rate * self.cycle.state[p], 0.0) * self.weights[j] * step
                 self.piece_energy += rate * max(load, 0.0)
                 self.piece_path += rate

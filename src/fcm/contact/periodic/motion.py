@@ -195,13 +195,13 @@ class Motion:
         """Value and slope of a row at an angle."""
         slope: float
         value: float
-        slope, value = self.rate_and_value(row, row, theta)
+        slope, value = self.rate_and_value(row, row, cos(theta), sin(theta))
         return value, slope
 
-    def rate_and_value(self, row: cython.int, other: cython.int, theta: float) -> tuple[float, float]:
-        """Slope of a row and value of another at an angle."""
-        c_1: float = cos(theta)
-        s_1: float = sin(theta)
+    def rate_and_value(
+        self, row: cython.int, other: cython.int, c_1: float, s_1: float
+    ) -> tuple[float, float]:
+        """Slope of a row and value of another at an angle, of which the cosine and the sine are given."""
         c: float = c_1
         s: float = s_1
         turned: float
