@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
+SMALL = 1 << 16  # bytes of a variable up to which to compress it takes longer than to write it
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 
 
@@ -138,6 +139,8 @@ def _described(file: Any, name: str, field: Field) -> Any:
     for dim, size in zip(field.dims, field.values.shape, strict=True):
         if dim not in file.dimensions:
             file.createDimension(dim, size)
+    if 0 < 8 * int(np.prod(field.values.shape)) <= SMALL and field.values.dtype.kind != "U":
+        return _variable(file, name, field.dims, field.values.dtype, contiguous=True)
     if not isinstance(field.values, Padded):
         return _variable(file, name, field.dims, field.values.dtype)
     step, (count, *rest) = field.values.step, field.values.shape
@@ -160,8 +163,10 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], 
         return file.createVariable(name, str, dims, **options)
     if kind.kind == "f":
         options["fill_value"] = np.nan
-    # padding is what shrinks, the digits of numbers hardly do: more effort than the least gains nothing
-    return file.createVariable(name, kind, dims, zlib=True, complevel=1, **options)
+    if not options.get("contiguous"):
+        # padding is what shrinks, the digits of numbers hardly do: more effort than the least gains nothing
+        options |= {"zlib": True, "complevel": 1}
+    return file.createVariable(name, kind, dims, **options)
 
 
 def _storable(values: Any) -> Any:
