@@ -43,7 +43,7 @@ def all_branches(
     Parameters
     ----------
     new_problem : callable
-        Makes the problem; each path has one of its own.
+        Makes the problem anew; what it made before is not used any more.
     solutions : sequence of (n + 1,)
         In the order in which they are to be followed; those at an end of the span lead inwards, those inside
         it both ways.
@@ -53,9 +53,9 @@ def all_branches(
     stations = sorted({float(z[-1]) for z in solutions})
     paths: list[Path] = []
     lost: list[FloatArray] = []
-    problem = new_problem()
     for z in solutions:
-        if any(contains(path, z, problem) for path in paths):
+        problem = new_problem() if paths else None
+        if problem is not None and any(contains(path, z, problem) for path in paths):
             continue
         path = _through(new_problem, z, span, max_step, stations, progress, along)
         if path.z.shape[0]:

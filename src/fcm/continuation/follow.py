@@ -17,6 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fcm.continuation.follower import Follower, Progress, Watch
+from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.problem import Problem
 from fcm.continuation.stage import Stage
@@ -35,6 +36,7 @@ def follow(
     stage: Stage | None = None,
     watch: Watch | None = None,
     hasty: bool = False,
+    front: Front | None = None,
 ) -> Path:
     """Follow the curve through start until the parameter leaves the span, or the curve closes.
 
@@ -60,13 +62,15 @@ def follow(
         Is given the stage before every step of a soft problem.
     hasty : bool
         Whether only the passings of stations matter: corners are gone to, and left, by longer steps.
+    front : Front, optional
+        Of the same problem, that has followed another curve to its end.
 
     Returns
     -------
     Path
         With status STALLED and without points where there is no curve at the start.
     """
-    follower = Follower(problem, span, max_step, stations, progress, hasty)
+    follower = Follower(problem, span, max_step, stations, progress, hasty, front)
     if stage is not None:
         follower.resume(stage)
     elif not follower.begin(start, forward):

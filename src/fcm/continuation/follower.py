@@ -83,8 +83,10 @@ class Follower:
         stations: Sequence[float],
         progress: Progress | None,
         hasty: bool = False,
+        front: Front | None = None,
     ) -> None:
-        self.problem, self.front, self.n = problem, Front(problem), problem.unknowns
+        self.problem, self.front, self.n = problem, front or Front(problem), problem.unknowns
+        self.front.newton.evaluations = 0
         self.low, self.high = span
         self.max_step, self.progress, self.hasty = max_step, progress, hasty
         self.near = max_step if hasty else NEAR

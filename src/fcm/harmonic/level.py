@@ -19,13 +19,17 @@ LEAST = cython.declare(cython.double, 0.1)  # levels are measured by themselves,
 class Level(Problem):
     """A balance at omega, followed in the level of its forces."""
 
-    def __init__(self, balance: Balance, omega: cython.double) -> None:
+    def __init__(self, balance: Balance, omega: cython.double = 0.0) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.group = balance.group
         self.boundless *= self.boundless  # as much again as the level may grow
-        self.balance, self.omega = balance, omega
-        balance.largest[:] = 0.0  # of another curve
-        self.z = np.zeros(balance.unknowns + 1)
+        self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
+        self.begin(omega)
+
+    def begin(self, omega: float) -> None:
+        """Another curve, at omega."""
+        self.omega = omega
+        self.balance.largest[:] = 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

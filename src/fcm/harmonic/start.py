@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
-from fcm.harmonic.level import Level
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 
@@ -115,15 +114,29 @@ def level_curve(
         level = max(low, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            path = follow(Level(system.looking, omega), start, whole, True, step, stations, hasty=hasty)
+            path = _raised(system, start, omega, whole, step, stations, hasty)
             if _back(path, low):
-                path = follow(Level(system.looking, omega), start, whole, True, FINER * step, stations)
+                path = _raised(system, start, omega, whole, FINER * step, stations)
             if _back(path, low):
                 path = replace(path, status=Status.STALLED)
             if path.z.shape[0]:
                 return path
     assert path is not None
     return path
+
+
+def _raised(
+    system: System,
+    start: FloatArray,
+    omega: float,
+    span: tuple[float, float],
+    step: float,
+    stations: tuple[float, ...],
+    hasty: bool = False,
+) -> Path:
+    level, front = system.raised
+    level.begin(omega)
+    return follow(level, start, span, True, step, stations, hasty=hasty, front=front)
 
 
 def _back(path: Path, low: float) -> bool:

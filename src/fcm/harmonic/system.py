@@ -11,9 +11,11 @@ import numpy as np
 from fcm.contact.closed_form import ClosedForm
 from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
+from fcm.continuation.front import Front
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
+from fcm.harmonic.level import Level
 from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
@@ -49,7 +51,8 @@ class System:
         """The same with other harmonics."""
         other = copy(self)
         object.__setattr__(other, "harmonics", harmonics)
-        other.__dict__.pop("looking", None)
+        for made in ("looking", "front", "raised"):
+            other.__dict__.pop(made, None)
         return other
 
     @cached_property
@@ -61,8 +64,25 @@ class System:
 
     @cached_property
     def looking(self) -> Balance:
-        """A balance for what looks at points or follows levels of the forces, one after the other."""
+        """A balance for what looks at points or follows curves, one after the other."""
         return self.balance()
+
+    @cached_property
+    def front(self) -> Front:
+        """Of `looking`, for whoever follows it."""
+        return Front(self.looking)
+
+    @cached_property
+    def raised(self) -> tuple[Level, Front]:
+        """`looking` in the level of its forces."""
+        level = Level(self.looking)
+        return level, Front(level)
+
+    def afresh(self) -> Balance:
+        """`looking` at the level 1, as if nothing had been followed yet."""
+        self.looking.largest[:] = 0.0
+        self.looking.load = 1.0
+        return self.looking
 
     def balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from fcm.continuation import Branches, Path, all_branches
+from fcm.continuation import Branches, Path, all_branches, follow
+from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.record import recorded
@@ -40,8 +42,13 @@ def traced(
     looked = tuple(solutions(system, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
     inside = [z for z in near if span[0] <= z[-1] <= span[1]]
     starts = [*(z for found in looked for z in found.solutions), *inside]
-    branches = all_branches(system.balance, starts, span, system.scene.max_step, progress)
+    branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))
     return Traced(_steady(system, branches), looked)
+
+
+def _along(system: System) -> Follow:
+    """Follows the balance that a system looks with, on the one front that it has for that."""
+    return partial(follow, front=system.front)
 
 
 def _steady(system: System, branches: Branches) -> Branches:
