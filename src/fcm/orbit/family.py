@@ -23,6 +23,8 @@ from fcm.scene.model import FloatArray, Scene
 
 STEPS = 8  # from one limit of slip to the other
 SHORTEST = 1e-3  # part of a step below which the family has an end of its own
+GROWTH = 4.0  # of a step to the next, at most
+TINY = 1e-12  # part of the reach that is none
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
 
 
@@ -111,26 +113,42 @@ class _Way:
 
     def __init__(self, system: System, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
         self.system, self.last, self.contacts, self.ended = system, begun, contacts, False
-        found = rooms(system, begun.segments, contacts)
-        reach = np.array([found[j][0].value + found[j][1].value for j in contacts])
+        self.room = self._rooms(begun)
+        self.reach = self.room.sum(axis=1)
         self.push = np.zeros(len(system.contacts))
-        self.push[contacts] = sense * reach / STEPS
+        self.push[contacts] = sense * self.reach / STEPS
+        self.slope: FloatArray | None = None  # of x by the share of the push
 
     def shots(self) -> Iterator[Shot]:
         """The motions on the way, the last one at the limits."""
-        share = 1.0
-        while share > SHORTEST and not self.ended:
+        share = longest = 1.0
+        most = GROWTH
+        while share > SHORTEST * longest and not self.ended:
             new = self._further(share)
             if new is None:
-                share *= 0.25
+                share, most = 0.25 * share, 1.0
                 continue
             self.ended = all(choice.limited for choice in new.chosen if self.push[choice.contact] != 0.0)
-            self.last, share = new, min(2.0 * share, 1.0)
+            self.slope = (new.x - self.last.x) / share
+            share, most = share * min(self._growth(new), most), GROWTH
+            self.last, longest = new, max(longest, share)
             yield new
+
+    def _growth(self, new: Shot) -> float:
+        """Of a step to the next: most of it moves the structure where that is softer than the contact."""
+        before, self.room = self.room, self._rooms(new)
+        used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
+        return 1.0 / (STEPS * max(float(used.max()), TINY))
+
+    def _rooms(self, shot: Shot) -> FloatArray:
+        """How far each contact's force is from its limits, (contact, 2)."""
+        found = rooms(self.system, shot.segments, self.contacts)
+        return np.array([(found[j][0].value, found[j][1].value) for j in self.contacts])
 
     def _further(self, share: float) -> Shot | None:
         """The motion when the contacts are stressed a little more."""
-        new = _moved(self.last, -(_residual(self.last) + share * self.push))
+        guess = None if self.slope is None else self.last.x + share * self.slope
+        new = _moved(self.last, -(_residual(self.last) + share * self.push), guess)
         if new is None or always_stuck(self.system, new.segments) != self.contacts:
             return None
         return new
@@ -158,12 +176,12 @@ def chosen(shot: Shot, wanted: FloatArray) -> Shot | None:
     return shot if done == 1.0 else None
 
 
-def _moved(shot: Shot, force: FloatArray) -> Shot | None:
+def _moved(shot: Shot, force: FloatArray, guess: FloatArray | None = None) -> Shot | None:
     """The motion near another whose contacts rest where they would have the friction forces k_u w."""
-    system, x = shot.system, shot.x.copy()
+    system, x = shot.system, shot.x.copy() if guess is None else guess
     change = -(force + _residual(shot))
     for choice in shot.chosen:
-        if not choice.limited:  # else it may be sent further beyond
+        if guess is None and not choice.limited:  # else it may be sent further beyond
             x[system.f.start + choice.contact] += change[choice.contact]
     w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
     try:
