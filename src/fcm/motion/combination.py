@@ -67,9 +67,9 @@ def _matrix(system: System, states: Codes) -> FloatArray:
     modal, m = system.scene.modal, system.modes
     a = np.zeros((system.size - 2, system.size - 2))
     a[system.q, system.p] = np.eye(m)
-    a[system.p, system.q] = -np.diag(modal.frequency**2)
+    a[system.p, system.q] = -np.diag(modal.frequency**2) - system.pull.T @ system.stretch
     a[system.p, system.p] = -np.diag(2.0 * modal.damping * modal.frequency)
-    a[system.p, -1] = system.static / modal.mass
+    a[system.p, -1] = system.steady / modal.mass
     for j, (contact, state) in enumerate(zip(system.contacts, states.tolist(), strict=True)):
         f, n = system.f.start + j, system.n.start + j
         push_u, push_v = system.tangential[j] / modal.mass, system.normal[j] / modal.mass

@@ -37,8 +37,14 @@ _POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow 
 class Flows(Forced):
     """The flows of a scene, and their forced columns at the frequency `omega` [rad/s]; see `Pool`."""
 
-    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
-        Forced.__init__(self, modal, ports, law)
+    def __init__(
+        self,
+        modal: tuple[FloatArray, ...],
+        ports: tuple[FloatArray, ...],
+        law: FloatArray,
+        springs: tuple[FloatArray, ...],
+    ) -> None:
+        Forced.__init__(self, modal, ports, law, springs)
         self._whole = np.zeros(self.size)
 
     @cython.cfunc

@@ -28,8 +28,14 @@ class Forced(Series):
     Those for more are made where they are needed, by `reach` and `look`.
     """
 
-    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
-        Series.__init__(self, modal, ports, law)
+    def __init__(
+        self,
+        modal: tuple[FloatArray, ...],
+        ports: tuple[FloatArray, ...],
+        law: FloatArray,
+        springs: tuple[FloatArray, ...],
+    ) -> None:
+        Series.__init__(self, modal, ports, law, springs)
         self._terms, self._grades = np.zeros((ORDER + 1, self.size)), np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc

@@ -1,9 +1,9 @@
 cdef class Pool:
-    cdef readonly Py_ssize_t modes, contacts, linear, size, count, clock
+    cdef readonly Py_ssize_t modes, contacts, springs, linear, size, count, clock
     cdef readonly double omega
     cdef readonly double[::1] stiffness, damping, mu, k_u, k_v, n_0
     cdef readonly double[::1] hold
-    cdef readonly double[:, ::1] constant, square, drive, slope, tangential, normal, push_u, push_v
+    cdef readonly double[:, ::1] constant, square, drive, slope, tangential, normal, push_u, push_v, stretch, pull
     cdef readonly signed char[::1] rough
     cdef readonly signed char[:, ::1] states
     cdef readonly double[::1] step

@@ -25,15 +25,23 @@ class Pool:
     Parameters
     ----------
     modal : tuple of arrays
-        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the static forces, those of sin and cos
+        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
         (2, mode), and those that grow as omega^2 (2, mode).
     ports : tuple of arrays (contact, mode)
         Shapes of u and of v, and the same divided by the modal masses.
+    springs : tuple of arrays (spring, mode)
+        Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
     law : array (5, contact)
         mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
     """
 
-    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
+    def __init__(
+        self,
+        modal: tuple[FloatArray, ...],
+        ports: tuple[FloatArray, ...],
+        law: FloatArray,
+        springs: tuple[FloatArray, ...],
+    ) -> None:
         self.stiffness, self.damping, self.hold, self.constant, self.square = (
             np.ascontiguousarray(x, dtype=np.float64) for x in modal
         )
@@ -41,6 +49,8 @@ class Pool:
         self.tangential, self.normal, self.push_u, self.push_v = (
             np.ascontiguousarray(x, dtype=np.float64) for x in ports
         )
+        self.stretch, self.pull = (np.ascontiguousarray(x, dtype=np.float64) for x in springs)
+        self.springs = self.stretch.shape[0]
         self.mu, self.k_u, self.k_v, self.n_0 = (np.ascontiguousarray(x, dtype=np.float64) for x in law[:4])
         self.rough = np.ascontiguousarray(law[4], dtype=np.int8)
         self.modes, self.contacts = self.stiffness.shape[0], self.mu.shape[0]

@@ -24,8 +24,14 @@ _SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as 
 class Series(Pool):
     """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
 
-    def __init__(self, modal: tuple[FloatArray, ...], ports: tuple[FloatArray, ...], law: FloatArray) -> None:
-        Pool.__init__(self, modal, ports, law)
+    def __init__(
+        self,
+        modal: tuple[FloatArray, ...],
+        ports: tuple[FloatArray, ...],
+        law: FloatArray,
+        springs: tuple[FloatArray, ...],
+    ) -> None:
+        Pool.__init__(self, modal, ports, law, springs)
         self._own = np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc
@@ -96,6 +102,13 @@ class Series(Pool):
                     self.drive[0, i] * sine + self.drive[1, i] * cosine + self.hold[i] * one
                     - self.stiffness[i] * z[a, i] - self.damping[i] * z[a, m + i]
                 )  # fmt: skip
+            for j in range(self.springs):
+                u = 0.0
+                for i in range(m):
+                    u += self.stretch[j, i] * z[a, i]
+                u *= factor
+                for i in range(m):
+                    z[b, m + i] -= self.pull[j, i] * u
             for j in range(c):
                 state = self.states[slot, j]
                 v = w = 0.0  # two sums, for one would wait for each addition

@@ -47,10 +47,10 @@ class State:
         if not scene.loads:
             return still
         try:
-            displacement, friction = rest_of(scene)
+            displacement, friction = rest_of(scene.whole())
         except RestError as error:
             raise SimulationError(str(error)) from None
-        return State(displacement, still.velocity, friction)
+        return State(displacement, still.velocity, friction[scene.computed()])
 
     @staticmethod
     def unloaded(scene: Scene) -> State:
@@ -64,7 +64,8 @@ class State:
         given = scene.start
         if given is None:
             return State.rest(scene)
-        return State(given.displacement, given.velocity, given.friction, given.angle)
+        friction = given.friction[scene.computed()]
+        return State(given.displacement, given.velocity, friction, given.angle)
 
 
 def entry(system: System, state: State) -> tuple[FloatArray, Codes]:

@@ -53,6 +53,8 @@ class System:
         loads = loads_of(scene)
         self.constant, self.square = modal.shapes @ loads.constant, modal.shapes @ loads.square
         self.static: FloatArray = modal.shapes @ loads.static  # modal
+        self.stretch, self.pull, pressed = held_as_springs(scene)
+        self.steady = self.static + pressed
         displacements = np.zeros((modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = modal.shapes.T
         rows = Rows(displacements)  # of the degrees of freedom
@@ -123,11 +125,12 @@ class System:
             (
                 modal.frequency**2,
                 2.0 * modal.damping * modal.frequency,
-                self.static / modal.mass,
+                self.steady / modal.mass,
                 *(np.array([one.real, one.imag]) / modal.mass for one in (self.constant, self.square)),
             ),
             (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
             law,
+            (self.stretch, self.pull),
         )
 
 
@@ -161,6 +164,29 @@ def _kernels_of(scene: Scene, flows: Callable[[], Flows]) -> _Kernels:
         kernels = made, March(made), Derivative(made), Derivative(made, 1)
         _LATEST.keep(scene, kernels)
     return kernels
+
+
+def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What stands for the contacts that are held.
+
+    The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
+    steady modal forces.
+    """
+    modal, steady = scene.modal, np.zeros(scene.modal.mass.size)
+    stretch, stiffness = list[FloatArray](), list[float]()
+    for one in scene.held:
+        contact = one.contact
+        along, across = modal.shapes @ contact.tangential, modal.shapes @ contact.normal
+        if one.open:  # the preload is missing
+            steady += across * max(contact.n_0, 0.0)
+            continue
+        steady -= across * min(contact.n_0, 0.0)  # a gap is not pressed
+        stretch, stiffness = [*stretch, across], [*stiffness, contact.k_v]
+        if has_friction(contact):
+            steady += along * (contact.k_u * one.rest)
+            stretch, stiffness = [*stretch, along], [*stiffness, contact.k_u]
+    shapes = np.array(stretch).reshape(len(stretch), -1 if stretch else modal.mass.size)
+    return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
 
 
 def _checked(omega: float) -> float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 
@@ -76,14 +78,16 @@ def harmonic_state(
 
 def balanced_states(scene: Scene, frequency: float, harmonics: tuple[int, ...] = FEW) -> list[State]:
     """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there."""
-    if not (scene.modal.frequency.all() and scene.contacts):
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts):
         return []
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
-    balanced = Balanced(scene, harmonics if len(scene.contacts) < MANY else (1,))
+    balanced, kept = Balanced(whole, harmonics if len(whole.contacts) < MANY else (1,)), scene.computed()
     found = solutions(balanced, frequency).solutions
-    return [state_of(scene, balanced.harmonics, z) for z in found]
+    states = [state_of(whole, balanced.harmonics, z) for z in found]
+    return [replace(state, friction=state.friction[kept]) for state in states]
 
 
 def state_of(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:

@@ -94,6 +94,7 @@ def inner_resonances(scene: Scene) -> list[float]:
     from fcm.harmonic.start import resonances
     from fcm.harmonic.system import System as Balanced
 
+    scene = scene.whole()
     return resonances(Balanced(scene)) if scene.modal.frequency.all() and scene.contacts else []
 
 

@@ -13,6 +13,8 @@ import numpy as np
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, shown
 from fcm.orbit.problem import OrbitProblem
+from fcm.reduction.held import foreseen as foreseen_held
+from fcm.reduction.held import lost_by, on_contacts
 from fcm.reduction.leave_out import TOLERANCE, leave_out_modes
 from fcm.reduction.mode_effect import effect, foreseen
 from fcm.reduction.sentences import on_modes
@@ -23,14 +25,16 @@ from fcm.response.legs import LEGS, Legs, TimeOver
 from fcm.response.only_peaks import peaks_alone
 from fcm.response.orbit_curve import traced_curve, visited_curve
 from fcm.response.trace import ResponseError
+from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import STATES, Visitor
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Checkpoint, Factory, Interrupted, Progress, Report, fingerprint
-from fcm.scene.model import Scene
+from fcm.scene.model import Held, Scene
 from fcm.units import UNIT
 
 METHOD = "exact"
 ONLY = "of the exact curves all points but their peaks, folds and jumps, sought near those of the balance"
+FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 
@@ -88,7 +92,7 @@ def trace_exact(
     refuse_ring(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        work = ExactWork(frequencies, limit, only is not None)
+        work = ExactWork(frequencies, limit, only is not None, tolerance is None)
         run = _Run(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
         response = run.response(scene, tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
@@ -120,6 +124,7 @@ class _Run:
                 said.append(on_modes(lighter, change))
             else:
                 response = self._swept(scene, lighter.exact, progress)
+        said += on_contacts(response.curves, scenes[0].contacts)
         response.left_out = [*said, *([ONLY] if self.work.only_peaks else [])]
         return response
 
@@ -151,6 +156,7 @@ class ExactWork:
     at: tuple[float, ...] | None  # [rad/s]
     limit: float | None = None  # [s] of processor time for a curve
     only_peaks: bool = False
+    whole: bool = False  # nothing is to be left out
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -169,9 +175,34 @@ class ExactWork:
     def _made(self, scene: Scene, report: Report) -> Curve:
         if self.only_peaks:
             return peaks_alone(scene, report)
-        if self.at is None:
+        if self.at is None and (self.whole or len(scene.contacts) < FEWEST):
             return _traced(scene, report, self.limit)
+        if self.at is None:
+            return _traced_lightly(scene, report, self.limit)
         return _visited(scene, self.at, report)
+
+
+def _traced_lightly(scene: Scene, report: Report, limit: float | None) -> Curve:
+    """The curve, followed without the contacts that keep their state all along it."""
+    held = foreseen_held(scene, balance_of(scene))
+    end = None if limit is None else time.process_time() + limit
+    while True:
+        left = None if end is None else end - time.process_time()
+        curve = _held_or_lost(scene, held, report, left) if held else _traced(scene, report, left)
+        lost = np.zeros(0) if curve.orbits is None else lost_by(curve.orbits.held)
+        if not (held and (lost.size or not curve.points)):
+            return curve
+        if curve.reason.startswith(STOPPED) or (end is not None and time.process_time() > end):
+            return lost_curve(scene, curve.reason)  # what there is of it is not the motion of these contacts
+        held = tuple(one for one in held if curve.points and one.place not in lost)
+
+
+def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, limit: float | None) -> Curve:
+    """The curve with contacts held; without a point, if it cannot be begun."""
+    try:
+        return _traced(scene.holding(held), report, limit)
+    except SimulationError as error:
+        return lost_curve(scene, str(error))
 
 
 def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:

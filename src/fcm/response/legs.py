@@ -65,6 +65,8 @@ class Legs:
     ) -> Path:
         """See `follow`."""
         saved = self._saved.get(len(self.finished))
+        if saved is not None and _unknowns(saved) != start.size:  # with other contacts held than now
+            saved = None
         if saved is not None and saved.path is not None:
             path = saved.path
         else:
@@ -102,3 +104,9 @@ class Legs:
         begun = [] if self._last is None else [self._last.path(Status.INTERRUPTED)]
         found = [path for path in (*self.finished, *begun) if path.z.shape[0]]
         return [replace(path, status=Status.INTERRUPTED) for path in found]
+
+
+def _unknowns(leg: Leg) -> int:
+    """The numbers of a point of a leg."""
+    of = leg.path or (None if leg.stage is None else leg.stage.kept)
+    return 0 if of is None else int(of.z.shape[1])

@@ -16,6 +16,7 @@ from fcm.orbit.family import family
 from fcm.orbit.landing import with_landings
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
+from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.visit import Visitor
 from fcm.results.orbits import Orbits
@@ -28,14 +29,36 @@ LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest i
 
 def traced_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
     """The points of paths, with a point of NaN between one and the next; complete without a reason."""
-    points, folds = list[Sample | None](), list[float]()
-    for found in with_landings(problem, [samples(problem, path) for path in paths]):
+    points, folds, scene = list[Sample | None](), list[float](), problem.scene
+    branches = with_landings(problem, [samples(problem, path) for path in paths])
+    for found in branches:
         folds += [point.frequency for point in found if point.mark & Mark.FOLD]
+        found = [_of_whole(scene, point) for point in found]
         points += [None, *found] if points else found
-    curve = replace(_curve(problem.scene, points, reason, everywhere=False), folds=folds)
+    curve = replace(_curve(scene.whole(), points, reason, everywhere=False), folds=folds)
     if curve.orbits is not None:
         curve.orbits.periods = problem.periods
+        if scene.held:
+            curve.orbits.held = _kept(problem, [point for found in branches for point in found])
     return curve
+
+
+def _of_whole(scene: Scene, point: Sample) -> Sample:
+    """A point with the contacts that are held."""
+    if not scene.held:
+        return point
+    return replace(point, state=whole_state(scene, point.state), states=whole_states(scene, point.states))
+
+
+def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
+    """The least of its limit or gap that each contact which is held keeps: (contact, 2), else nan."""
+    scene = problem.scene
+    kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
+    shots = [shot for shot in (problem.shot(point.z) for point in points) if shot is not None]
+    least = np.min([rooms(shot.system, shot.segments) for shot in shots], axis=0, initial=1.0)
+    for one, room in zip(scene.held, least, strict=True):
+        kept[one.place, int(one.open)] = room
+    return kept
 
 
 def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str) -> Curve:

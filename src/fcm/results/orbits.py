@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -24,4 +24,6 @@ class Orbits:
     family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
     jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
+    held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
+    # left out keep of their slip limits, or of their gaps; nan where computed, no contacts where none was
     span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -85,6 +86,16 @@ class Start:
 
 
 @dataclass(frozen=True)
+class Held:
+    """A contact that is not computed, as it always sticks, or always is open."""
+
+    place: int  # among all contacts of the scene
+    contact: Contact
+    open: bool
+    rest: float = 0.0  # its slip motion w, if it sticks
+
+
+@dataclass(frozen=True)
 class Aim:
     """What is to be least: the peak of a degree of freedom, or its greatest amplitude at the ends as well."""
 
@@ -125,6 +136,7 @@ class Scene:
     ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
     optimum: Optimum | None = None
+    held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 
     @property
@@ -136,6 +148,26 @@ class Scene:
     def drawn(self) -> tuple[str, ...]:
         """The swept keys whose values are random draws."""
         return () if self.draft is None else tuple(one.key for one in self.draft.swept if one.drawn)
+
+    def holding(self, held: Sequence[Held]) -> Scene:
+        """The scene with some of its contacts held."""
+        places = {one.place for one in held}
+        contacts = tuple(one for i, one in enumerate(self.contacts) if i not in places)
+        return replace(self, contacts=contacts, held=tuple(held), draft=None)
+
+    def whole(self) -> Scene:
+        """The scene with no contact held."""
+        if not self.held:
+            return self
+        contacts = list(self.contacts)
+        for one in sorted(self.held, key=lambda one: one.place):
+            contacts.insert(one.place, one.contact)
+        return replace(self, contacts=tuple(contacts), held=())
+
+    def computed(self) -> list[int]:
+        """The places of the contacts that are not held, among all."""
+        places = {one.place for one in self.held}
+        return [i for i in range(len(self.contacts) + len(self.held)) if i not in places]
 
     def in_use(self) -> Scene:
         """The scene at those degrees of freedom only that are reported, or that something is attached to."""

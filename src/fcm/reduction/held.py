@@ -1,0 +1,132 @@
+"""Contacts that stick, or are open, all over a range: springs, or nothing, in their places.
+
+Which these are is foreseen by the balance with one harmonic. Whether they did is seen afterwards from the
+exact motion itself, at every point that was found: a contact that would have slipped, opened or closed in one
+of them is computed after all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.limits import FloatArray
+from fcm.motion.measure import extremes
+from fcm.motion.segments import Segments
+from fcm.motion.state import State
+from fcm.motion.system import System, has_friction
+from fcm.orbit.residual_friction import resting
+from fcm.reduction.put_back import unknowns
+from fcm.reduction.sentences import named
+from fcm.results.result import Curve
+from fcm.scene.model import Contact, Held, Scene
+
+IntArray = npt.NDArray[np.intp]
+ROOM = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep
+ANGLES = 64  # of a cycle at which that is looked at
+STIFF = 100.0  # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
+
+
+def foreseen(scene: Scene, balanced: Curve) -> tuple[Held, ...]:
+    """The contacts that keep their state all along a curve of the balance with one harmonic."""
+    at = np.flatnonzero(np.isfinite(balanced.frequency))
+    if not (balanced.complete and at.size):
+        return ()
+    theta = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
+    x = unknowns(balanced, scene, at, (1,))[:, :-1].reshape(at.size, len(scene.contacts), 6)
+    motion = x[:, :, :2, None] + x[:, :, 2::2, None] * np.cos(theta) - x[:, :, 3::2, None] * np.sin(theta)
+    found, rest = [], resting(scene)
+    for i, contact in enumerate(scene.contacts):
+        u, v = motion[:, i].swapaxes(0, 1)
+        one = _keeps(i, contact, float(rest[i]), u, v)
+        if one is not None and not _too_stiff(scene, contact):
+            found.append(one)
+    return tuple(found)
+
+
+def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> Held | None:
+    """The contact as it is held, if it keeps its state in motions u and v (point, angle)."""
+    load = contact.n_0 + contact.k_v * v
+    if load.max() < ROOM * min(contact.n_0, 0.0):
+        return Held(place, contact, True)
+    least = load.min(axis=1)
+    if not (least > ROOM * load.max(axis=1)).all():
+        return None
+    limit = contact.mu * load
+    force = np.abs(contact.k_u * (u - rest)) if has_friction(contact) else np.zeros_like(u)
+    return Held(place, contact, False, rest) if (force <= (1.0 - ROOM) * limit).all() else None
+
+
+def _too_stiff(scene: Scene, contact: Contact) -> bool:
+    modal = scene.modal
+    pairs = ((contact.k_u, contact.tangential), (contact.k_v, contact.normal))
+    added = max(k * float(((modal.shapes @ way) ** 2 / modal.mass).sum()) for k, way in pairs)
+    return added > STIFF * float(modal.frequency.max()) ** 2
+
+
+def rooms(system: System, segments: Segments) -> FloatArray:
+    """What each contact that is held keeps of its limit, or of its gap, over a motion; negative: nothing."""
+    rows = [_rows(system, one) for one in system.scene.held]
+    least, greatest = extremes(system, segments, np.array(rows).reshape(3 * len(rows), -1))
+    room = np.array([one.value for one in least]).reshape(-1, 3).min(axis=1)
+    size = np.array([one.value for one in greatest[::3]])
+    share: FloatArray = room / np.where(size > 0.0, size, 1.0)
+    return share
+
+
+def _rows(system: System, one: Held) -> list[FloatArray]:
+    """The limit, or gap, of a contact, and what is left of it either way: rows of the state vector."""
+    contact, shapes = one.contact, system.scene.modal.shapes
+    load, force = np.zeros((2, system.size - 2))
+    load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
+    if one.open:
+        return [-load] * 3
+    if not has_friction(contact):
+        return [load] * 3
+    force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
+    return [contact.mu * load, contact.mu * load - force, contact.mu * load + force]
+
+
+def lost_by(kept: FloatArray) -> IntArray:
+    """The contacts that have not kept their state, of what each keeps: (contact, 2)."""
+    return np.flatnonzero((kept <= 0.0).any(axis=1))
+
+
+def whole_state(scene: Scene, state: State) -> State:
+    """A state of a scene with contacts held as one of the whole scene."""
+    friction = np.zeros(len(scene.contacts) + len(scene.held))
+    friction[scene.computed()] = state.friction
+    displacement = scene.modal.shapes.T @ state.q
+    for one in scene.held:
+        if has_friction(one.contact) and not one.open:
+            stretched = float(one.contact.tangential @ displacement) - one.rest
+            friction[one.place] = one.contact.k_u * stretched
+    return State(state.q, state.velocity, friction, state.angle)
+
+
+def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
+    """What each contact of the whole scene does over a cycle."""
+    letters = dict(zip(scene.computed(), states, strict=True))
+    letters |= {one.place: "S" if one.open else "E" for one in scene.held}
+    return tuple(letters[i] for i in range(len(letters)))
+
+
+def on_contacts(curves: Iterable[Curve], contacts: Sequence[Contact]) -> list[str]:
+    """What was left out of curves: contacts that keep their state, with what they keep of their limits."""
+    each = [curve.orbits.held for curve in curves if curve.orbits is not None and curve.orbits.held.size]
+    if not each:
+        return []
+    said, kept = [], np.array(each)  # (curve, contact, state)
+    for state, words, limit in ((0, "stick", "slip limits"), (1, "are open", "gaps")):
+        places = np.flatnonzero(np.isfinite(kept[:, :, state]).any(axis=0)).tolist()
+        if places:
+            least, count = float(np.nanmin(kept[:, places, state])), len(each)
+            where = "" if np.isfinite(kept[:, places, state]).all() else f" of some of {count} curves"
+            instead = "springs in their places" if state == 0 else "nothing in their places"
+            said.append(
+                f"the transitions of {named(contacts, places)}: they {words} all over the range{where}, "
+                f"{instead} (no effect: at every point found they keep at least {least:.0%} of their {limit})"
+            )
+    return said

@@ -1,0 +1,145 @@
+"""Exact curves without the contacts that keep their state: the same motion, and checked to be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.motion import simulate
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.start import first_point, near_balance
+from fcm.reduction import held
+from fcm.response import exact
+from fcm.response.exact import trace_exact
+from fcm.response.legs import Leg, Legs
+from fcm.response.trace import traced_curve
+from fcm.run import Report
+from fcm.scene import Contact, Force, Modal, Scene
+from fcm.scene.model import Held, Load
+
+SAME = 1e-8  # of amplitudes, of curves that are known to a few 1e-10
+
+
+def contact(along, across, n_0, name):
+    return Contact(name, np.array(along), np.array(across), 0.3, 2.0, 3.0, n_0)
+
+
+@pytest.fixture(scope="module")
+def scene():
+    """A contact that slips, one that always sticks, pressed by a load, and one that is always open."""
+    modal = Modal(
+        ("x", "y", "z"), np.array([1.0, 1.2, 0.8]), np.array([1.0, 1.6, 2.9]), np.array([0.02, 0.03, 0.02]),
+        np.array([[0.7, 0.3, 0.4], [0.5, -0.8, 0.2], [0.3, 0.4, -0.9]]),
+    )  # fmt: skip
+    contacts = (
+        contact([1.0, 0.0, 0.0], [0.0, 0.5, 0.2], 2.0, "slips"),
+        contact([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], 30.0, "sticks"),
+        contact([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], -300.0, "open"),
+    )
+    return Scene(
+        "three", modal, contacts, (Force(np.array([1.0, 0.0, 0.0]), 1.0, 0.0),), (0.9, 1.5), 0.1,
+        name="three", reported=("x", "y", "z"), loads=(Load(np.array([0.0, 0.4, 0.0]), 1.0),),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def responses(scene):
+    return trace_exact(scene), trace_exact(scene, tolerance=None)
+
+
+def test_contacts_that_keep_their_state_are_left_out_and_told(responses):
+    light, whole = responses
+    assert len(light.left_out) == 2
+    assert "contact sticks: they stick" in light.left_out[0] and "springs in their" in light.left_out[0]
+    assert "contact open: they are open" in light.left_out[1]
+    assert whole.left_out == [] and whole.curves[0].orbits.held.size == 0
+    kept = light.curves[0].orbits.held
+    assert np.isfinite(kept).tolist() == [[False, False], [True, False], [False, True]]
+    assert (kept[np.isfinite(kept)] > 0.2).all()
+
+
+def test_the_curve_is_that_with_all_contacts(responses):
+    light, whole = (response.curves[0] for response in responses)
+    assert light.complete and whole.complete
+    for dof, peak in whole.peaks.items():
+        assert light.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
+    assert set(light.regime[:, 1]) == {"E"} and set(light.regime[:, 2]) == {"S"}
+    assert set(light.regime[:, 0]) == set(whole.regime[:, 0]) != {"E"}
+    for end in (0, -1):
+        assert light.amplitude[end] == pytest.approx(whole.amplitude[end], rel=SAME)
+
+
+def test_a_point_is_a_motion_of_all_contacts(scene):
+    """Marched for some periods with all contacts, the state comes back."""
+    omega, w = 1.2, held.resting(scene)
+    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
+    problem, orbit = OrbitProblem(light), next(near_balance(light, omega))
+    first = problem.shot(first_point(problem, orbit))
+    state = held.whole_state(light, first.state)
+    motion = simulate(scene, omega, 3, state)
+    assert motion.cycles[0].states == held.whole_states(light, first.cycle.states)
+    assert motion.end.q == pytest.approx(state.q, abs=1e-9)
+    assert motion.end.friction == pytest.approx(state.friction, abs=1e-9)
+
+
+def test_what_a_contact_keeps_is_that_of_its_motion(scene):
+    """Of its slip limit and of its gap, sampled from a motion with all contacts."""
+    omega, w = 1.2, held.resting(scene)
+    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
+    problem, orbit = OrbitProblem(light), next(near_balance(light, omega))
+    first = problem.shot(first_point(problem, orbit))
+    motion = simulate(scene, omega, 1, held.whole_state(light, first.state))
+    cycle = motion.cycles[0]
+    rows = np.zeros((3, cycle.system.size))
+    rows[0, cycle.system.f.start + 1] = rows[1, cycle.system.n.start + 1] = 1.0
+    rows[2, cycle.system.n.start + 2] = 1.0
+    force, load, gap = cycle.values(rows, np.linspace(0.0, cycle.duration, 4001)).T
+    limit = 0.3 * (30.0 + load)
+    expected = [(limit - np.abs(force)).min() / limit.max(), (300.0 - gap).min() / (300.0 - gap).max()]
+    assert held.rooms(first.system, first.segments) == pytest.approx(expected, rel=1e-5)
+
+
+def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses, monkeypatch):
+    """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
+    w = held.resting(scene)
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
+    monkeypatch.setattr(exact, "foreseen_held", lambda *_: wrong)
+    response = trace_exact(scene)
+    assert [text.split(":")[0] for text in response.left_out] == ["the transitions of contact sticks"]
+    curve, whole = response.curves[0], responses[1].curves[0]
+    assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
+    assert set(curve.regime[:, 2]) == {"S"}
+
+
+def test_contacts_are_foreseen_only_with_room(scene):
+    found = held.foreseen(scene, traced_curve(scene))
+    assert [(one.place, one.open) for one in found] == [(1, False), (2, True)]
+    weaker = replace(
+        scene, contacts=(scene.contacts[0], replace(scene.contacts[1], n_0=3.0), scene.contacts[2])
+    )
+    assert [one.place for one in held.foreseen(weaker, traced_curve(weaker))] == [2]
+
+
+def test_a_stiff_contact_is_not_replaced_by_a_spring(scene):
+    """Its force, computed from displacements, would have fewer digits."""
+    stiff = replace(scene.contacts[1], k_u=1e6, mu=1e6)
+    other = replace(scene, contacts=(scene.contacts[0], stiff, scene.contacts[2]))
+    assert [one.place for one in held.foreseen(other, traced_curve(other))] == [2]
+
+
+def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
+    """A run that is resumed may hold other contacts at first than the one that was interrupted."""
+    light = scene.holding((Held(2, scene.contacts[2], True),))
+    saved: list[object] = []
+    first = OrbitProblem(scene)
+    z = first_point(first, next(near_balance(scene, 0.9)))
+    Legs(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
+        first, z, scene.frequency_range, True, 0.1, ()
+    )
+    assert isinstance(saved[-1], Leg)
+    problem = OrbitProblem(light)
+    z = first_point(problem, next(near_balance(light, 0.9)))
+    legs = Legs(scene.frequency_range, Report(lambda *_: None, saved))
+    assert legs(problem, z, scene.frequency_range, True, 0.1, ()).z.shape[1] == z.size
