@@ -8,7 +8,7 @@ Where every contact only sticks or is open, the same motion is
 
 the sum of stiffnesses and of forces on the contacts. Nothing cancels in it, provided that f is known as it is
 given: what acts along a contact's own direction is. Elsewhere it is told what digits are lost: the balance's
-own rounding, through the inverse of its Jacobian.
+own rounding, through the inverse of its Jacobian across the curve.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import numpy.typing as npt
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.record import Record
 from fcm.harmonic.system import System
+from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray, Force
 from fcm.structure.linear import Linear, amplitudes, linear_of
 from fcm.structure.receptance import Receptance
@@ -66,7 +67,7 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
     shown, forces = balance.shown, _Forces(system)
     apart = np.asarray(shown.apart) != 0
     for i in stiff:
-        found = _point(balance, made.z[i].copy(), springs, forces)
+        found = _point(balance, made.z[i].copy(), points.tangent[i], springs, forces)
         made.z[i] = found.z
         balance.evaluate(found.z)
         balance.report(found.z, np.zeros(found.z.size))
@@ -146,13 +147,15 @@ def _share(direction: FloatArray, port: FloatArray) -> float:
     return float(direction[most] / port[most]) if same else 0.0
 
 
-def _point(balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces) -> Digits:
+def _point(
+    balance: Balance, z: FloatArray, tangent: FloatArray, springs: FloatArray, forces: _Forces
+) -> Digits:
     """A point with the digits that can be kept."""
     balance.evaluate(z)
     G, held = _receptance(balance), _held(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
     if held is None or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
-        return _as_balanced(balance, linear, G, springs)
+        return _as_balanced(balance, linear, G, springs, tangent)
     compliance = np.asarray(seen.c_re)[seen.driven] + 1j * np.asarray(seen.c_im)[seen.driven]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
@@ -169,7 +172,9 @@ def _point(balance: Balance, z: FloatArray, springs: FloatArray, forces: _Forces
     )
 
 
-def _as_balanced(balance: Balance, linear: Linear, G: ComplexArray, springs: FloatArray) -> Digits:
+def _as_balanced(
+    balance: Balance, linear: Linear, G: ComplexArray, springs: FloatArray, tangent: FloatArray
+) -> Digits:
     """The point evaluated last as it is; its rounding from what its equations are summed of."""
     seen, n, at = balance.seen, balance.unknowns, _places(balance)
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
@@ -177,7 +182,7 @@ def _as_balanced(balance: Balance, linear: Linear, G: ComplexArray, springs: Flo
     terms = np.zeros(n)
     terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re, seen.X_im) + size
     terms[at + 1] = terms[at]
-    off = np.abs(np.linalg.inv(np.asarray(balance.jacobian)[:, :n])) @ (ROUNDINGS * EPS * terms)
+    off = _moved(balance, x, tangent, ROUNDINGS * EPS * terms)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
     met: Linear | Wave = linear
@@ -188,6 +193,23 @@ def _as_balanced(balance: Balance, linear: Linear, G: ComplexArray, springs: Flo
     shapes, external = np.abs(met.ports), np.hypot(modes.force_re, modes.force_im)
     on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
     return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
+
+
+def _moved(balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArray) -> FloatArray:
+    """By how much errors of the equations (unknown,) move a point across the curve.
+
+    nan in a corner that the curve does not leave in the direction given.
+    """
+    balance.measure(z)
+    scale = np.array(balance.scale)
+    row = tangent / scale
+    matrix = np.vstack((jacobian_of(balance) * scale, row / np.linalg.norm(row)))
+    try:
+        inverse = np.linalg.inv(matrix)[:-1, :-1]
+    except np.linalg.LinAlgError:
+        return np.full(wrong.size, np.nan)
+    moved: FloatArray = scale[:-1] * (np.abs(inverse) @ wrong)
+    return moved
 
 
 def _places(balance: Balance) -> npt.NDArray[np.intp]:
