@@ -11,6 +11,7 @@ import pytest
 
 from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
+from fcm.harmonic.periodic import Periodic
 
 from .motions import SINE, STILL, Case, random_case, random_cases
 
@@ -128,3 +129,21 @@ def test_measures_of_a_contact_that_is_open_or_never_moves():
     _, measures = solve(Case(np.array([0.3 + 0j]), STILL, k_u=2.0, n_0=3.0))
     assert measures.greatest_friction == pytest.approx(0.6, abs=1e-16)
     assert measures.overlap < 0.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_another_extreme_of_a_limit_comes_to_hold_a_slider(side):
+    """u = side (5 + c cos(theta) + cos(2 theta)) under a load 4: the limit is furthest at 0, or at pi."""
+    contact, law = PeriodicContact([1, 2], [1, 2]), (0.5, 1.0, 0.0, 4.0)
+    bounds, margins = Periodic(contact, *law), []
+    for c in (1e-7, -1e-7):
+        x = side * np.array([5.0, 0.0, c, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+        contact.at(x, *law)
+        assert contact.forces[0] == pytest.approx(side * (0.5 * 4.0 - 1.0 - abs(c)), abs=1e-12)
+        assert contact.jacobian[0, 2] == pytest.approx(-np.sign(c), abs=1e-6)
+        bounds.bound(x, 0)
+        kinds, angles, values = (np.asarray(one) for one in (bounds.kind, bounds.angle, bounds.margin))
+        held = np.flatnonzero((kinds == 5) | (kinds == 6))
+        margins.append({round(float(angles[i]) / np.pi) % 2: float(values[i]) for i in held})
+    assert margins[0][0] > 0.0 > margins[0][1]
+    assert margins[1][1] > 0.0 > margins[1][0]

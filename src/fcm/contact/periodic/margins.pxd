@@ -13,3 +13,4 @@ cdef class Margins:
     cdef void note(self, int kind, double angle, double value) noexcept nogil
     cdef void loads(self, int behaviour) noexcept nogil
     cdef void slips(self, int kind, int behaviour, double start) noexcept nogil
+    cdef void holders(self, int extreme, int kind, double[::1] limit, double side) noexcept nogil

@@ -7,7 +7,7 @@ square root, where
 - the greatest lower limit of the slider passes the least upper one: it begins to slip, equation (25);
 - one of these passes the place where the slider of a contact that never slips began;
 - an extreme of a limit passes the slider that rests there: another slip begins, and the slider is left
-  elsewhere.
+  elsewhere; or another extreme of a limit holds the slider of a contact that never slips.
 
 Where a slip halts (P to PEP), and in which direction a contact slips as it opens and closes, the derivatives
 are continuous.
@@ -111,6 +111,10 @@ class Margins:
                 self.note(SLIPS, 0.0, self.cycle.overlap)
                 self.note(MOST, 0.0, self.cycle.least_upper - start)
                 self.note(LEAST, 0.0, start - self.cycle.greatest_lower)
+                if start < self.cycle.greatest_lower:
+                    self.holders(TOP, UPWARDS, self.cycle.lower, 1.0)
+                elif start > self.cycle.least_upper:
+                    self.holders(BOTTOM, DOWNWARDS, self.cycle.upper, -1.0)
             return
         self.note(SLIPS, 0.0, self.cycle.overlap if self.cycle.overlap > 0.0 else PAST)
         for e in range(self.cycle.events):
@@ -118,3 +122,21 @@ class Margins:
                 self.note(UPWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
             elif self.cycle.event_kind[e] == BOTTOM:
                 self.note(DOWNWARDS, self.cycle.event_angle[e], self.cycle.margin[e])
+
+    def holders(self, extreme: cython.int, kind: cython.int, limit: cython.double[::1], side: float) -> None:
+        """How far the extremes of a limit that holds the slider are beyond the furthest other one."""
+        e: cython.int
+        furthest: cython.int = -1
+        second: cython.int = -1
+        for e in range(self.cycle.events):
+            if self.cycle.event_kind[e] == extreme:
+                if furthest < 0 or side * limit[e] > side * limit[furthest]:
+                    furthest, second = e, furthest
+                elif second < 0 or side * limit[e] > side * limit[second]:
+                    second = e
+        if second < 0:
+            return
+        for e in range(self.cycle.events):
+            if self.cycle.event_kind[e] == extreme:
+                other: cython.int = second if e == furthest else furthest
+                self.note(kind, self.cycle.event_angle[e], side * (limit[e] - limit[other]))
