@@ -5,10 +5,10 @@ The names below are imported when first used, so that a command pays only for wh
 
 from __future__ import annotations
 
+from fcm.on_demand import on_demand
+
 TYPE_CHECKING = False  # typing alone would take as long as all the rest
 if TYPE_CHECKING:
-    from typing import Any
-
     from fcm.contact import (
         fourier_coefficients,
         fourier_gradients,
@@ -26,17 +26,17 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOME = {
-    "fourier_coefficients": "fcm.contact",
-    "fourier_gradients": "fcm.contact",
-    "hysteresis_loop": "fcm.contact",
-    "load_scene": "fcm.scene",
-    "normal_coefficients": "fcm.contact",
-    "normal_gradients": "fcm.contact",
-    "open_table": "fcm.table",
-    "periodic_forces": "fcm.contact",
-    "periodic_gradients": "fcm.contact",
-    "periodic_loop": "fcm.contact",
-    "respond": "fcm.response",
+    "fourier_coefficients": "contact",
+    "fourier_gradients": "contact",
+    "hysteresis_loop": "contact",
+    "load_scene": "scene",
+    "normal_coefficients": "contact",
+    "normal_gradients": "contact",
+    "open_table": "table",
+    "periodic_forces": "contact",
+    "periodic_gradients": "contact",
+    "periodic_loop": "contact",
+    "respond": "response",
 }
 
 __all__ = [
@@ -54,12 +54,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        from importlib import import_module
-
-        return getattr(import_module(_HOME[name]), name)
-    raise AttributeError(f"module 'fcm' has no attribute {name!r}")
+__getattr__ = on_demand(__name__, _HOME)
 
 
 def __dir__() -> list[str]:

@@ -5,18 +5,12 @@ Not even click is imported before it is needed: an interruption in the first mom
 
 from __future__ import annotations
 
+from fcm.on_demand import on_demand
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from fcm.cli.commands import COMMANDS, main
 
 __all__ = ["COMMANDS", "main"]
 
-
-def __getattr__(name: str) -> Any:
-    if name in __all__:
-        from importlib import import_module
-
-        return getattr(import_module("fcm.cli.commands"), name)
-    raise AttributeError(f"module 'fcm.cli' has no attribute {name!r}")
+__getattr__ = on_demand(__name__, dict.fromkeys(__all__, "commands"))

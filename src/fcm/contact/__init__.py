@@ -4,10 +4,10 @@ The names below are imported when first used: a balance needs few of them.
 """
 
 import warnings
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fcm.contact import normal_load
+from fcm.on_demand import on_demand
 
 if TYPE_CHECKING:
     from fcm.contact.fourier import fourier_coefficients, fourier_gradients
@@ -44,11 +44,7 @@ _HOME = {
     "periodic_loop": "periodic.loop",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(import_module(f"fcm.contact.{_HOME[name]}"), name)
-    raise AttributeError(f"module 'fcm.contact' has no attribute {name!r}")
+__getattr__ = on_demand(__name__, _HOME)
 
 
 if normal_load.__file__.endswith(".py"):

@@ -3,9 +3,9 @@
 The names below are imported when first used: a command that only shortens names needs no pictures.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from fcm.on_demand import on_demand
 from fcm.plot.errors import PlotError
 
 if TYPE_CHECKING:
@@ -35,8 +35,4 @@ _HOME = {
     "save": "style",
 }
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(import_module(f"fcm.plot.{_HOME[name]}"), name)
-    raise AttributeError(f"module 'fcm.plot' has no attribute {name!r}")
+__getattr__ = on_demand(__name__, _HOME)

@@ -4,9 +4,9 @@ Knows nothing of what is computed. `sweep` is given the batches and a function t
 keeps what is finished; `fingerprint` says of what the results depend.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from fcm.on_demand import on_demand
 from fcm.run.checkpoint import Checkpoint, CheckpointError, Results
 from fcm.run.fingerprint import fingerprint
 from fcm.run.places import Factory, Gone, Here, Place, Threads
@@ -42,8 +42,4 @@ __all__ = [
 
 _HOME = {"Elsewhere": "elsewhere", "Processes": "processes"}  # places that few runs need
 
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:
-        return getattr(import_module(f"fcm.run.{_HOME[name]}"), name)
-    raise AttributeError(f"module 'fcm.run' has no attribute {name!r}")
+__getattr__ = on_demand(__name__, _HOME)

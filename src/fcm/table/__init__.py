@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from fcm.on_demand import on_demand
 
 if TYPE_CHECKING:
     from fcm.table.build import build_table
@@ -12,7 +13,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Table", "TableError", "build_table", "open_table"]
 
-_HOME = {"Table": "fcm.table.lookup", "build_table": "fcm.table.build"}
+_HOME = {"Table": "lookup", "build_table": "build"}  # what opening a table does not need
+
+__getattr__ = on_demand(__name__, _HOME)
 
 
 class TableError(ValueError):
@@ -44,9 +47,3 @@ def open_table(path: str | Path | None = None) -> Table:
     from fcm.table.lookup import Table
 
     return Table(*store.load(shipped.DEFAULT if path is None else path))
-
-
-def __getattr__(name: str) -> Any:
-    if name in _HOME:  # what opening a table does not need
-        return getattr(import_module(_HOME[name]), name)
-    raise AttributeError(f"module 'fcm.table' has no attribute {name!r}")
