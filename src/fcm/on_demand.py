@@ -1,4 +1,4 @@
-"""Names of a package whose modules are imported when one is first used: a command pays for what it needs only."""
+"""Names of a package whose modules are imported when one is first used: a command pays for what it needs."""
 
 from __future__ import annotations
 

@@ -1,0 +1,68 @@
+"""The packages import one another as the guide says: each those above it in its table, none below."""
+
+import ast
+import re
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SOURCES = ROOT / "src/fcm"
+TABLE = re.search(
+    r"^\| package \|.*?\n\n", (ROOT / ".github/guide/work.md").read_text(encoding="utf-8"), re.M | re.S
+)[0]
+PACKAGES = [name for row in re.findall(r"^\| (`.*?) \|", TABLE, re.M) for name in re.findall(r"`(\w+)`", row)]
+NUMERICS = ("contact", "structure", "continuation", "harmonic", "track", "motion", "orbit", "reduction")
+DOWNWARDS = {  # as the guide says: scene condenses matrices by structure
+    ("scene", "structure"): {"damping", "eigen", "reduced", "rigid_body"},
+}
+
+
+@cache
+def imported(package):
+    """Pairs of a file of a package and a module that it imports, wherever in it that stands."""
+    found = set()
+    for path in (SOURCES / package).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                found |= {(path.name, alias.name) for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                assert not node.level, f"{path} imports relatively"
+                found.add((path.name, node.module.removeprefix("cython.cimports.")))
+    for path in (SOURCES / package).rglob("*.pxd"):
+        text = path.read_text(encoding="utf-8")
+        found |= {(path.name, module) for module in re.findall(r"^from (\S+) cimport", text, re.M)}
+    return found
+
+
+def test_the_guide_names_every_package_once():
+    there = [path.parent.name for path in SOURCES.glob("*/__init__.py")]
+    assert len(there) > 15 and sorted(PACKAGES) == sorted(there)
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_nothing_below_is_imported(package):
+    allowed = PACKAGES[: PACKAGES.index(package) + 1]
+    for file, module in sorted(imported(package)):
+        top, *parts = module.split(".")
+        if top == "fcm" and parts and parts[0] in PACKAGES and parts[0] not in allowed:
+            assert parts[1] in DOWNWARDS.get((package, parts[0]), ()), f"{package}/{file} imports {module}"
+
+
+def test_structure_knows_the_model_and_the_rings_of_a_scene_alone():
+    of_scene = {module for _, module in imported("structure") if module.startswith("fcm.scene")}
+    assert of_scene <= {"fcm.scene.model", "fcm.scene.ring"}
+
+
+def test_continuation_knows_nothing_of_contacts():
+    assert {module.split(".")[1] for _, module in imported("continuation") if module.startswith("fcm.")} == {
+        "continuation"
+    }
+
+
+@pytest.mark.parametrize("package", NUMERICS)
+def test_numerics_import_numpy_and_scipy_alone(package):
+    outside = {module.split(".")[0] for _, module in imported(package)} - set(sys.stdlib_module_names)
+    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"}
