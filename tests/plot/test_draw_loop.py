@@ -55,6 +55,14 @@ def test_every_state_is_a_line_of_its_own_and_every_transition_marked():
         assert below.get_xlim() == (0.0, 360.0)
 
 
+def test_angles_of_hundreds_of_transitions_are_left_out():
+    """There is no room for them, and to look for it would take minutes."""
+    figure = drawn([fcm.periodic_loop([0, 1, *[0] * 48, 1], [0, 1], mu=0.4, k_u=1, k_v=1, n_0=1)])
+    above = figure.axes[0]
+    rings = [line for line in above.lines if line.get_marker() == "o"]
+    assert len(rings) > 100 and not above.texts
+
+
 def test_slip_limits_bound_the_force():
     (_, below), *_ = panels(drawn(FIGURE_8[1:2]))
     limits = [line for line in below.lines if line.get_label() == "_limit"]

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from fcm.plot import PlotError, draw_response, read_response
+from fcm.plot.read import opened
 
 NAN = np.nan
 
@@ -94,6 +95,18 @@ def test_a_curve_without_points_is_not_drawn(path):
 def test_a_file_that_was_cut_off_is_said(path, cut):
     path.write_bytes(path.read_bytes()[:cut])
     with pytest.raises(PlotError, match=r"response\.nc: not a "):
+        read_response(path)
+
+
+def test_what_draws_a_file_is_said_if_something_does(path):
+    with (
+        pytest.raises(PlotError, match="no variable sensitivity; try fcm plot response"),
+        opened(path, "a file of sensitivities", ["sensitivity"]),
+    ):
+        pass
+    with netCDF4.Dataset(path, "a") as data:
+        data.renameVariable("frequency", "something")
+    with pytest.raises(PlotError, match=r"it has no variable frequency$"):
         read_response(path)
 
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from fcm.scene import SceneError, load_scene, scene_from_dict
+from fcm.scene.errors import shown
 
 MODES = {"dofs": ["u", "v"], "frequency": np.array([1.0, 2.0]), "damping": 0.1, "shapes": np.eye(2)}
 
@@ -32,6 +33,15 @@ def test_masses_that_lose_one_another(data, mistakes):
 def test_masses_that_a_sweep_drives_apart(data, mistakes):
     data["sweep"] = {"modal.mass.0": [1.0, 1e-50]}
     assert "sweep with modal.mass.0 = 1e-50: the modal masses" in mistakes(data)
+
+
+@pytest.mark.parametrize("amplitude", [1e-320, -1e-120])
+def test_forces_of_which_displacements_would_be_no_numbers(data, mistakes, amplitude):
+    data["force"][0]["amplitude"] = amplitude
+    assert f"force[0].amplitude: {shown(amplitude)} is too small to calculate with" in mistakes(data)
+    data["force"][0]["amplitude"] = 1.0
+    data["sweep"] = {"force.0.amplitude": [1.0, amplitude]}
+    assert f"{shown(amplitude)} is too small to calculate with" in mistakes(data)
 
 
 def test_a_file_without_a_name(data, mistakes):

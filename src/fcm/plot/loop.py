@@ -33,6 +33,7 @@ _ALONE = 1.25  # how much higher a loop alone is
 _MOST_COLUMNS = 4
 _SMALL = 7  # [point]
 _ROOM = 0.18  # beside a loop, relative to its extent
+_MOST_NAMED = 60  # transitions whose angles still find room beside them
 _NARROWEST = 11.0  # [degree] a state shorter than this has no letter
 
 
@@ -215,11 +216,12 @@ def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None
 
 
 def _mark_transitions(axes: Axes, drawn: DrawnLoop, names: LoopAxes) -> None:
-    """A ring at each transition, and its angle where there is room."""
+    """A ring at each transition, and its angle where there is room; of very many none could be told apart."""
     found = transitions(drawn.loop)
     points = [(drawn.amplitude * t.displacement, drawn.force * t.force) for t in found]
     texts = [f"{names.degrees(t.theta):.1f}°" for t in found]
     curve = np.concatenate([np.column_stack(drawn.points(part)) for part in parts(drawn.loop)])
     for x, y in points:
         axes.plot([x], [y], color="black", linestyle="", zorder=3, **_MARK)
-    name_marks(axes, points, texts, curve, _SMALL)
+    if len(texts) <= _MOST_NAMED:
+        name_marks(axes, points, texts, curve, _SMALL)

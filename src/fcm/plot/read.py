@@ -94,8 +94,13 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
 
 def _hint(dataset: Any) -> str:
     """Which command draws the file, if one does."""
-    kinds = {"displacement": "history", "amplitude": "response", "peak_amplitude": "peak"}
-    found = next((what for name, what in kinds.items() if name in dataset.variables), "")
+    kinds = {
+        "history": ("displacement", "time"),
+        "response": ("amplitude", "frequency"),
+        "peak": ("peak_amplitude", "peak_frequency"),
+    }
+    held = dataset.variables.keys()
+    found = next((what for what, names in kinds.items() if held >= set(names)), "")
     return f"; try fcm plot {found}" if found else ""
 
 

@@ -38,7 +38,7 @@ def read_base(top: Section, dofs: Names | None, matrices: bool) -> list[dict[str
         {
             "name": "base",
             "direction": direction,
-            "acceleration": section.number("acceleration", RULES["amplitude"]),
+            "acceleration": section.number("acceleration", RULES["acceleration"]),
             "phase": section.angle("phase", default=0.0),
         }
     ]
@@ -98,7 +98,7 @@ def _load(section: Section, files: Files, dofs: Names | None, matrices: bool) ->
     dof = section.data.get("dof")
     draft: dict[str, Any] = {
         "name": dof if isinstance(dof, str) else "",
-        "force": section.number("force", RULES["amplitude"], default=1.0 if "file" in section.data else None),
+        "force": section.number("force", RULES["force"], default=1.0 if "file" in section.data else None),
         "distribution": None,
     }
     if "file" not in section.data:

@@ -36,6 +36,9 @@ class Rule:
     high: float = inf
     zero: bool = True  # whether zero itself is allowed
     whole: bool = False  # whether it must be a whole number
+    scales: bool = (
+        False  # whether displacements are measured by it, so that they can be too small to be numbers
+    )
 
     def fault(self, value: float) -> str:
         """What is wrong with the value; empty when nothing is."""
@@ -46,7 +49,7 @@ class Rule:
             return f"must be {self.text}, is {shown(value)}"
         if abs(value) > LARGEST:
             return f"{shown(value)} is too large to calculate with (more than {LARGEST:g})"
-        if self.low == 0 and 0 < value < SMALLEST:
+        if (self.low == 0 or self.scales) and 0 < abs(value) < SMALLEST:
             return f"{shown(value)} is too small to calculate with (less than {SMALLEST:g})"
         return ""
 
@@ -55,14 +58,15 @@ class Rule:
         right = np.isfinite(values) & (values >= self.low) & (values <= self.high) & (abs(values) <= LARGEST)
         if not self.zero:
             right &= values != 0
-        if self.low == 0:
-            right &= (values == 0) | (values >= SMALLEST)
+        if self.low == 0 or self.scales:
+            right &= (values == 0) | (abs(values) >= SMALLEST)
         if self.whole:
             right &= values == np.rint(values)
         return np.argwhere(~right)
 
 
 ANY = Rule("a number")
+EXCITATION = Rule("a number", scales=True)
 POSITIVE = Rule("greater than 0", low=0.0, zero=False)
 NOT_NEGATIVE = Rule("at least 0", low=0.0)
 FRACTION = Rule("greater than 0 and at most 1", low=0.0, high=1.0, zero=False)
@@ -119,9 +123,9 @@ RULES = {
     "n_0": ANY,
     "gap": ANY,
     "dof": ANY,
-    "amplitude": ANY,
-    "acceleration": ANY,
-    "force": ANY,
+    "amplitude": EXCITATION,
+    "acceleration": EXCITATION,
+    "force": EXCITATION,
     "phase": ANY,
     "sectors": Rule("a whole number from 2 to 1000", low=2.0, high=1000.0, whole=True),
     "engine_order": Rule("a whole number from -1000 to 1000", low=-1000.0, high=1000.0, whole=True),
