@@ -7,6 +7,8 @@ that derivative the motion is the same in the old and the new state, so that the
 
 from __future__ import annotations
 
+from enum import IntEnum
+
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
@@ -20,7 +22,24 @@ else:
     from fcm.motion.lookout import Lookout
     from fcm.motion.segments import Segments
 
-DONE, MISSING, FULL, UNDECIDED, PAUSED, LONG = range(6)  # why the march has stopped
+
+class Stopped(IntEnum):
+    """Why a march has stopped, and what lets it go on."""
+
+    DONE = 0  # its time is over
+    MISSING = 1  # the flow of a combination of states has to be made
+    FULL = 2  # of segments: there have to be more, or there are too many
+    UNDECIDED = 3  # no combination of states lasts
+    PAUSED = 4  # for signals
+    LONG = 5  # a segment has more steps than can be waited for
+
+
+_DONE = cython.declare(cython.int, Stopped.DONE)  # the same for the loops, which know numbers alone
+_MISSING = cython.declare(cython.int, Stopped.MISSING)
+_FULL = cython.declare(cython.int, Stopped.FULL)
+_UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)
+_PAUSED = cython.declare(cython.int, Stopped.PAUSED)
+_LONG = cython.declare(cython.int, Stopped.LONG)
 ROUNDING = cython.declare(cython.double, 3e-14)  # of a state after a step, relative to its terms
 MOST_PASSES = cython.declare(cython.int, 100)  # until a combination of states agrees with itself
 MOST_STEPS = cython.declare(cython.double, 2e8)  # in one segment
@@ -102,7 +121,7 @@ class March:
         self._settled, self._fresh = False, True
 
     def go(self) -> int:
-        """March on; returns why it has stopped."""
+        """March on; returns why it has stopped, a `Stopped`."""
         stopped: cython.int
         if self.segments.count == self.segments.start.shape[0]:
             self.segments = self.segments.room(2 * self.segments.count)
@@ -125,33 +144,33 @@ class March:
             ended = False
             if not self._settled:
                 stopped = self._settle()
-                if stopped:
+                if stopped != _DONE:
                     return stopped
                 if self.segments.count == self.segments.start.shape[0] or self.segments.count > self.limit:
-                    return 2
+                    return _FULL
                 self._open_segment()
                 if self._ahead.left > MOST_STEPS:
-                    return 5
+                    return _LONG
             while not ended:
                 ended = self._ahead.block()
                 blocks += 1
                 if blocks > PATIENCE and not ended:
-                    return 4
+                    return _PAUSED
             self._close_segment()
             if self._ahead.exit < 0:
-                return 0
+                return _DONE
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _settle(self) -> cython.int:
-        """Find the combination of states that lasts from y on."""
+        """Find the combination of states that lasts from y on; DONE when it is found."""
         i: cython.Py_ssize_t
         slot: cython.Py_ssize_t
         while self._passes < MOST_PASSES:
             slot = self.flows.find(self.states, 0)
             if slot < 0:
-                return 1
+                return _MISSING
             self.flows.refresh(slot)
             self._ahead.slot = slot
             if self._fresh:
@@ -160,12 +179,12 @@ class March:
                     self._noise[i] *= ROUNDING
                 self._fresh = False
             if not self._fails(slot):
-                return 0
+                return _DONE
             self._switch(slot)
             for i in range(self.flows.size):
                 self._noise[i] *= 2.0  # states that take turns differ by rounding that was underrated
             self._passes += 1
-        return 3
+        return _UNDECIDED
 
     @cython.cfunc
     @cython.nogil

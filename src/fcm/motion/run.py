@@ -10,7 +10,7 @@ import numpy as np
 from fcm.motion.combination import Codes
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import CycleError, SimulationError
-from fcm.motion.march import DONE, FULL, LONG, MISSING, UNDECIDED, March
+from fcm.motion.march import March, Stopped
 from fcm.motion.motion import Motion
 from fcm.motion.segments import Segments
 from fcm.motion.state import State, entered, entry, leave, set_angle
@@ -128,21 +128,21 @@ def march_from(system: System, x: FloatArray, duration: float) -> tuple[Segments
 
 def _marched(system: System, march: March) -> Segments:
     """The segments of a march to its end."""
-    while (stopped := march.go()) != DONE:
-        if stopped == MISSING:
+    while (stopped := march.go()) != Stopped.DONE:
+        if stopped == Stopped.MISSING:
             system.make(np.asarray(march.states)[0])
-        elif stopped == FULL and len(march.segments) > MOST_TRANSITIONS:
+        elif stopped == Stopped.FULL and len(march.segments) > MOST_TRANSITIONS:
             raise CycleError(
                 f"more than {MOST_TRANSITIONS} transitions in one cycle at {system.omega:g} rad/s: "
                 "the contacts chatter; give the modes more damping, or the contacts less stiffness"
             )
-        elif stopped == UNDECIDED:
+        elif stopped == Stopped.UNDECIDED:
             letters = "".join(LETTERS[code] for code in np.asarray(march.states)[0])
             raise CycleError(
                 f"the contacts' states cannot be told apart at {system.omega:g} rad/s, now {letters!r}; "
                 "change a parameter of the contacts slightly"
             )
-        elif stopped == LONG:
+        elif stopped == Stopped.LONG:
             raise CycleError(
                 f"a cycle at {system.omega:g} rad/s lasts {march.duration * march.rate():.1g} radians of the "
                 "fastest motion; give the contacts less stiffness, leave the highest modes out, or raise the "
