@@ -1,9 +1,11 @@
 """The program as the tests start it, by no other way: here, in a process of its own, or left to run."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,6 +41,19 @@ def python(*args, **options):
     return Run(done.returncode, done.stdout, done.stderr)
 
 
+@contextmanager
+def heeding_signals():
+    """What is started heeds Ctrl-C, also where these tests are told to ignore it: as `make &` is."""
+    ignored = [one for one in (signal.SIGINT, signal.SIGHUP) if signal.getsignal(one) is signal.SIG_IGN]
+    for one in ignored:
+        signal.signal(one, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        for one in ignored:
+            signal.signal(one, signal.SIG_IGN)
+
+
 class Program:
     """In a folder of its own: ``program(*args)`` runs it to its end, ``program.start(*args)`` lets it run."""
 
@@ -54,9 +69,10 @@ class Program:
     def python(self, *args, **more):
         """Begin a Python of its own, in a session of its own."""
         more = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | more
-        run = subprocess.Popen(
-            [sys.executable, *map(str, args)], cwd=self.folder, start_new_session=True, **more
-        )
+        with heeding_signals():
+            run = subprocess.Popen(
+                [sys.executable, *map(str, args)], cwd=self.folder, start_new_session=True, **more
+            )
         self.running.append(run)
         return run
 
