@@ -122,6 +122,17 @@ def test_texts_touch_neither_each_other_nor_leave_the_picture(parameters):
     assert all(box.x0 >= 0.0 and box.x1 <= figure.bbox.x1 for _, box in boxes)
 
 
+def test_angles_do_not_touch_the_ticks_of_the_frame():
+    figure = drawn([fcm.hysteresis_loop(0.48, 0.4, np.radians(80.5)), *FIGURE_8])
+    figure.draw_without_rendering()
+    for above, _ in panels(figure):
+        ticks = max(line.get_markersize() for line in above.get_xticklines() + above.get_yticklines())
+        frame = above.get_window_extent().padded(-ticks * figure.dpi / 72.0)
+        boxes = [Text.get_window_extent(text) for text in above.texts]
+        assert len(boxes) > 3 and ticks > 0.0
+        assert all(frame.contains(*corner) for box in boxes for corner in (box.min, box.max))
+
+
 @pytest.mark.parametrize(("count", "millimetres"), [(1, 85.0), (2, 170.0), (5, 170.0)])
 def test_pictures_are_as_wide_as_columns(count, millimetres):
     figure = drawn([fcm.hysteresis_loop(0.5, 0.4, 0.1 * i) for i in range(count)])

@@ -22,6 +22,7 @@ _LEADER_POINTS = 12  # at which it may touch a text
 _OUTSIDE, _TOUCHED, _CROSSED = 1e6, 1e4, 1e2  # cost: beyond the panel, a text on one, a leader on one
 _STEEP = 2.5  # of an offset: beyond, the middle of the text's side is towards the mark
 _MARGIN = 2.0  # [pixel] around a text, at 100 to the inch
+_TICK = 3.5  # [point] length of the ticks inside the frame
 
 
 def name_marks(
@@ -120,8 +121,8 @@ def _text(
 
 
 def _covered(box: Bbox, axes: Axes, taken: list[Bbox], pixels: FloatArray) -> float:
-    """How much a text at a box would cover: other texts, the frame, and points of the loop at 1 each."""
-    frame = axes.get_window_extent()
+    """What a text there would cover: other texts, the frame and its ticks, points of the loop (1 each)."""
+    frame = axes.get_window_extent().padded(-_TICK * axes.figure.dpi / 72.0)
     outside = bool(box.x0 < frame.x0 or box.x1 > frame.x1 or box.y0 < frame.y0 or box.y1 > frame.y1)
     others = sum(bool(box.overlaps(other)) for other in taken)
     return _OUTSIDE * outside + _TOUCHED * others + float(_inside(box, pixels).sum())
