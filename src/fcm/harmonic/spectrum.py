@@ -33,11 +33,6 @@ class Verdict(NamedTuple):
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
     values: tuple[complex, ...] = ()  # the multipliers
 
-    @property
-    def unknown(self) -> bool:
-        """Whether it cannot be told."""
-        return math.isnan(self.stable) or math.isnan(self.growth)
-
 
 PASSIVE = Verdict(1.0, -math.inf, Kind.PAIR, passive=True)
 UNKNOWN = Verdict(math.nan, math.nan, Kind.PAIR)
