@@ -86,7 +86,7 @@ class Legs:
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
-        self.report(covered, f"{stage.kept.count} points")
+        self.report(covered, f"{stage.kept.points} points")
         if self.end is not None and time.process_time() > self.end:
             raise TimeOver
 
@@ -108,5 +108,6 @@ class Legs:
 
 def _unknowns(leg: Leg) -> int:
     """The numbers of a point of a leg."""
-    of = leg.path or (None if leg.stage is None else leg.stage.kept)
-    return 0 if of is None else int(of.z.shape[1])
+    if leg.path is not None:
+        return int(leg.path.z.shape[1])
+    return 0 if leg.stage is None else leg.stage.z.size
