@@ -67,7 +67,7 @@ class Spectrum:
     @property
     def odd(self) -> bool:
         """Whether the number of real multipliers above 1 is odd."""
-        return sum(size > STABLE for size in self.positive) % 2 == 1
+        return len([size for size in self.positive if size > STABLE]) % 2 == 1
 
     @property
     def nearest(self) -> float:

@@ -82,13 +82,17 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
 
 
 def _stiffness(system: System, omega: FloatArray, springs: FloatArray) -> FloatArray:
-    """The greatest k |G| of the contacts at frequencies (point,)."""
+    """The greatest k |G| of the contacts at frequencies (point,); 0 where all are less than STIFF."""
     linear = system.linear
     if not springs.size:
         return np.zeros(omega.size)
     if isinstance(linear, RingLinear):
         balance = system.balance()
         return np.array([_stiffest(balance, w, springs) for w in omega])
+    # a mode is nowhere softer than at its resonance: most structures need not be looked at point by point
+    least = np.minimum(np.sqrt(2.0) * linear.damping, 1.0) * linear.natural**2
+    if least.all() and (springs * ((1.0 / least) @ linear.ports**2)).max() < STIFF:
+        return np.zeros(omega.size)
     force = np.ones((omega.size, 1, linear.natural.size), dtype=np.complex128)
     compliance = amplitudes(linear.natural, linear.damping, omega, np.ones(1), force)[:, 0]
     found: FloatArray = (np.abs(compliance @ linear.ports**2) * springs).max(axis=1)

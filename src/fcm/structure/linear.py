@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -16,6 +16,7 @@ from fcm.structure.rigid import settled
 ComplexArray = npt.NDArray[np.complex128]
 LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 ROUNDING = 1e-12  # relative: shapes this near are the same
+SAME = 8  # structures that are remembered, as all curves of a sweep have the same
 MOST = 10.0  # times a shape, of those that it is combined from
 TURN = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
@@ -83,6 +84,16 @@ def attached_to(ports: FloatArray, dofs: FloatArray) -> tuple[FloatArray, npt.ND
     Shapes on both, (mode, port) and (mode, dof). A combination of several ports is one only where they do not
     nearly cancel.
     """
+    return _attached(ports.tobytes(), ports.shape, dofs.tobytes(), dofs.shape)
+
+
+@lru_cache(SAME)
+def _attached(
+    of_ports: bytes, ports_shape: tuple[int, ...], of_dofs: bytes, dofs_shape: tuple[int, ...]
+) -> tuple[FloatArray, npt.NDArray[np.intc]]:
+    """The same of their numbers."""
+    ports = np.frombuffer(of_ports).reshape(ports_shape)
+    dofs = np.frombuffer(of_dofs).reshape(dofs_shape)
     shares: FloatArray = np.zeros((ports.shape[1], dofs.shape[1]))
     if ports.size:
         shares = np.asarray(np.linalg.lstsq(ports, dofs, rcond=1e-10)[0], dtype=np.float64)
