@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.harmonic.proportion import forget
 from fcm.harmonic.start import highest, least, level_curve, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.response import trace
@@ -80,3 +81,51 @@ def test_what_is_not_followed_of_a_level_has_no_solution(scene, frequency):
     found = solutions(system, frequency)
     assert found.complete and len(found.solutions) == len(passings)
     assert np.array([z[:-1] for z in found.solutions]) == pytest.approx(passings, rel=1e-6, abs=1e-7)
+
+
+def preloaded(scene, n_0):
+    """A curve of a sweep of preloads."""
+    contacts = tuple(replace(one, n_0=n_0) for one in scene.contacts)
+    return replace(scene, contacts=contacts, parameters={"contact.c.n_0": n_0})
+
+
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize(
+    ("scene", "frequency", "preloads"),
+    [(isola(), 1.22, (-15.0, -15.5, -3.0, -300.0)), (isola_stuck(), 1.5, (6.0, 5.5, 0.1, 500.0))],
+)
+def test_curves_of_other_preloads_share_a_curve_of_levels(scene, frequency, preloads, count):
+    """Each has the solutions on the curve of its own, whichever has come first."""
+    sweep, found = [preloaded(scene, n_0) for n_0 in preloads], []
+    for order in (sweep, sweep[::-1]):
+        forget()
+        systems = {one.parameters["contact.c.n_0"]: System(one, up_to(count)) for one in order}
+        found.append({n_0: solutions(system, frequency) for n_0, system in systems.items()})
+    numbers = set()
+    for n_0, one in found[0].items():
+        assert one.complete and np.array_equal(one.solutions, found[1][n_0].solutions)
+        own = System(replace(preloaded(scene, n_0), parameters={}), up_to(count))
+        path = level_curve(own, frequency, (0.0, highest(own, frequency)))
+        passings = path.z[path.parameter == 1.0, :-1]
+        assert np.array(one.solutions)[:, :-1] == pytest.approx(passings, rel=1e-6, abs=1e-7)
+        numbers.add(len(passings))
+    assert numbers == {1, 3}  # some of them have three
+
+
+def test_one_curve_of_levels_is_followed_for_a_sweep_of_preloads(monkeypatch):
+    """And for draws of friction and preload each has its own."""
+    followed = []
+
+    def counted(*given, **options):
+        followed.append(given)
+        return level_curve(*given, **options)
+
+    monkeypatch.setattr("fcm.harmonic.start.level_curve", counted)
+    forget()
+    curves = [preloaded(isola(), n_0) for n_0 in (-15.0, -15.5, -60.0)]
+    for one in curves:
+        solutions(System(one), 1.22)
+    assert len(followed) == 1
+    for one in curves:
+        solutions(System(replace(one, parameters={**one.parameters, "contact.c.mu": 0.05})), 1.22)
+    assert len(followed) == 4

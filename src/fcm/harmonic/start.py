@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
+from fcm.harmonic.proportion import in_common, passings
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 
@@ -55,30 +56,52 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     most, linear = highest(system, omega), BEFORE * least(system, omega)
     if reach is None and len(system.harmonics) > few_of(system):
         few = system.with_harmonics(system.harmonics[: few_of(system)])
-        reach = _reach(_followed(few, omega, linear, most))
-    path = _followed(system, omega, linear, most if reach is None else min(reach, most))
-    found = (
-        []
-        if path is None
-        else [np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0)]
-    )
+        reach = _followed(few, omega, linear, most).reach
+    found = _followed(system, omega, linear, most if reach is None else min(reach, most))
     if linear >= 1.0:
-        found = [np.append(next(linear_responses(system, omega, 1.0)), omega), *found]
-    elif not found:
-        found = list(_from_linear(system, omega))
-    complete = path is None or path.status in (Status.COMPLETE, Status.RETURNED)
+        first = np.append(next(linear_responses(system, omega, 1.0)), omega)
+        found = replace(found, solutions=(first, *found.solutions))
+    elif not found.solutions:
+        found = replace(found, solutions=tuple(_from_linear(system, omega)))
     enough = len(system.harmonics) >= few_of(system)
-    return Found(omega, tuple(found), complete, _reach(path) if enough else np.inf)
+    return found if enough else replace(found, reach=np.inf)
 
 
-def _followed(system: System, omega: float, linear: float, top: float) -> Path | None:
-    """The curve of the level, for its passings of 1; nothing if all up to its top is linear."""
+def _followed(system: System, omega: float, linear: float, top: float) -> Found:
+    """What the level passes on its way from where it is linear to its top."""
     if linear >= top:
+        return Found(omega, (), True, FURTHER * NEAR)
+    return _shared(system, omega, top) or _found(system, omega, linear, top)
+
+
+def _found(system: System, omega: float, linear: float, top: float) -> Found:
+    path = _hasty(system, omega, linear, top, (1.0,))
+    found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
+    complete = path.status in (Status.COMPLETE, Status.RETURNED)
+    return Found(omega, found, complete, _reach(path.status, path.parameter))
+
+
+def _shared(system: System, omega: float, top: float) -> Found | None:
+    """The same from the curve that systems of other preloads have, too, if it goes as far."""
+    if not system.unit or top >= GREATEST or top > system.unit * highest(system.normal, omega):
         return None
-    path = level_curve(system, omega, (0.0, top), linear=linear, hasty=True)
+    path = in_common(system, omega, _whole)
+    found = None if path is None else passings(system, path, omega)
+    if path is None or found is None:
+        return None
+    return Found(omega, tuple(found), True, _reach(path.status, system.unit * path.parameter))
+
+
+def _whole(system: System, omega: float) -> Path:
+    return _hasty(system, omega, BEFORE * least(system, omega), highest(system, omega), ())
+
+
+def _hasty(system: System, omega: float, linear: float, top: float, stations: tuple[float, ...]) -> Path:
+    """The curve of the level, by long steps if those come to its end."""
+    path = level_curve(system, omega, (0.0, top), stations=stations, linear=linear, hasty=True)
     if path.status is Status.COMPLETE:
         return path
-    return level_curve(system, omega, (0.0, top), linear=linear)
+    return level_curve(system, omega, (0.0, top), stations=stations, linear=linear)
 
 
 def few_of(system: System) -> int:
@@ -87,14 +110,12 @@ def few_of(system: System) -> int:
     return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
 
 
-def _reach(path: Path | None) -> float:
+def _reach(status: Status, levels: FloatArray) -> float:
     """Up to which level the curve of more harmonics is to be followed."""
-    if path is None:
-        return FURTHER * NEAR
-    if path.status is not Status.COMPLETE:
+    if status is not Status.COMPLETE:
         return np.inf
-    near = np.flatnonzero(path.parameter < NEAR)
-    return FURTHER * float(path.parameter[: near[-1] + 1].max()) if near.size else FURTHER * NEAR
+    near = np.flatnonzero(levels < NEAR)
+    return FURTHER * float(levels[: near[-1] + 1].max()) if near.size else FURTHER * NEAR
 
 
 def level_curve(

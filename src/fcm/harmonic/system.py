@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,11 +49,30 @@ class System:
 
     def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
         """The same with other harmonics."""
-        other = copy(self)
-        object.__setattr__(other, "harmonics", harmonics)
-        for made in ("looking", "front", "raised"):
-            other.__dict__.pop(made, None)
-        return other
+        return self._with(harmonics=harmonics)
+
+    @cached_property
+    def unit(self) -> float:
+        """The greatest preload, where the other curves of a sweep may be the same but for that; else 0."""
+        scene = self.scene
+        swept = [key.startswith("contact.") and key.endswith(".n_0") for key in scene.parameters]
+        plain = type(self.linear) is Linear and self.corrected and not scene.loads
+        preloads = [abs(one.n_0) for one in scene.contacts]
+        return max(preloads, default=0.0) if plain and swept and all(swept) and all(preloads) else 0.0
+
+    @cached_property
+    def normal(self) -> System:
+        """The same with all preloads divided by the greatest."""
+        contacts = tuple(replace(one, n_0=one.n_0 / self.unit) for one in self.scene.contacts)
+        return self._with(scene=replace(self.scene, contacts=contacts))
+
+    def _with(self, **other: object) -> System:
+        found = copy(self)
+        for name, value in other.items():
+            object.__setattr__(found, name, value)
+        for made in ("looking", "front", "raised", "unit", "normal"):
+            found.__dict__.pop(made, None)
+        return found
 
     @cached_property
     def rest(self) -> FloatArray:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.harmonic.proportion import forget
 from fcm.response.trace import Wanted, traced_curve
 from fcm.results.gist import Gist, without_points
 from fcm.results.jumps import Jump
@@ -35,6 +36,7 @@ class Work:
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         curves = []
+        forget()
         for number, scene in enumerate(group):
             report(number / len(group), "")
             curve = traced_curve(scene, self.wanted)
