@@ -134,6 +134,7 @@ class Solver:
     @cython.cfunc
     @cython.exceptval(check=False)
     def substitute(self) -> cython.void:
+        """Column after column, so that no subtraction waits for the one before."""
         a: cython.double[:, ::1] = self.matrix
         x: cython.double[::1] = self.right
         n: cython.Py_ssize_t = self.size
@@ -141,19 +142,17 @@ class Solver:
         j: cython.Py_ssize_t
         first: cython.Py_ssize_t = 0
         held: cython.double
-        total: cython.double
         while first < n and x[first] == 0.0:
             first += 1
-        for i in range(first, n):
-            total = x[i]
-            for j in range(first, i):
-                total -= a[i, j] * x[j]
-            x[i] = total / a[i, i]
-        for i in range(n - 1, -1, -1):
-            total = x[i]
-            for j in range(i + 1, n):
-                total -= a[i, j] * x[j]
-            x[i] = total
+        for j in range(first, n):
+            held = x[j] / a[j, j]
+            x[j] = held
+            for i in range(j + 1, n):
+                x[i] -= a[i, j] * held
+        for j in range(n - 1, 0, -1):
+            held = x[j]
+            for i in range(j):
+                x[i] -= a[i, j] * held
         for i in range(n - 1, -1, -1):
             j = self.swapped[i]
             held = x[j]

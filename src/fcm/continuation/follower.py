@@ -43,6 +43,9 @@ NEARER = cython.declare(cython.double, 0.9)  # each this share of the way
 AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
 LONGEST = 20_000  # steps
 END = cython.declare(cython.long, int(Mark.END))
+FOLD = cython.declare(cython.long, int(Mark.FOLD))
+CORNER = cython.declare(cython.long, int(Mark.CORNER))
+PEAK = cython.declare(cython.long, int(Mark.PEAK))
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
@@ -66,6 +69,7 @@ class Follower:
     trail: Trail
     greatest: FloatArray
     most: cython.double[::1]  # the same
+    grew: cython.double[::1]  # growth before a corner
     first: cython.double[::1]  # point,
     head: cython.double[::1]  # and its tangent
     interior: cython.bint
@@ -94,7 +98,7 @@ class Follower:
         self.stops = np.array(self.values)
         self.trail, self.attempts = Trail(problem.unknowns + 1), 0
         self.greatest = np.zeros(problem.outputs)
-        self.most = self.greatest
+        self.most, self.grew = self.greatest, np.zeros(problem.outputs)
         self.soft = Soft(self.front, self.trail) if problem.soft else None
 
     def begin(self, start: FloatArray, forward: bool) -> bool:
@@ -165,7 +169,7 @@ class Follower:
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
                 front.drift(reach)
-                return self.turn(events.found(front, 0.0, Mark.CORNER, front.here))
+                return self.turn(front.here, 0.0)
             # curves bend more and more towards a corner, and may hide a pair of folds there
             if self.near < reach < step and clear(front, NEARER * reach) and self.hidden() == 0.0:
                 return self.smooth()
@@ -233,32 +237,49 @@ class Follower:
         if self.keep(front.step):
             return self.end()
         place: Place = front.between if front.put(at, True, True) else front.there
-        point = events.found(front, at, Mark.CORNER, place)
-        come(front, place, at)
-        return self.turn(point)
+        return self.turn(place, at)
 
     @cython.ccall
-    def turn(self, point: events.Found, past: cython.double = BEYOND) -> object:
-        """Keep the corner that is here, and turn into the direction that the curve has beyond.
+    def turn(self, place: Place, at: cython.double, past: cython.double = BEYOND) -> object:
+        """Keep the corner, a place at a length from here, and turn into the direction that the curve has
+        beyond.
 
         past: the length at which that is looked for where the corner is a change of label.
         """
         front: Front = self.front
+        self.note(place)
+        if place is not front.here:
+            come(front, place, at)
         rise: cython.double = front.here.tangent[self.n]
-        growth = np.array(front.here.growth)
+        self.grew[:] = front.here.growth
         if self.soft is None:
             cross(front, self.stops)
         else:
             cross_softly(front, past)
-        mark = point.mark | (Mark.FOLD if rise * front.here.tangent[self.n] < 0.0 else 0)
-        if np.any((growth > 0.0) & (np.asarray(front.here.growth) < 0.0)):
-            mark |= Mark.PEAK
-        if np.array_equal(self.trail.last(), point.z):  # the step before has come to the corner
-            mark |= self.trail.drop()
-        self.trail.put(point.z, point.direction, mark, point.orientation, point.shift)
+        fold: cython.long = FOLD if rise * front.here.tangent[self.n] < 0.0 else 0
+        self.trail.mark_last(fold | (PEAK if self.peaked() else 0))
         self.rise()
         self.step = AFTER
         return None
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def note(self, place: Place) -> cython.int:
+        """Keep a place as a corner; the step before may have come to it already."""
+        mark: cython.long = CORNER
+        if self.trail.ends_at(place):
+            mark |= self.trail.drop()
+        return self.trail.add(place, self.front.newton.scale, mark, self.front.there.shift)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def peaked(self) -> cython.bint:
+        """Whether an output grew before the corner that is here, and falls beyond it."""
+        k: cython.Py_ssize_t
+        for k in range(self.grew.shape[0]):  # noqa: SIM110 - a loop in C
+            if self.grew[k] > 0.0 and self.front.here.growth[k] < 0.0:
+                return True
+        return False
 
     def aim(self, step: float, longer: bool) -> None:
         """Make the next step at most that long, or at least."""

@@ -12,10 +12,10 @@ from typing import Protocol
 
 import numpy as np
 
-from fcm.continuation import events
 from fcm.continuation.ahead import ahead
 from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Mark, Status
+from fcm.continuation.place import Place
 from fcm.continuation.trail import Trail
 
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
@@ -49,8 +49,8 @@ class Follower(Protocol):
     def smooth(self) -> object:
         """Go on to the place there; a status where the curve ends."""
 
-    def turn(self, point: events.Found, past: float) -> object:
-        """Keep the corner that is here, and turn into the direction that the curve has beyond."""
+    def turn(self, place: Place, at: float, past: float) -> object:
+        """Keep the corner, a place at a length from here, and turn into the direction beyond it."""
 
     def aim(self, step: float, longer: bool) -> None:
         """Make the next step at most that long, or at least."""
@@ -155,7 +155,7 @@ class Soft:
             self.trail.put(*self.came_so)
             past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
             self.repeated += 1
-            follower.turn(events.found(front, 0.0, Mark.CORNER, front.here), past)
+            follower.turn(front.here, 0.0, past)
             new = np.array(front.here.tangent)
             front.problem.bound(np.asarray(front.here.z) + past * np.asarray(front.newton.scale) * new)
             if self.leads_on(float(new @ self.came)):

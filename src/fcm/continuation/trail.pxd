@@ -10,3 +10,5 @@ cdef class Trail:
     cdef int add(self, Place place, double[::1] scale, long mark, double shift) except -1
     cpdef int put(self, double[::1] z, double[::1] direction, long mark, double orientation, double shift) except -1
     cdef int widen(self) except -1
+    cdef bint ends_at(self, Place place) except -1
+    cdef int mark_last(self, long mark) except -1

@@ -98,6 +98,23 @@ class Trail:
         rest = float(self.rest[k, 0]), float(self.rest[k, 1])
         return self.last(), np.array(self.direction[k]), int(self.mark[k]), *rest
 
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def ends_at(self, place: Place) -> cython.bint:
+        """Whether the last point is a place."""
+        i: cython.Py_ssize_t
+        for i in range(self.size):  # noqa: SIM110 - a loop in C
+            if self.z[self.count - 1, i] != place.z[i]:
+                return False
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def mark_last(self, mark: cython.long) -> cython.int:
+        """Mark the last point by that, too."""
+        self.mark[self.count - 1] |= mark
+        return 0
+
     def cut(self, count: int) -> None:
         """Forget all but so many points."""
         self.count = count
