@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
+from fcm.harmonic.cost import PATIENCE, seconds_with
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.start import Found, few_of
@@ -17,8 +18,6 @@ from fcm.harmonic.trace import Traced, traced
 from fcm.scene.model import FloatArray
 
 ROUNDS = 8  # of tracing, estimating, choosing
-WORK = 1e8  # evaluations times unknowns squared of a tracing, beyond which no more is tried,
-WORTH = 10.0  # or times this, where it is told what would be enough
 
 
 @dataclass(frozen=True)
@@ -29,11 +28,10 @@ class Outline:
     traced: Traced
     shown: tuple[Reported, ...]
 
-    @property
-    def work(self) -> float:
-        """Evaluations times unknowns squared."""
-        unknowns = len(self.system.scene.contacts) * (2.0 + 4.0 * len(self.system.harmonics))
-        return sum(path.evaluations for path in self.traced.branches.paths) * unknowns**2
+    def seconds_with(self, harmonics: tuple[int, ...]) -> float:
+        """About what following its branches with other harmonics takes."""
+        evaluations = sum(path.evaluations for path in self.traced.branches.paths)
+        return seconds_with(self.system, evaluations, len(harmonics))
 
     def ahead(self, accuracy: float) -> Foreseen:
         """What more harmonics would do, and those that an accuracy takes."""
@@ -48,14 +46,22 @@ class Accurate(Outline):
     """A response, its errors, and whether they are below what was asked for.
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
-    amplitude over all of them, and worst the greatest of these and of the errors of the folds. NaN where it
-    cannot be told.
+    amplitude over all of them; worst the greatest of these and of the errors of the folds, NaN where one
+    cannot be told, and told the greatest of those that can. further: the harmonics that would do more but
+    take too long, if any.
     """
 
     errors: tuple[Errors, ...]
     peak: FloatArray
     worst: float
+    told: float
     reached: bool
+    further: tuple[int, ...] = ()
+
+    @property
+    def folds(self) -> FloatArray:
+        """Errors of all folds, branch after branch."""
+        return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])
 
 
 def accurate(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
@@ -65,21 +71,24 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
     its true place than the accuracy (relative), the harmonics are added that it takes, as far as that can be
     foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
     more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
-    to it. Only what is foreseen to be enough has its errors estimated point by point. Whether the branches
-    are complete is another question, see their status.
+    to it. Only what is foreseen to be enough has its errors estimated point by point. More harmonics than
+    anyone waits for who has not asked for them are not begun, see `PATIENCE`. Whether the branches are
+    complete is another question, see their status.
     """
     found = outlined(system, progress)
+    further: tuple[int, ...] = ()
     for _ in range(ROUNDS - 1):
-        ahead = found.ahead(accuracy)
-        dear = found.work > WORK * (WORTH if ahead.told else 1.0)
-        if dear or (ahead.told and ahead.change <= accuracy):
+        ahead, sure = found.ahead(accuracy), None
+        more = ahead.harmonics
+        if ahead.told and ahead.change <= accuracy:
             sure = judged(found, accuracy)
-            if sure.reached or found.work > WORK:
-                return sure
+            if sure.reached or (sure.told <= accuracy and not np.isnan(sure.peak).any()):
+                return sure  # folds that cannot be told do not come to be by more harmonics
             more = enlarged(sure, accuracy)
-        else:
-            more = ahead.harmonics
         if more == found.system.harmonics:
+            break
+        if found.seconds_with(more) > PATIENCE:
+            further = more
             break
         shown = [one.amplitude for one in found.shown]
         near = beside(found.system, found.traced.branches.paths, shown, more)
@@ -87,7 +96,7 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
         if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
             break
         found = then
-    return judged(found, accuracy)
+    return replace(sure or judged(found, accuracy), further=further)
 
 
 def given(system: System, progress: Progress | None = None) -> Accurate:
@@ -113,12 +122,13 @@ def judged(outline: Outline, accuracy: float) -> Accurate:
     errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
-        return Accurate(system, response, shown, errors, none, np.nan, False)
+        return Accurate(system, response, shown, errors, none, np.nan, np.nan, False)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
     matter = peak[height > NOTHING * height.max()]
-    worst = float(np.concatenate((matter, *(one.fold for one in errors))).max(initial=0.0))
-    return Accurate(system, response, shown, errors, peak, worst, worst <= accuracy)
+    every = np.concatenate((matter, *(one.fold for one in errors)))
+    worst, told = float(every.max(initial=0.0)), float(every[np.isfinite(every)].max(initial=0.0))
+    return Accurate(system, response, shown, errors, peak, worst, told, worst <= accuracy)
 
 
 def outlined(

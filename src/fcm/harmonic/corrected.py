@@ -13,6 +13,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 EVERY = 16  # points from one that is displaced to the next, before it is known how they change
+FARTHER = 32  # the same, to see along which stretches no displacement is found
 OFF = 0.2  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
 STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
@@ -51,17 +52,21 @@ class Corrected:
 
         These are the places given, every so many points, those next to a linear part, and those between two
         of them if the middle one is not what they lead to expect. The tops get the best further harmonics
-        of their own, whatever points lie around them.
+        of their own, whatever points lie around them. Along stretches where no displacement is found nothing
+        more is looked for: not to find one is what costs most.
         """
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
-        first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
         self.find(np.unique(tops), True)
+        lost = self.lost()
+        places = places[~lost[places]]
+        first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
+        first = first[~lost[first] | self.known[first]]
         self.find(first)
         before, after = first[:-1], first[1:]
         while len(before):
-            wide = (after - before > 1) & ~(self.linear[before] & self.linear[after])
+            wide = (after - before > 1) & ~(self.linear[before] & self.linear[after]) & ~lost[before + 1]
             before, after = before[wide], after[wide]
             middle = (before + after) // 2
             expected = self.interpolated(middle)
@@ -74,6 +79,19 @@ class Corrected:
         for place in places.tolist():
             self.bridge(place)
         return self.interpolated(np.arange(count))
+
+    def lost(self) -> npt.NDArray[np.bool_]:
+        """Where (point,) no displacement is looked for: between places that are far apart, if none is found
+        at three of them in a row."""
+        count = len(self.known)
+        some = np.append(np.arange(0, count - 1, FARTHER), count - 1)
+        self.find(some)
+        missed = np.isnan(self.change[some, 0])
+        three = np.flatnonzero(missed[:-2] & missed[1:-1] & missed[2:])
+        lost = np.zeros(count, dtype=np.bool_)
+        for i in three.tolist():
+            lost[some[i] + 1 : some[i + 2]] = True
+        return lost
 
     def settled(self, tops: Indices) -> FloatArray:
         """By which amplitudes (dof,) at their tops change when the displacement there is settled, a factor.

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Mark, Status
+from fcm.harmonic.cost import PATIENCE, seconds_with
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops, states
@@ -23,7 +24,6 @@ from fcm.units import in_unit
 
 WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
 FAR = 1e6  # a level of the forces beyond this is a mistake of units
-WORK = 1e8  # evaluations times unknowns squared beyond which no more harmonics are tried
 
 
 def trace_modes(
@@ -85,7 +85,7 @@ def _curve(
     mode = nonlinear_mode(system, number, span, scene.max_step)
     error = truncation(mode)
     while wanted.harmonics is None and not _enough(mode, error, wanted.accuracy):
-        highest = min(2 * mode.system.harmonics[-1] + 1, MOST_HARMONICS)
+        highest = _more(mode)
         more = nonlinear_mode(
             system.with_harmonics(tuple(range(1, highest + 1))), number, span, scene.max_step
         )
@@ -107,8 +107,14 @@ def _worst(error: FloatArray) -> float:
 
 def _enough(mode: Mode, error: FloatArray, accuracy: float) -> bool:
     """Whether no more harmonics are needed, or can be afforded."""
-    work = mode.path.evaluations * float(mode.problem.unknowns) ** 2
-    return _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS or work > WORK
+    if _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS:
+        return True
+    return seconds_with(mode.system, mode.path.evaluations, _more(mode)) > PATIENCE
+
+
+def _more(mode: Mode) -> int:
+    """How many harmonics come next."""
+    return min(2 * mode.system.harmonics[-1] + 1, MOST_HARMONICS)
 
 
 def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, ...]) -> Curve:

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from fcm.harmonic.choice import WORK, enlarged, estimated
+from fcm.harmonic.choice import enlarged, estimated
+from fcm.harmonic.cost import PATIENCE
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.sweep import trace
@@ -153,10 +154,10 @@ def _enough(task: _Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[in
         height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
         worst = float(there.peak[dofs][height > COUNTS * height.max()].max(initial=0.0))
         there = replace(there, worst=worst)
-        if worst <= task.accuracy or there.work > WORK:
+        if worst <= task.accuracy:
             return harmonics
         more = enlarged(there, task.accuracy)
-        if more == harmonics:
+        if more == harmonics or there.seconds_with(more) > PATIENCE:
             return harmonics
         harmonics = more
 

@@ -92,11 +92,28 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
         return lost_curve(scene, f"{why}{FLOATING if rigid else ''}")
     curve = _curve(found)
     if wanted.harmonics is None and not found.reached and curve.complete:
-        error = "an unknown one" if np.isnan(found.worst) else f"{found.worst:.1e}"
-        count = len(found.system.harmonics)
-        curve.short_of = f"with {count} harmonics an estimated error of {error} remains"
+        curve.short_of = _short_of(found)
     curve.seconds = time.perf_counter() - begin
     return curve
+
+
+def _short_of(found: Accurate) -> str:
+    """What keeps a response from the accuracy that was asked for, and what more would take."""
+    count, folds = len(found.system.harmonics), found.folds
+    said = f"with {count} harmonic{'' if count == 1 else 's'}"
+    untold = np.count_nonzero(np.isnan(folds))
+    if np.isnan(found.worst) and np.isnan(found.peak).any():
+        said += " the errors of some peaks cannot be told"
+    elif untold:
+        said += f" an estimated error of {found.told:.1e} remains"
+        said += f", and that of {untold} of {folds.size} folds cannot be told"
+    else:
+        said += f" an estimated error of {found.worst:.1e} remains"
+    if not found.further:
+        return said
+    more = found.further
+    which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
+    return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 
 def _curve(found: Accurate) -> Curve:
