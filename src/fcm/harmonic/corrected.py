@@ -58,7 +58,8 @@ class Corrected:
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
-        self.find(np.unique(tops), True)
+        for group in _groups(np.unique(tops)):
+            self.find_group(group)
         lost = self.lost()
         places = places[~lost[places]]
         first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
@@ -100,8 +101,7 @@ class Corrected:
         for all.
         """
         factor = np.ones(len(tops))
-        unique = np.unique(tops)
-        for group in np.split(unique, np.flatnonzero(np.diff(unique) > TOGETHER) + 1):
+        for group in _groups(np.unique(tops)):
             i = int(group[len(group) // 2])
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
@@ -158,6 +158,16 @@ class Corrected:
         self.filled.unforeseen(points, expected, self.weight, OFF, NOTHING, more)
         return more.view(np.bool_)
 
+    def find_group(self, group: Indices) -> None:
+        """The displacements of tops that lie together, with the best harmonics of each; where those at both
+        ends are missed, and the second, so are those between."""
+        self.find(group[:2], True)
+        if np.isnan(self.change[group[:2], 0]).all() and len(group) > 3:
+            self.find(group[-1:], True)
+            if np.isnan(self.change[group[-1], 0]):
+                self.change[group], self.known[group] = np.nan, True
+        self.find(group, True)
+
     def find(self, places: Indices, best: bool = False) -> None:
         """The displacements of some points, which are then known; with the best harmonics of each, or with
         those that are nearly as good and there already."""
@@ -176,6 +186,11 @@ class Corrected:
             if found is not None:
                 self.change[at] = (found - now[of]) / unit[of]
         self.known[places] = True
+
+
+def _groups(tops: Indices) -> list[Indices]:
+    """Those that lie together."""
+    return np.split(tops, np.flatnonzero(np.diff(tops) > TOGETHER) + 1)
 
 
 def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

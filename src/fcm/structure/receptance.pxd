@@ -16,6 +16,8 @@ cdef class Receptance:
     cdef public double[::1] square_re
     cdef public double[::1] square_im
     cdef public double[:, ::1] static
+    cdef public double[:, ::1] weights
+    cdef public double[:, ::1] sum
     cdef public double[:, ::1] c_re
     cdef public double[:, ::1] c_im
     cdef public double[:, ::1] s_re

@@ -44,10 +44,11 @@ class Receptance:
         self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
         self.square_re, self.square_im = np.zeros(modes), np.zeros(modes)
         self.slope_re, self.slope_im = np.zeros(modes), np.zeros(modes)
-        self.c_re, self.c_im = np.zeros((count, modes)), np.zeros((count, modes))
-        self.s_re, self.s_im = np.zeros((count, modes)), np.zeros((count, modes))
-        self.G_re, self.G_im = np.zeros((count, ports, ports)), np.zeros((count, ports, ports))
-        self.dG_re, self.dG_im = np.zeros((count, ports, ports)), np.zeros((count, ports, ports))
+        self.weights = np.zeros((4 * count, modes))  # those of the modes, and the sums over these, as one
+        self.sum = np.zeros((4 * count * ports, ports))
+        self.c_re, self.c_im, self.s_re, self.s_im = np.asarray(self.weights).reshape(4, count, modes)
+        sums = np.asarray(self.sum).reshape(4, count, ports, ports)
+        self.G_re, self.G_im, self.dG_re, self.dG_im = sums
         self.X_re, self.X_im = np.zeros(ports), np.zeros(ports)
         self.dX_re, self.dX_im = np.zeros(ports), np.zeros(ports)
         where = [j for j in range(count) if harmonics[j] == 1.0]
@@ -141,11 +142,8 @@ class Receptance:
     @cython.exceptval(-1, check=False)
     def large_sums(self) -> cython.int:
         shapes = np.asarray(self.shapes)
-        for j in range(self.count):
-            np.matmul(shapes.T * np.asarray(self.c_re)[j], shapes, out=np.asarray(self.G_re)[j])
-            np.matmul(shapes.T * np.asarray(self.c_im)[j], shapes, out=np.asarray(self.G_im)[j])
-            np.matmul(shapes.T * np.asarray(self.s_re)[j], shapes, out=np.asarray(self.dG_re)[j])
-            np.matmul(shapes.T * np.asarray(self.s_im)[j], shapes, out=np.asarray(self.dG_im)[j])
+        weighted = np.asarray(self.weights)[:, None, :] * shapes.T  # (a weight of the modes, port, mode)
+        np.matmul(weighted.reshape(-1, shapes.shape[0]), shapes, out=np.asarray(self.sum))
         return 0
 
     @cython.cfunc

@@ -1,0 +1,32 @@
+"""Stretches beside which the corrected curve is followed: past corners, by way of corners, and not at all."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.harmonic import stretch
+from fcm.response import trace
+
+
+def errors(name: str) -> list[float]:
+    (curve,) = trace(replace(fcm.load_scene(name), harmonics=(1,))).curves
+    return [peak.error for peak in curve.peaks.values()]
+
+
+def test_past_corners_and_by_way_of_them_a_curve_is_the_same(monkeypatch):
+    by_way = errors("beam")
+    calls = []
+    monkeypatch.setattr(stretch, "DEAR", 0)
+    monkeypatch.setattr(stretch, "follow", lambda *a: calls.append(a[0].margins) or follow(*a))
+    follow = fcm.continuation.follow
+    past = errors("beam")
+    assert calls == [0]
+    assert np.isfinite(by_way).all()
+    assert past == pytest.approx(by_way, rel=1e-9)
+
+
+def test_where_the_work_is_limited_the_error_cannot_be_told(monkeypatch):
+    monkeypatch.setattr(stretch, "EFFORT", 1.0)
+    assert np.isnan(errors("beam")).any()
