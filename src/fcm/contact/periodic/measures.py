@@ -51,6 +51,7 @@ LEAST_LOAD = cython.declare(cython.int, 10)  # kinds of extremes, beside TOP and
 GREATEST_LOAD = cython.declare(cython.int, 11)
 TURN = cython.declare(cython.int, 12)  # of the motion
 POINTS = cython.declare(cython.int, 8)
+PART = cython.declare(cython.double, 3.0)  # [rad] in which as many points err by 2e-15
 _GAUSS = gauss(8)  # POINTS of them, on 0 to 1
 PRIME = cython.declare(cython.int, 100000007)  # seven times that is an int still
 
@@ -204,11 +205,11 @@ class Measures:
         self.dissipation, self.slip_path = energy * self.motion.scale * length, path * length
 
     def slip(self, p: cython.int, length: float) -> None:
-        """Gauss's rule over one slip, in parts of two radians of the highest product."""
+        """Gauss's rule over one slip, in parts of PART of the highest product."""
         i: cython.int
         j: cython.int
         row: cython.int = LOWER if self.cycle.state[p] > 0 else UPPER
-        parts: cython.int = cython.cast(cython.int, length * max(self.motion.highest, 1)) + 1
+        parts: cython.int = cython.cast(cython.int, 2.0 / PART * length * max(self.motion.highest, 1)) + 1
         step: float = length / parts
         c: float
         s: float
