@@ -258,3 +258,19 @@ def test_a_start_needs_a_schedule(data, mistakes):
 def test_a_schedule_has_a_limit(data, mistakes):
     data["schedule"] = [{"frequency": 1.0, "cycles": 6e6}] * 2
     assert "schedule: asks for 1.2e+07 cycles; there can be 10000000" in mistakes(data)
+
+
+def test_a_base_without_participation_is_said_beside_other_mistakes(data, mistakes):
+    data["base"] = {"acceleration": 1.0}
+    data["modal"]["damping"] = -0.01
+    message = mistakes(data)
+    assert "base: needs [structure], or modal.participation" in message
+    assert "modal.damping: must be at least 0" in message
+
+
+def test_what_stands_beside_a_file_that_is_not_there_is_checked(data, mistakes):
+    data["modal"] = {"file": "none.npz", "damping": -1.0, "frequency": [-1.0], "dofs": "u", "shape": []}
+    message = mistakes(data)
+    assert '"none.npz" is not there' in message
+    for key in ("damping", "frequency[0]", "dofs", "shape"):
+        assert f"modal.{key}: " in message

@@ -186,6 +186,23 @@ def test_all_mistakes_at_once():
     assert 'unknown degree of freedom "4x"; structure.dofs are "1x", "2x", "3x"' in refused(top=top)
 
 
+@pytest.mark.parametrize(
+    "structure, top",
+    [({"damping": -1.0}, {}), ({"modes": 0}, {}), ({}, {"title": 3}), ({}, {"contact": [{"name": "c"}]})],
+)
+def test_matrices_of_no_structure_are_said_beside_other_mistakes(structure, top):
+    said = refused(top=top, mass=[1.0, -2.0, 0.5], **structure)
+    assert "structure: the mass has 1 negative eigenvalue" in said
+    assert said.count("\n") >= 2
+
+
+def test_matrices_of_no_ring_are_said_beside_other_mistakes():
+    coupling = {"stiffness": [[0, 0, 0], [0, 0, 0], [5, 0, 0]]}
+    ring = {"title": 3, "cyclic": {"sectors": 4, "engine_order": 1}}
+    assert "1 negative eigenvalue" in refused(top=ring, coupling=coupling)
+    assert "structure.coupling: couples the sectors" in refused(coupling=coupling, modes=0)
+
+
 def test_entries_that_are_not_symmetric_are_named():
     skew = K.copy()
     skew[0, 1], skew[2, 0] = -1.5, 0.25

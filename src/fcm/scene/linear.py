@@ -43,7 +43,7 @@ def read_linear(top: Section, files: Files, unit: str, cyclic: list[Parts]) -> t
     dofs, matrices = read_structure(top, files)
     if cyclic:
         dofs = ring_names(top, dofs)
-    elif matrices is not None and matrices.coupling is not None:
+    elif isinstance(top.data["structure"], Mapping) and "coupling" in top.data["structure"]:
         top.wrong("structure.coupling", "couples the sectors of a ring: give [cyclic]")
     return dict.fromkeys(KEYS) | {"dofs": dofs}, matrices
 
@@ -70,6 +70,19 @@ def with_modes(
     return with_displacements(parts | {"modal": draft}, columns), notes
 
 
+def check_matrices(top: Section, matrices: Matrices, cyclic: list[Parts], ends: tuple[float, float]) -> None:
+    """Note that matrices are not those of a structure, of a scene that has other mistakes."""
+    from fcm.scene.reduction import modal_of_matrices
+    from fcm.scene.ring_reduction import modal_of_ring
+
+    rows, ends = len(matrices.dofs), (ends[0], ends[1]) if np.isfinite(ends).all() else (0.0, 0.0)
+    if not cyclic:
+        modal_of_matrices(top, matrices, np.zeros((rows, 0)), np.zeros((rows, 0)), ends)
+    elif np.isfinite(sectors := cyclic[0]["sectors"]):
+        none = np.zeros((rows, 0))
+        modal_of_ring(top, matrices, int(sectors), np.zeros((2 * rows, 0)), none, none, ends)
+
+
 def _of_ring(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
@@ -93,15 +106,9 @@ def _of_ring(
     return with_displacements(parts | {"modal": draft}, columns), notes
 
 
-def with_base(top: Section, parts: Parts) -> Parts:
+def with_base(parts: Parts) -> Parts:
     """The parts of a scene of modes with what its base works on."""
-    if not parts["base"]:
-        return parts
-    participation = parts["modal"]["participation"]
-    if participation is None:
-        top.wrong("base", "needs [structure], or modal.participation: phi^T M d of each mode")
-        return parts
-    return with_displacements(parts, {BASE: participation})
+    return with_displacements(parts, {BASE: parts["modal"]["participation"]}) if parts["base"] else parts
 
 
 def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:

@@ -16,6 +16,7 @@ from fcm.scene.files import LARGEST, Files
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     Parts,
+    check_matrices,
     read_linear,
     read_output,
     reported_of,
@@ -153,11 +154,13 @@ def _parts(
         only_own(top, parts, modal["dofs"])
     output = read_output(response, own_names(modal["dofs"])) if response is not None else []
     if top.mistakes.count:
+        if matrices is not None:
+            check_matrices(top, matrices, cyclic, ends)
         return parts, (), []
     if matrices is not None:
         parts, notes = with_modes(top, parts, matrices, output, ends, unit)
     else:
-        parts, notes = without_rounding(with_base(top, parts), ends, unit)
+        parts, notes = without_rounding(with_base(parts), ends, unit)
         notes = [*modal["notes"], *notes]
     if top.mistakes.count:
         return parts, (), []

@@ -41,7 +41,9 @@ def read_modal(
         "frequency": frequency,
         "damping": _per_mode(section, "damping", modes),
         "shapes": _shapes(section, dofs, modes, complex_row if cyclic else Section.numbers),
-        "participation": _participation(section, modes),
+        "participation": _participation(
+            section, modes, not cyclic and isinstance(top.data.get("base"), Mapping)
+        ),
         "notes": notes,
     }
     if cyclic:
@@ -78,6 +80,7 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
         found = read_modal_file(name, files, waves)
     except DataFileError as error:
         section.wrong("file", str(error))
+        _check_inline(section)
         return None, []
     notes = found.pop("notes")
     if "angular_frequency" in found:
@@ -85,6 +88,18 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
     if "mass" not in found and "mass" not in section.data and "shapes" in found:
         notes += note_of_scale(name, found["shapes"])
     return Section({**found, **section.data}, section.path, section.mistakes), notes
+
+
+def _check_inline(section: Section) -> None:
+    """Note the mistakes of what stands beside a file that cannot be read."""
+    section.only(*names("modal"))
+    for key in ("mass", "damping", "participation"):
+        if key in section.data:
+            _per_mode(section, key, None)
+    if "frequency" in section.data:
+        section.vector("frequency", RULES["frequency"])
+    if "dofs" in section.data:
+        _dofs(section)
 
 
 def _dofs(section: Section) -> Names | None:
@@ -107,9 +122,11 @@ def _per_mode(
     return vector
 
 
-def _participation(section: Section, modes: int | None) -> FloatArray | None:
+def _participation(section: Section, modes: int | None, needed: bool) -> FloatArray | None:
     """Phi^T M d of each mode for the direction d in which the base moves, if it is given."""
     if "participation" not in section.data:
+        if needed:
+            section.mistakes.add("base", "needs [structure], or modal.participation: phi^T M d of each mode")
         return None
     return _per_mode(section, "participation", modes)
 

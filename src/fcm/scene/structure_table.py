@@ -17,6 +17,7 @@ from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
 from fcm.scene.symmetry import check_symmetric, symmetric
+from fcm.structure.eigen import StructureError, system_of
 
 
 @dataclass(frozen=True)
@@ -51,13 +52,17 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
         return None, None
     before = top.mistakes.count
     section.only(*names("structure"))
+    read = top.mistakes.count
     K, M = (_matrix(section, key, files) for key in ("stiffness", "mass"))
     rows = None if K is None else K.shape[0]
     if K is not None and M is not None and M.shape[0] != rows:
         section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
+    sound = top.mistakes.count == read
     dofs = _row_names(section, files, rows)
+    read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
         check_symmetric(section, key, matrix, dofs)
+    sound = sound and top.mistakes.count == read
     damping = _damping(section, files, rows, dofs)
     modes = _modes(section)
     coupling = _coupling(section, files, rows)
@@ -65,10 +70,20 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     if not isinstance(keep, bool):
         section.wrong("flexibility", f"must be true or false, is {kind(keep)}")
     if top.mistakes.count > before or dofs is None:
+        if sound and coupling is None:
+            _check_definite(section, K, M)
         return dofs, None
     return dofs, Matrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
+
+
+def _check_definite(section: Section, K: Any, M: Any) -> None:
+    """Note that matrices are not those of a structure."""
+    try:
+        system_of(symmetric(K), symmetric(M))
+    except StructureError as error:
+        section.wrong("", str(error))
 
 
 def _matrix(section: Section, key: str, files: Files) -> Any:
