@@ -16,7 +16,6 @@ from fcm.motion.system import System, has_friction
 from fcm.scene.model import Contact, FloatArray, Scene
 
 FEW, MANY = (1, 2, 3), 5  # harmonics of a guess; contacts from which on it has one
-MORE = tuple(range(1, 8))  # harmonics of a guess where few lead to nothing
 FURTHER = 3  # times the highest of them, to which the forces of a guess reach
 
 
@@ -76,7 +75,7 @@ def harmonic_state(
     return _modal(system, wave, steady, friction)
 
 
-def balanced_states(scene: Scene, frequency: float, harmonics: tuple[int, ...] = FEW) -> list[State]:
+def balanced_states(scene: Scene, frequency: float) -> list[State]:
     """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there."""
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
@@ -84,10 +83,15 @@ def balanced_states(scene: Scene, frequency: float, harmonics: tuple[int, ...] =
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
-    balanced, kept = Balanced(whole, harmonics if len(whole.contacts) < MANY else (1,)), scene.computed()
+    balanced = Balanced(whole, FEW if len(whole.contacts) < MANY else (1,))
     found = solutions(balanced, frequency).solutions
-    states = [state_of(whole, balanced.harmonics, z) for z in found]
-    return [replace(state, friction=state.friction[kept]) for state in states]
+    return [computed_state(scene, balanced.harmonics, z) for z in found]
+
+
+def computed_state(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:
+    """The same as `state_of` of the whole scene's balance, without the friction of contacts that are held."""
+    state = state_of(scene.whole(), harmonics, z)
+    return replace(state, friction=state.friction[scene.computed()])
 
 
 def state_of(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
+from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.family import chosen
-from fcm.orbit.harmonic import FEW, MORE, balanced_states
+from fcm.orbit.harmonic import balanced_states, computed_state
 from fcm.orbit.periodic import Orbit, periodic, shoot
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
-PLACES = 8  # between which the range is looked at with more harmonics, where nothing else was found
+PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
+ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
@@ -24,7 +26,7 @@ def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
 
     At both ends, and at the resonances inside, near every solution of the balance; where that leads to no
     stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
-    the first solution of the balance with more harmonics that leads to a motion, anywhere in the range.
+    the first solution of the balance of one harmonic that leads to a motion, anywhere in the range.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside = inner_resonances(scene)
@@ -44,15 +46,33 @@ def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
 
 
 def _anywhere(problem: OrbitProblem) -> list[FloatArray]:
-    """The first point that the balance with more harmonics leads to, at frequencies across the range."""
+    """The first point that the balance leads to, at frequencies across the range."""
     scene = problem.scene
-    for omega in np.linspace(*scene.frequency_range, PLACES + 1)[:0:-1].tolist():
-        for orbit in near_balance(scene, omega, MORE):
+    for omega in np.linspace(*scene.frequency_range, PLACES + 1)[::-1].tolist():
+        for orbit in _shot(scene, omega, _corrected_states(scene, omega)):
             try:
                 return [first_point(problem, orbit)]
             except SimulationError:
                 continue
     return []
+
+
+def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
+    """Guesses from the balance of one harmonic, with more of them where Newton's method leads to that.
+
+    To follow the level of the forces with as many takes a hundred times as long.
+    """
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts):
+        return
+    from fcm.harmonic.further import padded
+    from fcm.harmonic.start import solutions
+    from fcm.harmonic.system import System as Balanced
+
+    one, newton = Balanced(whole, ONE), Newton(Balanced(whole, MORE).balance())
+    for solution in solutions(one, omega).solutions:
+        z = padded(solution, ONE, MORE)
+        yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
 
 
 def solution_at(scene: Scene, omega: float) -> Orbit:
@@ -68,9 +88,14 @@ def solution_at(scene: Scene, omega: float) -> Orbit:
     return (stable or _from_rest(scene, omega, bool(near)) or near)[0]
 
 
-def near_balance(scene: Scene, omega: float, harmonics: tuple[int, ...] = FEW) -> Iterator[Orbit]:
+def near_balance(scene: Scene, omega: float) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
-    for guess in balanced_states(scene, omega, harmonics):
+    return _shot(scene, omega, balanced_states(scene, omega))
+
+
+def _shot(scene: Scene, omega: float, guesses: Iterable[State]) -> Iterator[Orbit]:
+    """The motions that shooting finds from guesses."""
+    for guess in guesses:
         try:
             orbit = shoot(System(scene, omega), guess)
         except SimulationError:
