@@ -30,7 +30,7 @@ class Kept(NamedTuple):
     last: tuple[FloatArray, FloatArray, int, float, float]  # to be put again
 
     @property
-    def points(self) -> int:
+    def number(self) -> int:
         """How many there are."""
         return len(self.before.mark) + 1
 

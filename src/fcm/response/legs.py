@@ -86,7 +86,7 @@ class Legs:
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
-        self.report(covered, f"{stage.kept.points} points")
+        self.report(covered, f"{stage.kept.number} points")
         if self.end is not None and time.process_time() > self.end:
             raise TimeOver
 
