@@ -37,6 +37,7 @@ def follow(
     watch: Watch | None = None,
     hasty: bool = False,
     front: Front | None = None,
+    narrow: Sequence[tuple[float, float]] = (),
 ) -> Path:
     """Follow the curve through start until the parameter leaves the span, or the curve closes.
 
@@ -64,13 +65,16 @@ def follow(
         Whether only the passings of stations matter: corners are gone to, and left, by longer steps.
     front : Front, optional
         Of the same problem, that has followed another curve to its end.
+    narrow : sequence of (float, float)
+        Values of the parameter, with a width, at which the curve may have a peak that no point away from it
+        tells of: steps end there, where the width is less than the longest step.
 
     Returns
     -------
     Path
         With status STALLED and without points where there is no curve at the start.
     """
-    follower = Follower(problem, span, max_step, stations, progress, hasty, front)
+    follower = Follower(problem, span, max_step, stations, progress, hasty, front, narrow)
     if stage is not None:
         follower.resume(stage)
     elif not follower.begin(start, forward):

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import cython
 import numpy as np
+from cython.cimports.libc.math import fabs
 
 from fcm.continuation import events
 from fcm.continuation.back import BACK, earlier
@@ -41,6 +42,7 @@ TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less
 NEAR = cython.declare(cython.double, 1e-4)  # where points matter, a corner further away is gone to by steps,
 NEARER = cython.declare(cython.double, 0.9)  # each this share of the way
 AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
+AT = cython.declare(cython.double, 0.25)  # of the width of a narrow place, within which a step ends there
 LONGEST = 20_000  # steps
 END = cython.declare(cython.long, int(Mark.END))
 FOLD = cython.declare(cython.long, int(Mark.FOLD))
@@ -66,6 +68,7 @@ class Follower:
     size: cython.double
     values: list[float]  # of the parameter, to be landed on: stations, then the ends of the range
     stops: cython.double[::1]  # the same
+    narrow: cython.double[:, ::1]  # (place, 2) values of the parameter with a width: no step leads across
     trail: Trail
     greatest: FloatArray
     most: cython.double[::1]  # the same
@@ -75,6 +78,7 @@ class Follower:
     interior: cython.bint
     hasty: cython.bint
     near: cython.double  # a corner no further away is gone to at once
+    short: cython.bint  # whether the step ends at a narrow place
     attempts: int  # to go back from where no step leads on
     soft: Soft | None
     progress: Progress | None
@@ -88,6 +92,7 @@ class Follower:
         progress: Progress | None,
         hasty: bool = False,
         front: Front | None = None,
+        narrow: Sequence[tuple[float, float]] = (),
     ) -> None:
         self.problem, self.front, self.n = problem, front or Front(problem), problem.unknowns
         self.front.newton.evaluations = 0
@@ -96,7 +101,10 @@ class Follower:
         self.near = max_step if hasty else NEAR
         self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
         self.stops = np.array(self.values)
+        apart = [one for one in narrow if one[1] < max_step * (self.high - self.low)]
+        self.narrow = np.array(apart, dtype=np.float64).reshape(-1, 2)
         self.trail, self.attempts = Trail(problem.unknowns + 1), 0
+        self.short = False
         self.greatest = np.zeros(problem.outputs)
         self.most, self.grew = self.greatest, np.zeros(problem.outputs)
         self.soft = Soft(self.front, self.trail) if problem.soft else None
@@ -165,6 +173,7 @@ class Follower:
         hidden: cython.double
         if self.soft is not None:
             return self.soft.advance(self, step)
+        step = self.up_to_narrow(step)
         while step > SHORTEST:
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
@@ -179,7 +188,7 @@ class Follower:
                     if status is not Status.STALLED:
                         return status
                 elif reach >= step and good(front):
-                    hidden = self.hidden()
+                    hidden = self.hidden() or self.across(step)
                     if hidden == 0.0:
                         return self.smooth()
                     step = hidden
@@ -189,6 +198,37 @@ class Follower:
                 return self.smooth()
             step = 0.25 * min(step, reach)
         return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def up_to_narrow(self, step: cython.double) -> cython.double:
+        """The step, or the length at which it comes to the first narrow place."""
+        k: cython.Py_ssize_t
+        way: cython.double
+        unit: cython.double = self.front.here.tangent[self.n] * self.front.newton.scale[self.n]
+        first: cython.double = step
+        for k in range(self.narrow.shape[0]):
+            way = self.narrow[k, 0] - self.front.here.z[self.n]
+            nearer: cython.bint = way * unit > 0.0 and fabs(way) > AT * self.narrow[k, 1]
+            if nearer and fabs(way) < first * fabs(unit):
+                first = way / unit
+        self.short = SHORTEST < first < step
+        return first if self.short else step
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def across(self, step: cython.double) -> cython.double:
+        """Length at which a step comes to the first narrow place that it leads across; 0 if there is none."""
+        k: cython.Py_ssize_t
+        way: cython.double
+        gone: cython.double = self.front.there.z[self.n] - self.front.here.z[self.n]
+        first: cython.double = step
+        for k in range(self.narrow.shape[0]):
+            way = self.narrow[k, 0] - self.front.here.z[self.n]
+            within: cython.bint = way * gone > 0.0 and fabs(way) < fabs(gone)
+            if within and min(fabs(way), fabs(gone - way)) > AT * self.narrow[k, 1]:
+                first = min(first, step * way / gone)
+        return first if SHORTEST < first < step else 0.0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -217,7 +257,10 @@ class Follower:
             return Status.CLOSED
         turned: cython.bint = front.there.orientation != front.here.orientation
         self.trail.add(front.there, front.newton.scale, BRANCH if turned else 0, front.there.shift)
+        wanted: cython.double = self.step
         self.step = next_step(front, self.max_step, self.hasty)
+        if self.short and self.step >= front.step:  # nothing was there: on with the steps before
+            self.step = max(self.step, wanted)
         front.accept(front.there, front.step)
         self.rise()
         return Status.UNBOUNDED if extent(front) > self.problem.boundless * self.size else None

@@ -12,6 +12,7 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.harmonic.drift import undetermined
+from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, resonances, solutions
 from fcm.harmonic.system import System
@@ -48,7 +49,7 @@ def traced(
 
 def _along(system: System) -> Follow:
     """Follows the balance that a system looks with, on the one front that it has for that."""
-    return partial(follow, front=system.front)
+    return partial(follow, front=system.front, narrow=narrow(system))
 
 
 def _steady(system: System, branches: Branches) -> Branches:
