@@ -12,10 +12,11 @@ from scipy.linalg import expm
 from fcm.continuation import Mark, Status, follow
 from fcm.harmonic import multipliers as module
 from fcm.harmonic.multipliers import Multipliers
-from fcm.harmonic.spectrum import Kind, Spectrum, even
+from fcm.harmonic.spectrum import Kind, Spectrum, Verdict, even
 from fcm.harmonic.stability import multipliers, stability, with_points
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
+from fcm.harmonic.windows import dip, seen
 from fcm.motion import State, simulate
 from fcm.orbit import periodic
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
@@ -273,6 +274,14 @@ def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
     found = even(*(Spectrum.of([complex(v) for v in values]) for values in (fine, plain)))
     assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
     assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
+
+
+def test_multipliers_beyond_all_bounds_are_no_trouble():
+    one, other = (
+        seen(s, Verdict(0.0, g, Kind.REAL, values=(1e200 + 0j, 1e160 + 0j)))
+        for s, g in ((0.0, 9.0), (1.0, 8.0))
+    )
+    assert dip(one, other, [one, other]) is None
 
 
 def test_a_pair_and_a_flip_are_told_apart():

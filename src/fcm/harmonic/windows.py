@@ -51,7 +51,9 @@ def apart(verdict: Verdict) -> float:
 
 
 def seen(length: float, verdict: Verdict) -> Seen:
-    """A place with its verdict."""
+    """A place with its verdict; of the products where it is stable, otherwise they are of no use."""
+    if verdict.stable != 1.0:
+        return Seen(length, verdict.stable, verdict.growth, 0.0, 0.0)
     values = np.array([value for value in verdict.values if abs(value) > LESS], dtype=np.complex128)
     flip, pair = np.abs(1.0 + values), np.zeros(0)
     if values.size <= MANY:
