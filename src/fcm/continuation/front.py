@@ -10,6 +10,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import sqrt
 
+from fcm.continuation import sharp
 from fcm.continuation.newton import Newton
 from fcm.continuation.place import Place
 from fcm.continuation.problem import Problem
@@ -21,7 +22,7 @@ else:
 
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
-SHARP = cython.declare(cython.double, 1e-4)  # a step this short may lead round a corner, so that it misses
+SHARP = cython.declare(cython.double, sharp.SHARP)
 MISLED = cython.declare(cython.double, 0.5)  # of a step of a soft problem: one that misses by more is refused
 ROUNDINGS = cython.declare(cython.double, 8.0)  # a miss that is no longer than these is one
 

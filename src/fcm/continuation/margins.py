@@ -7,7 +7,7 @@ from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.front import Front
 
-SHARP = cython.declare(cython.double, 1e-4)  # a step this short tells more of rounding than of a way back
+BLURRED = cython.declare(cython.double, 1e-4)  # a step this short tells more of rounding than of a way back
 RISE = cython.declare(
     cython.double, 1e-7
 )  # growth of an output over its size, along a unit of arc, that is not rounding
@@ -59,7 +59,7 @@ def detour(front: Front, greatest: cython.double[::1]) -> cython.double:
     step: cython.double = front.step
     unit: cython.double = step * front.newton.scale[n]
     along: cython.double = step / front.spread()
-    if step <= SHARP:
+    if step <= BLURRED:
         return 0.0
     at = opposite(
         front.there.z[n] - front.here.z[n],

@@ -16,10 +16,10 @@ from fcm.continuation.ahead import ahead
 from fcm.continuation.front import Front
 from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.place import Place
+from fcm.continuation.sharp import SHARP
 from fcm.continuation.trail import Trail
 
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
-SHARP = 1e-4  # a step this short may turn by any angle below a right angle, and looks for corners
 ERROR = 5e-4  # distance of the curve from where it is predicted, in its own size, that a step aims at
 MOST = 4.0  # of that, with which a step is good
 GENTLY = 0.5  # cosine of the turn of a step

@@ -9,6 +9,7 @@ from __future__ import annotations
 import cython
 from cython.cimports.libc.math import acos, fabs, sqrt
 
+from fcm.continuation import sharp
 from fcm.continuation.front import Front
 
 if cython.compiled:
@@ -16,7 +17,7 @@ if cython.compiled:
 else:
     from fcm.continuation.margins import crosses
 
-SHARP = cython.declare(cython.double, 1e-4)  # a step this short may turn by any angle below a right angle
+SHARP = cython.declare(cython.double, sharp.SHARP)
 COSINE = cython.declare(cython.double, 0.94)  # otherwise by at most 20 degrees
 FAR = cython.declare(cython.double, 0.5)  # of its length, by which a step may miss the curve
 AIM = cython.declare(cython.double, 0.2)  # [rad] the turn that a step aims at

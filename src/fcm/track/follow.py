@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.continuation.sharp import SHARP
 from fcm.scene.model import FloatArray
 from fcm.track.corner import nearest
 from fcm.track.meeting import NEAR, SHORTEST, Meeting
@@ -14,7 +15,6 @@ from fcm.track.tracked import Condition
 COSINE = 0.94  # of the turn in a step: at most 20 degrees
 MISSED = 0.3  # of a step, by which the prediction may be wrong
 MOST = 3000  # points of a curve
-SHARP = 1e-4  # a step this short may turn by any angle below a right angle: means have corners, too
 SKIPS = (1e-6, 1e-5)  # of the span, by which a corner of the curve is passed
 FLAT = 1e-3  # in the problem's scale: what moves more there is another curve
 BENT = 5.0  # of such a step, by which the prediction may be wrong
