@@ -122,6 +122,7 @@ def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):
     done = curve_of(scene, keep=keep, resume=True)
     assert 15 < first.points < again.points < whole.points
     assert again.reason.startswith("interrupted at ")
+    assert len(again.folds) == 1 and again.reason.endswith(" rad/s, after 1 fold")
     np.testing.assert_array_equal(done.amplitude, whole.amplitude)
     assert done.folds == whole.folds and done.complete and not keep.exists()
     assert done.orbits.periods < 0.8 * whole.orbits.periods

@@ -109,6 +109,15 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     return "; ".join(reasons) or problem or ("" if paths else "no solution was found to start from")
 
 
+def reached(scene: Scene, paths: Sequence[Path]) -> str:
+    """Where a curve was stopped, and how often it had turned back: with light damping, very often."""
+    if not paths:
+        return "the start"
+    folds = sum(path.where(Mark.FOLD).size for path in paths)
+    turns = f", after {folds} fold{'s' if folds > 1 else ''}" if folds else ""
+    return shown(scene, paths[-1].parameter[-1]) + turns
+
+
 def shown(scene: Scene, omega: float) -> str:
     """A frequency [rad/s] in the scene's unit."""
     return f"{omega / UNITS[scene.frequency_unit]:.8g} {scene.frequency_unit}"

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from fcm.motion.errors import SimulationError
-from fcm.orbit.branch import explore, incomplete, shown
+from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.problem import OrbitProblem
 from fcm.reduction.held import foreseen as foreseen_held
 from fcm.reduction.held import lost_by, on_contacts
@@ -213,7 +213,7 @@ def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
     except (KeyboardInterrupt, TimeOver) as stop:
         legs.keep()
         paths = legs.paths()
-        where = shown(scene, paths[-1].parameter[-1]) if paths else "the start"
+        where = reached(scene, paths)
         over = (
             f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
         )
