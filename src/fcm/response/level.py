@@ -9,16 +9,18 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from fcm.continuation import Mark, Status
+from fcm.continuation.path import Path
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
+from fcm.response.trace import ResponseError, Rows, Wanted, pick, wanted_of
 from fcm.results.result import Curve, Peak, Response
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
@@ -97,43 +99,50 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     # what folds back into the span from beyond it is part of the curve
     reach = (span[0], max(span[1], highest(system, omega)))
     path = level_curve(system, omega, reach, scene.max_step, (1.0, span[1]))
-    empty = lost_curve(scene, "no response was found at the least level")
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
-    if inside.size == 0:
-        return replace(empty, parameters=parameters, level=np.empty(0))
-    rows = np.insert(
-        np.arange(inside.size), np.flatnonzero(np.diff(inside) > 1) + 1, -1
-    )  # -1: outside the span
+    curve = replace(
+        lost_curve(scene, "no response was found at the least level"),
+        parameters=parameters,
+        level=np.empty(0),
+    )
+    if inside.size:
+        curve = replace(curve, **_points(system, path, inside, omega))
+        curve.peaks = {
+            dof: Peak(float(top), omega)
+            for dof, top in zip(curve.peaks, np.nanmax(curve.amplitude, axis=0), strict=True)
+        }
+        whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
+        curve.complete, curve.harmonics, curve.evaluations = whole, harmonics, path.evaluations
+        curve.reason = "" if whole else f"stopped at level {last:.6g}: {path.status.value}"
+        curve.seconds = time.perf_counter() - begin
+    return curve
+
+
+def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str, Any]:
+    """What a `Curve` holds of the points of a path inside the span; NaN where it leaves it."""
+    left = np.flatnonzero(np.diff(inside) > 1) + 1
+    rows = np.insert(np.arange(inside.size), left, -1)  # -1: outside the span
     level, z = path.parameter[inside], path.z[inside].copy()
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)
-    X, first = 1j * X, harmonics.index(1)
-    folds = (path.mark[inside] & Mark.FOLD) > 0
-    whole = path.status is Status.COMPLETE
-    tops = amplitude.argmax(axis=0)
-    unknown = np.full(level.size, np.nan)
-    return replace(
-        empty,
-        parameters=parameters,
-        frequency=pick(np.full(level.size, omega), rows),
-        level=pick(level, rows),
-        level_folds=level[folds].tolist(),
-        amplitude=pick(amplitude, rows),
-        fundamental=pick(np.abs(X[:, first]), rows),
-        phase=pick(np.angle(X[:, first]), rows),
-        mean=pick(mean, rows),
-        regime=pick(states(system, z), rows),
-        loop=pick(loops(system, z), rows),
-        cycle=pick(cycles(system, z), rows),
-        stable=pick(unknown, rows),
-        table_error=pick(np.zeros(level.size), rows),
-        error=pick(np.full(amplitude.shape, np.nan), rows),
-        truncation_error=pick(unknown, rows),
-        complete=whole,
-        reason="" if whole else f"stopped at level {level[-1]:.6g}: {path.status.value}",
-        peaks={d: Peak(float(amplitude[tops[k], k]), omega) for k, d in enumerate(empty.peaks)},
-        harmonics=harmonics,
-        harmonic=pick(X, rows) if len(harmonics) > 1 else None,
-        evaluations=path.evaluations,
-        seconds=time.perf_counter() - begin,
-    )
+    X = 1j * X
+    first, unknown = X[:, system.harmonics.index(1)], np.full(level.size, np.nan)
+    of_points = {
+        "frequency": np.full(level.size, omega),
+        "level": level,
+        "amplitude": amplitude,
+        "fundamental": np.abs(first),
+        "phase": np.angle(first),
+        "mean": mean,
+        "regime": states(system, z),
+        "loop": loops(system, z),
+        "cycle": cycles(system, z),
+        "stable": unknown,
+        "table_error": np.zeros(level.size),
+        "error": np.full(amplitude.shape, np.nan),
+        "truncation_error": unknown,
+    }
+    if len(system.harmonics) > 1:
+        of_points["harmonic"] = X
+    folds = level[(path.mark[inside] & Mark.FOLD) > 0]
+    return {name: pick(values, rows) for name, values in of_points.items()} | {"level_folds": folds.tolist()}

@@ -79,66 +79,99 @@ def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[
     return fields
 
 
+class _Points:
+    """Variables of the points of curves, as they are added."""
+
+    def __init__(self, curves: Sequence[Curve], unit: str) -> None:
+        self.curves, self.unit = curves, unit
+        self.out: dict[str, Field] = {}
+
+    def add(self, name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...] = (), **attrs: str) -> None:
+        self.out[name] = Field(("curve", "point", *dims), by_point(self.curves, pick), attrs)
+
+
 def _point_fields(response: Response) -> dict[str, Field]:
     """Every variable of the curves."""
-    curves, unit = response.curves, response.frequency_unit
-    out: dict[str, Field] = {}
+    found = _Points(response.curves, response.frequency_unit)
+    _add_followed(found)
+    if any(c.mode is not None for c in found.curves):
+        _add_mode(found)
+    _add_motion(found)
+    _add_contacts(found)
+    _add_trust(found)
+    if any(c.harmonic is not None for c in found.curves):
+        found.out |= _harmonic_fields(found.curves)
+    if response.method == "exact":
+        _add_exact(found)
+    return found.out
 
-    def points(name: str, pick: Callable[[Curve], Any], dims: tuple[str, ...], **attrs: str) -> None:
-        out[name] = Field(("curve", "point", *dims), by_point(curves, pick), attrs)
 
-    excitation = "excitation frequency"
-    points("frequency", lambda c: in_unit(c.frequency, unit), (), long_name=excitation, units=CF_UNIT[unit])
-    if any(c.level is not None for c in curves):
+def _add_followed(found: _Points) -> None:
+    """In what the curves are followed."""
+    unit, excitation = found.unit, "excitation frequency"
+    found.add("frequency", lambda c: in_unit(c.frequency, unit), long_name=excitation, units=CF_UNIT[unit])
+    if any(c.level is not None for c in found.curves):
         level = "level of the forces: all amplitudes times this"
-        points("level", lambda c: c.frequency if c.level is None else c.level, (), long_name=level, units="1")
-    if any(c.mode is not None for c in curves):
-        out["frequency"].attrs["long_name"] = "frequency of the nonlinear mode"
-        levels = next(c.mode.levels for c in curves if c.mode is not None)
-        for name, (picked, tail, about) in MODE.items():
-            points(name, picked, tail, **about)
-        beside = (
-            "frequency of the scene's forces with which they give the amplitude, below and above resonance"
-        )
-        points(
-            "flank_frequency",
-            lambda c: np.empty((0, len(levels), 2)) if c.mode is None else in_unit(c.mode.flanks, unit),
-            ("force_level", "flank"),
-            long_name=beside,
-            units=CF_UNIT[unit],
-        )
-        about_levels = {"long_name": "level of the scene's forces: all amplitudes times this", "units": "1"}
-        out["force_level"] = Field(("force_level",), np.array(levels), about_levels)
-    points("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
-    points("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
+        found.add("level", lambda c: c.frequency if c.level is None else c.level, long_name=level, units="1")
+
+
+def _add_mode(found: _Points) -> None:
+    """Nonlinear modes, and where the scene's forces give their amplitudes."""
+    found.out["frequency"].attrs["long_name"] = "frequency of the nonlinear mode"
+    levels = next(c.mode.levels for c in found.curves if c.mode is not None)
+    for name, (picked, dims, about) in MODE.items():
+        found.add(name, picked, dims, **about)
+    found.add(
+        "flank_frequency",
+        lambda c: np.empty((0, len(levels), 2)) if c.mode is None else in_unit(c.mode.flanks, found.unit),
+        ("force_level", "flank"),
+        long_name="frequency of the scene's forces with which they give the amplitude, below and above "
+        "resonance",
+        units=CF_UNIT[found.unit],
+    )
+    about_levels = {"long_name": "level of the scene's forces: all amplitudes times this", "units": "1"}
+    found.out["force_level"] = Field(("force_level",), np.array(levels), about_levels)
+
+
+def _add_motion(found: _Points) -> None:
+    """The displacements."""
+    found.add("amplitude", lambda c: c.amplitude, ("dof",), long_name="half the peak-to-peak displacement")
+    found.add("fundamental", lambda c: c.fundamental, ("dof",), long_name="amplitude of the fundamental")
     phase = "phase of the fundamental, as fundamental * sin(omega t + phase)"
-    points("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
-    points("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
+    found.add("phase", lambda c: c.phase, ("dof",), long_name=phase, units="radian")
+    found.add("mean", lambda c: c.mean, ("dof",), long_name="mean displacement")
+
+
+def _add_contacts(found: _Points) -> None:
+    """What the contacts do."""
     states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
-    points("regime", lambda c: c.regime, ("contact",), long_name=states)
+    found.add("regime", lambda c: c.regime, ("contact",), long_name=states)
     for i, (name, meaning, units) in enumerate(LOOP):
-        points(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
+        found.add(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
     for i, (name, meaning) in enumerate(CYCLE):
-        points(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
+        found.add(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
+
+
+def _add_trust(found: _Points) -> None:
+    """Errors and stability."""
     shift = (
         "shift of the response when the table is replaced by the closed form, relative (values are corrected)"
     )
-    points("table_error", lambda c: c.table_error, (), long_name=shift, units="1")
-    points(
-        "error", lambda c: c.error, ("dof",), long_name="estimated error of amplitude, relative", units="1"
-    )
+    found.add("table_error", lambda c: c.table_error, long_name=shift, units="1")
+    error = "estimated error of amplitude, relative"
+    found.add("error", lambda c: c.error, ("dof",), long_name=error, units="1")
     left = "estimated shift of the response by the harmonics that were left out, relative"
-    points("truncation_error", lambda c: c.truncation_error, (), long_name=left, units="1")
+    found.add("truncation_error", lambda c: c.truncation_error, long_name=left, units="1")
     dies = "1 where small disturbances of the motion die out, 0 where not, missing where that is not known"
-    points("stable", lambda c: c.stable, (), long_name=dies, units="1")
-    if any(c.harmonic is not None for c in curves):
-        out |= _harmonic_fields(curves)
-    if response.method == "exact":
-        for name, meaning in EXACT.items():
-            out[name].attrs["long_name"] = meaning
-        for name, (dims, attrs) in ORBITS.items():
-            points(name, partial(_of_orbits, name=name), dims, **attrs)
-    return out
+    found.add("stable", lambda c: c.stable, long_name=dies, units="1")
+
+
+def _add_exact(found: _Points) -> None:
+    """What the variables mean of exact motions, and what these have besides."""
+    for name, meaning in EXACT.items():
+        found.out[name].attrs["long_name"] = meaning
+    for name, (dims, attrs) in ORBITS.items():
+        found.add(name, partial(_of_orbits, name=name), dims, **attrs)
 
 
 def _harmonic_fields(curves: Sequence[Curve]) -> dict[str, Field]:
