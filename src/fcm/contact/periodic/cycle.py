@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs
+from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.events import BOTTOM, CLOSES, OPENS, SLIPS, TOP
@@ -52,6 +52,8 @@ class Cycle(Slider):
 
     Attributes
     ----------
+    behaviour, kind, start
+        Of the motion taken last: as of `Motion.load` and `solve`, and the start as `solve` has it.
     greatest_lower, least_upper, overlap
         Of a contact that never opens, the greatest top, the least bottom, and the first less the second.
     """
@@ -60,6 +62,56 @@ class Cycle(Slider):
         Slider.__init__(self, motion)
         self.order = np.zeros(self.crossings.capacity, dtype=np.intc)
         self.overlap = self.greatest_lower = self.least_upper = 0.0
+        self.behaviour = self.kind = UNKNOWN
+        self.start = 0.0
+        self.numbers, self.law = np.zeros(2 + 4 * motion.count), np.zeros(5)
+
+    def take(
+        self,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+        mu: float,
+        k_u: float,
+        k_v: float,
+        n_0: float,
+        start: float,
+    ) -> cython.int:
+        """The cycle of the motion x[first:], as of `solve`; nothing is done for the one taken last."""
+        if self.known(x, first, mu, k_u, k_v, n_0, start):
+            return self.kind
+        i: cython.Py_ssize_t
+        self.behaviour = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        if self.behaviour == UNKNOWN or not isfinite(start):
+            self.kind = self.solve(UNKNOWN, 0.0)
+            return self.kind
+        self.start = k_u * (start - x[first]) / self.motion.scale
+        self.kind = self.solve(self.behaviour, self.start)
+        for i in range(self.numbers.shape[0]):
+            self.numbers[i] = x[first + i]
+        self.law[0], self.law[1], self.law[2], self.law[3], self.law[4] = mu, k_u, k_v, n_0, start
+        self.motion.taken = True
+        return self.kind
+
+    def known(
+        self,
+        x: cython.double[::1],
+        first: cython.Py_ssize_t,
+        mu: float,
+        k_u: float,
+        k_v: float,
+        n_0: float,
+        start: float,
+    ) -> bool:
+        """Whether that is what was taken last."""
+        i: cython.Py_ssize_t
+        if not (self.motion.taken and self.law[0] == mu and self.law[1] == k_u and self.law[2] == k_v):
+            return False
+        if not (self.law[3] == n_0 and self.law[4] == start):
+            return False
+        for i in range(self.numbers.shape[0]):  # noqa: SIM110 - a loop in C
+            if self.numbers[i] != x[first + i]:
+                return False
+        return True
 
     def solve(self, behaviour: cython.int, start: float) -> cython.int:
         """The cycle of a loaded motion, OPEN, STUCK or MIXED; its slider began at `start` from the mean of u.

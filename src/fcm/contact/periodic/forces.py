@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import isfinite
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import STUCK, Cycle
@@ -158,11 +157,7 @@ class PeriodicContact:
         start: float,
     ) -> cython.int:
         """The cycle of the motion x[first:] alone, without its forces; see `evaluate`."""
-        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
-        if behaviour == UNKNOWN or not isfinite(start):
-            self.kind = self.cycle.solve(UNKNOWN, 0.0)
-        else:
-            self.kind = self.cycle.solve(behaviour, k_u * (start - x[first]) / self.motion.scale)
+        self.kind = self.cycle.take(x, first, mu, k_u, k_v, n_0, start)
         return self.kind
 
     def stick(self) -> None:

@@ -67,16 +67,13 @@ class Margins:
         self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
     ) -> None:
         """Of the motion x[first:] of a contact; see `PeriodicContact`."""
-        start: float
-        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        kind: cython.int = self.cycle.take(x, first, mu, k_u, k_v, n_0, 0.0)
         self.count = 0
-        if behaviour == UNKNOWN:
+        if self.cycle.behaviour == UNKNOWN:
             return
-        start = -k_u * x[first] / self.motion.scale
-        kind: cython.int = self.cycle.solve(behaviour, start)
-        self.loads(behaviour)
+        self.loads(self.cycle.behaviour)
         if mu * k_u > 0.0 and kind != OPEN:
-            self.slips(kind, behaviour, start)
+            self.slips(kind, self.cycle.behaviour, self.cycle.start)
 
     def note(self, kind: cython.int, angle: float, value: float) -> None:
         """One more."""

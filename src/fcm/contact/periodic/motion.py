@@ -44,7 +44,10 @@ NODES_PER_HARMONIC = cython.declare(cython.int, 4)
 
 @cython.cclass
 class Motion:
-    """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes."""
+    """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
+
+    taken: whether a cycle remembers the motion that is loaded; see `Cycle.take`.
+    """
 
     def __init__(self, harmonics: list[int]) -> None:
         numbers = np.array(harmonics, dtype=np.intc)
@@ -62,6 +65,7 @@ class Motion:
         self.im = np.zeros((ROWS, max(self.count, 1)))
         self.mean = np.zeros(ROWS)
         self.scale = self.load_scale = self.ratio = self.preload = 0.0
+        self.taken = False
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
         self.at = np.zeros((REACH, self.nodes))
 
@@ -75,6 +79,7 @@ class Motion:
         n_0: float,
     ) -> cython.int:
         """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
+        self.taken = False
         k: cython.int
         i: cython.Py_ssize_t = first + 2
         motion: float = 0.0
