@@ -7,7 +7,7 @@ can change what it does. Every passing of the level 1 is a solution.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -178,12 +178,19 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
 def _linear_answers(system: System, omega: float) -> ComplexArray:
     """Of the ports, (3, port), with the contacts as in `linear_responses`; kept in the system."""
     if omega not in system.answers:
-        G, X = system.linear.at(omega)
-        at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
-        held = system.springs(stuck=True) * np.array([at_rest, np.ones(X.size), np.zeros(X.size)])
-        found = np.linalg.solve(np.eye(X.size) + G * held[:, None, :], X[:, None])[..., 0]
-        system.answers[omega] = found.astype(np.complex128, copy=False)
+        foresee(system, (omega,))
     return system.answers[omega]
+
+
+def foresee(system: System, frequencies: Sequence[float]) -> None:
+    """Find the linear answers at all frequencies at which solutions will be asked for, at once."""
+    G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
+    ports = X.shape[1]
+    at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
+    held = system.springs(stuck=True) * np.array([at_rest, np.ones(ports), np.zeros(ports)])
+    matrices = np.eye(ports) + G[:, None] * held[:, None, :]
+    found = np.linalg.solve(matrices, X[:, None, :, None])[..., 0].astype(np.complex128, copy=False)
+    system.answers.update(zip(frequencies, found, strict=True))
 
 
 def loads_at_rest(system: System) -> FloatArray:

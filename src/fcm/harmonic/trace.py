@@ -14,7 +14,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
-from fcm.harmonic.start import Found, resonances, solutions
+from fcm.harmonic.start import Found, foresee, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -40,7 +40,9 @@ def traced(
     """
     span = system.scene.frequency_range
     reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
-    looked = tuple(solutions(system, omega, reach.get(omega)) for omega in (*span, *resonances(system)))
+    frequencies = (*span, *resonances(system))
+    foresee(system, frequencies)
+    looked = tuple(solutions(system, omega, reach.get(omega)) for omega in frequencies)
     inside = [z for z in near if span[0] <= z[-1] <= span[1]]
     starts = [*(z for found in looked for z in found.solutions), *inside]
     branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))
