@@ -82,8 +82,13 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
 
 
 def _shared(system: System, omega: float, top: float) -> Found | None:
-    """The same from the curve that systems of other preloads have, too, if it goes as far."""
-    if not system.unit or top >= GREATEST or top > system.unit * highest(system.normal, omega):
+    """The same from the curve that systems of other preloads have, too, if it goes as far.
+
+    That is followed to its end, which is dear where fewer harmonics tell that less is enough.
+    """
+    if not system.unit or top >= GREATEST or top < highest(system, omega):
+        return None
+    if top > system.unit * highest(system.normal, omega):
         return None
     path = in_common(system, omega, _whole)
     found = None if path is None else passings(system, path, omega)
