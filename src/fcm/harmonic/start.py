@@ -24,7 +24,8 @@ BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to the
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
-FINER = 0.25  # of that, where a curve has gone back on itself
+SHORTER = 0.5  # of that, where a curve has stalled,
+FINER = 0.25  # and where it has gone back on itself
 FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
 UNKNOWNS = 64  # or as many as make this many unknowns
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
@@ -102,11 +103,15 @@ def _whole(system: System, omega: float) -> Path:
 
 
 def _hasty(system: System, omega: float, linear: float, top: float, stations: tuple[float, ...]) -> Path:
-    """The curve of the level, by long steps if those come to its end."""
+    """The curve of the level, by long steps if those come to its end; shorter ones may where it stalls."""
     path = level_curve(system, omega, (0.0, top), stations=stations, linear=linear, hasty=True)
     if path.status is Status.COMPLETE:
         return path
-    return level_curve(system, omega, (0.0, top), stations=stations, linear=linear)
+    for step in (STEP, SHORTER * STEP):
+        path = level_curve(system, omega, (0.0, top), step, stations, linear)
+        if path.status is not Status.STALLED:
+            break
+    return path
 
 
 def few_of(system: System) -> int:
