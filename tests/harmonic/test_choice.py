@@ -1,5 +1,7 @@
 """Harmonics chosen for an accuracy."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -65,6 +67,24 @@ def test_harmonics_are_chosen_by_need():
     found = accurate(System(scene("yang1998", -5)), 2e-3)
     assert 9 in found.system.harmonics
     assert len(found.system.harmonics) < 9
+
+
+def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
+    """The same harmonics as where they can, and this is said."""
+    system = System(scene("yang1998", 5))
+    known, real = accurate(system, 1e-2), choice.errors_along
+
+    def untold(*args):
+        errors = real(*args)
+        return replace(errors, fold=np.where(np.arange(errors.fold.size) == 0, np.nan, errors.fold))
+
+    monkeypatch.setattr(choice, "errors_along", untold)
+    found = accurate(system, 1e-2)
+    assert known.reached and not found.reached
+    assert found.system.harmonics == known.system.harmonics
+    assert np.isnan(found.worst) and not found.further
+    assert np.count_nonzero(np.isnan(found.folds)) == 1
+    assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):

@@ -1,15 +1,19 @@
 """Estimated errors beside the true ones."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fcm.continuation import Mark
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.error import errors_along
+from fcm.harmonic.error import astray, errors_along
 from fcm.harmonic.system import System
+from fcm.response import trace
 from fcm.scene import load_scene
 
+from ..response.random_scenes import random_scene
 from .calibration import points
 from .truth import Truth, exact, scene
 
@@ -127,3 +131,21 @@ def test_what_hardly_moves_says_nothing_of_what_moves():
     assert abs(top / true - 1.0) <= 3.0 * found.peak[u] <= 3e-4
     truncation = np.concatenate([one.truncation for one in found.errors])
     assert np.nanmax(truncation) < 0.1
+
+
+@pytest.mark.parametrize(("seed", "harmonics"), [(12, (1,)), (14, (1, 2, 3))])
+def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
+    """Nor is it called stable in a response."""
+    one = replace(random_scene(seed), harmonics=None)
+    found = estimated(System(one, harmonics), 0.0)
+    (path,), (errors,) = found.traced.branches.paths, found.errors
+    far = np.flatnonzero(astray(errors.truncation))
+    assert len(far) > 64
+    truth = Truth(found.system)
+    some = far[np.linspace(0, len(far) - 1, 12).astype(int)]
+    lost = [truth.beside(path.z[i], path.direction[i]) is None for i in some]
+    assert np.mean(lost) > 0.9
+    (curve,) = trace(one, harmonics=harmonics).curves
+    beyond = astray(curve.truncation_error)
+    assert beyond.sum() > 64
+    assert not (curve.stable[beyond] == 1.0).any()

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.corrected import FARTHER, Corrected, Indices
 from fcm.harmonic.corrector import COVERED
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
@@ -140,6 +140,14 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         fold=np.abs(change[folds, 0]),
         share=corrected.shares(turns, shown.amplitude.max(axis=0))[:HIGHEST],
     )
+
+
+def astray(truncation: FloatArray) -> npt.NDArray[np.bool_]:
+    """Where (point,) a curve has long lost that of more harmonics, and says nothing of the motion."""
+    far = np.zeros(len(truncation), dtype=np.bool_)
+    for first, end in _stretches(np.isnan(truncation)):
+        far[first:end] = end - first > 2 * FARTHER
+    return far
 
 
 def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:

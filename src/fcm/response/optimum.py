@@ -81,6 +81,8 @@ def optimise(
     )
     tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
     tracking.problems += _higher(tracking, response)
+    if wanted.harmonics is None:
+        _say_what_is_short(tracking, response, wanted.accuracy)
     response.tracking = tracking
     response.seconds = time.perf_counter() - begin
     return response
@@ -247,6 +249,16 @@ def _with_error(found: Optimal, curve: Any) -> Optimal:
     """With the estimated error of the peaks that are greatest."""
     errors = [curve.peaks[dof].error for dof, _ in found.active]
     return replace(found, error=float(np.max(errors)) if errors else np.nan)
+
+
+def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
+    """Of the accuracy that was asked for, where more harmonics would take too long or tell no more."""
+    for one, curve in zip(tracking.optima, response.curves, strict=True):
+        if curve.complete and not one.error <= accuracy:
+            error = "cannot be told" if np.isnan(one.error) else f"is estimated as {one.error:.1e}"
+            count = len(one.harmonics)
+            many = f"{count} harmonic{'' if count == 1 else 's'}"
+            curve.short_of = f"with {many} the error of the least peak {error}"
 
 
 def _higher(tracking: Tracking, response: Response) -> list[str]:

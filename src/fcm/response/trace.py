@@ -13,7 +13,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, given
 from fcm.harmonic.drift import REASONS, undetermined
-from fcm.harmonic.error import Reported, reported_at
+from fcm.harmonic.error import Reported, astray, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.stability import Inserted, stability, with_points
@@ -127,7 +127,8 @@ def _curve(found: Accurate) -> Curve:
     reason, nowhere = _incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncation = np.concatenate([one.truncation for one in found.errors])
-    stable[(truncation > BEYOND) & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
+    far = (truncation > BEYOND) | np.concatenate([astray(one.truncation) for one in found.errors])
+    stable[far & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
         parameters=dict(scene.parameters),
