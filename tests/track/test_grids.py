@@ -10,6 +10,7 @@ from fcm.continuation.newton import Newton
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.response import optimum
 from fcm.response.optimum import optimise
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
@@ -78,6 +79,16 @@ def test_onsets(scene, what, span):
         slips = 2.0 * mu * load - np.abs(u + mu * v) - np.abs(u - mu * v)
         off = slips if what == "slip" else load - np.abs(v)
         assert found == pytest.approx(np.sort(z[np.abs(off) < 1e-9, -1]), rel=EXACT)
+
+
+def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
+    enough = optimise(aimed, accuracy=1e-3)
+    assert enough.tracking.optima[0].error <= 1e-3 and not enough.curves[0].short_of
+    monkeypatch.setattr(optimum, "PATIENCE", 0.0)
+    short = optimise(aimed, accuracy=1e-3)
+    assert short.tracking.harmonics == (1,) and short.tracking.optima[0].error > 1e-3
+    assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
 
 
 def test_the_curve_of_the_optimum(scene):
