@@ -65,6 +65,10 @@ def test_one_pair_alone_is_swept_by_its_name():
     [
         ({"nodes": []}, "nodes: must be a list of pairs such as [[40, 41], [50, 51]]"),
         ({"nodes": [[40, 41, 50]]}, "nodes[0]: must be two nodes"),
+        (
+            {"nodes": [40, "41"]},
+            'nodes: may be one pair, or two nodes that touch the ground: write [[40, "41"]]',
+        ),
         ({"nodes": [[40, 40]]}, "nodes[0]: is the same node twice, 40"),
         ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x"'),
         ({"nodes": [[40, 2.5]]}, "nodes[0]: must be two nodes"),

@@ -12,7 +12,7 @@ from fcm.scene.errors import kind, quoted
 from fcm.scene.model import FloatArray
 from fcm.scene.names import DIRECTIONS, Names
 from fcm.scene.rules import ANY, POSITIVE
-from fcm.scene.section import Section
+from fcm.scene.section import Section, described
 
 Pair = tuple[str, ...]  # two nodes, or one that touches the ground
 
@@ -22,6 +22,14 @@ def read_pairs(section: Section) -> list[Pair]:
     value = section.data["nodes"]
     if not isinstance(value, list | tuple) or not value:
         section.wrong("nodes", f"must be a list of pairs such as [[40, 41], [50, 51]], is {kind(value)}")
+        return []
+    if len(value) == 2 and not any(isinstance(item, list | tuple) for item in value):
+        one, other = (described(item).removeprefix("the string ") for item in value)
+        section.wrong(
+            "nodes",
+            f"may be one pair, or two nodes that touch the ground: write [[{one}, {other}]], "
+            f"or [[{one}], [{other}]]",
+        )
         return []
     pairs = [_pair(section, index, item) for index, item in enumerate(value)]
     return [pair for pair in pairs if pair] if all(pairs) else []

@@ -69,10 +69,20 @@ def how_far_off(matrices: Matrices, bound: float, damping: float) -> str:
     """By how much receptances may err and, with one damping ratio for all modes, heights of resonances."""
     ratio = matrices.ratio or matrices.hysteretic / 2.0
     most = max(bound + 2.0 * ratio * damping, 1e-15)
-    text = f"receptances up to the range's end are off by at most {most:.1e}"
+    text = f"receptances up to the range's end are off by at most {_upwards(most)}"
     if not ratio:
         return text
-    return f"{text}, the damping of a resonance by at most {max(damping, 1e-15):.1e}"
+    return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"
+
+
+def _upwards(bound: float) -> str:
+    """A bound in two digits, none of which is less than it.
+
+    >>> _upwards(1.31e-5), _upwards(1.3e-5), _upwards(9.96e-5)
+    ('1.4e-05', '1.3e-05', '1.0e-04')
+    """
+    text = f"{bound:.1e}"
+    return text if float(text) >= bound else f"{float(text) + 0.1 * 10.0 ** int(text[-3:]):.1e}"
 
 
 def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
