@@ -107,6 +107,20 @@ def test_one_matrix_of_several_in_a_file(tmp_path):
         assert "structure.mass" in refused(tmp_path, mass=f"{name}:Q")
 
 
+def test_a_file_without_the_matrix_says_what_it_holds(tmp_path):
+    scipy.io.savemat(tmp_path / "model.mat", {"model": {"K": K}})
+    scipy.io.savemat(tmp_path / "both.mat", {"K": K, "M": M})
+    said = refused(tmp_path, stiffness="model.mat", mass="both.mat:Q")
+    assert 'structure.stiffness: "model.mat" holds no matrix; it holds "model"' in said
+    assert 'structure.mass: "both.mat" holds no matrix "Q"; it holds "K", "M"' in said
+
+
+def test_a_pattern_has_no_values(tmp_path):
+    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M), field="pattern")
+    assert "structure.mass: " in (said := refused(tmp_path, mass="M.mtx"))
+    assert "it is a pattern: places of entries without their values" in said
+
+
 def test_op4(tmp_path):
     op4 = pytest.importorskip("pyyeti.nastran.op4")
     op4.write(str(tmp_path / "model.op4"), {"K": K, "M": M})

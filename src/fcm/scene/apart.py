@@ -97,7 +97,9 @@ def _mtx(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
 
     rows, columns, entries, form, kind, _ = mminfo(path)
     dense = form == "array"
-    if not dense and kind != "pattern" and entries * SHORTEST_ENTRY > path.stat().st_size:
+    if kind == "pattern":
+        raise ValueError("it is a pattern: places of entries without their values")
+    if not dense and entries * SHORTEST_ENTRY > path.stat().st_size:
         raise ValueError(f"it says that it has {entries} entries, and is too short for them")
     if 8 * (rows * columns if dense else rows) > largest:
         raise MemoryError

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from fcm.scene.apart import read_apart
+from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
@@ -87,6 +87,10 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
     for name in sparse:
         row, col, data, shape = (arrays[f"{name}.{part}"] for part in ("row", "col", "data", "shape"))
         found[name] = scipy.sparse.coo_array((data, (row, col)), shape=tuple(int(size) for size in shape))
+    if not found and NAMES in arrays:
+        what = f"no matrix {quoted(chosen)}" if chosen else "no matrix"
+        held = choices(map(str, arrays[NAMES])) if arrays[NAMES].size else "nothing"
+        raise DataFileError(f"{quoted(path.name)} holds {what}; it holds {held}")
     return found
 
 
