@@ -135,9 +135,9 @@ def shoot(system: System, guess: State) -> Orbit | None:
     return None if found is None else closed(*found)
 
 
-def converged(shot: Shot) -> tuple[Shot, int] | None:
+def converged(shot: Shot, most: int = MOST_ITERATIONS) -> tuple[Shot, int] | None:
     """The shot that closes, by Newton's method from one that does not, and the number of steps it took."""
-    for iteration in range(MOST_ITERATIONS):
+    for iteration in range(most):
         if shot.residual <= TOLERANCE:
             return shot, iteration
         better = _improved(shot)
