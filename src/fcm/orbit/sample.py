@@ -14,6 +14,7 @@ from fcm.motion.measure import Measure, measure
 from fcm.motion.state import State
 from fcm.orbit.periodic import STABLE, within_unit_circle
 from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady
 from fcm.scene.model import FloatArray
 
@@ -45,14 +46,20 @@ class Sample:
 
 def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> Sample:
     """What is kept of a point."""
-    shot = problem.shot(z)
-    if shot is None:
-        raise SimulationError(f"the period at {z[-1]:g} rad/s cannot be computed")
+    shot = _shot(problem, z)
     multipliers = shot.multipliers
     return Sample(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), multipliers,
         shot.residual, within_unit_circle(multipliers), z, direction, mark,
     )  # fmt: skip
+
+
+def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
+    """The period from a point of a curve."""
+    shot = problem.shot(z)
+    if shot is None:
+        raise SimulationError(f"the period at {z[-1]:g} rad/s cannot be computed")
+    return shot
 
 
 def settled(omega: float, motion: Steady) -> Sample:
@@ -95,21 +102,23 @@ def _crossing(problem: OrbitProblem, path: Path, first: int, before: Sample, aft
     By secants, every third place in the middle: the greatest multiplier may have a corner.
     """
     between, low, high, found = Between(problem, path, first), 0.0, 1.0, None
-    falls, rises = _excess(before), _excess(after)
+    falls, rises = _excess(before.multipliers), _excess(after.multipliers)
     for count in range(CROSSINGS):
         part = 0.5 if count % 3 == 2 else min(max(falls / (falls - rises), 0.01), 0.99)
         middle = low + part * (high - low)
         if high - low < NARROW or not between.put(middle):
             break
-        here = sampled(problem, between.z, between.direction, int(Mark.CROSSING))
-        found = here if here.stable else found
-        if here.stable == before.stable:
-            low, falls = middle, _excess(here)
+        z = between.z
+        multipliers = _shot(problem, z).multipliers
+        stable = within_unit_circle(multipliers)
+        found = (z, between.direction) if stable else found
+        if stable == before.stable:
+            low, falls = middle, _excess(multipliers)
         else:
-            high, rises = middle, _excess(here)
-    return found
+            high, rises = middle, _excess(multipliers)
+    return None if found is None else sampled(problem, *found, int(Mark.CROSSING))
 
 
-def _excess(point: Sample) -> float:
+def _excess(multipliers: npt.NDArray[np.complex128]) -> float:
     """By how much the greatest multiplier is beyond where stability ends, on a logarithmic scale."""
-    return float(np.log(max(abs(point.multipliers[0]), 1e-300)) - np.log1p(STABLE))
+    return float(np.log(max(abs(multipliers[0]), 1e-300)) - np.log1p(STABLE))
