@@ -88,6 +88,27 @@ def test_flows_are_exponentials(scene, omega):
     assert motion.end.velocity == pytest.approx(end[system.p], abs=1e-11 * size * max(omega, 1.0))
 
 
+def test_steps_hang_on_the_states_and_the_frequency_alone():
+    """Lengths of segments are counted in steps: they mean the same, whatever was marched before."""
+    scene, other = yang(5.0), yang(5.0)
+    alone = simulate(scene, 1.3, 2).cycles[-1].segments
+    simulate(other, 90.0, 2)  # forces that are faster than the structure: flows of shorter steps
+    fine = made(System(other, 90.0), np.asarray(alone.states)[0])
+    coarse = made(System(other, 1.3), np.asarray(alone.states)[0])
+    assert fine.halved and not coarse.halved and fine.step < coarse.step
+    after = simulate(other, 1.3, 2).cycles[-1].segments
+    assert np.array_equal(np.asarray(after.length), np.asarray(alone.length))
+    assert np.array_equal(np.asarray(after.y), np.asarray(alone.y))
+
+
+def test_the_step_of_a_mass_without_stiffness_is_the_same_for_all_frequencies_that_it_fits():
+    scene = yang(5.0)
+    free = Modal(scene.modal.dofs, scene.modal.mass, np.zeros(2), np.zeros(2), scene.modal.shapes)
+    scene = replace(scene, modal=free, contacts=())
+    steps = {omega: made(System(scene, omega), np.zeros(0, np.int8)).step for omega in (2.0, 2.1, 3.9, 4.0)}
+    assert steps == {2.0: 0.5, 2.1: 0.25, 3.9: 0.25, 4.0: 0.25}
+
+
 def _logarithm_by_parts(system, states):
     """The matrix of (q, q', f, n, 1), from the equations of motion as they are written."""
     m, c, modal = system.modes, len(system.contacts), system.scene.modal

@@ -14,12 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import BLOCK, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, SMALL, STICK
+from fcm.motion.pool import BLOCK, FITS, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, SMALL, STICK
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
     from fcm.motion.system import System
 
+SLOWEST = 1e-300  # [1/s] a rate below is none
 Codes = npt.NDArray[np.int8]
 
 
@@ -28,6 +29,7 @@ class Flow(NamedTuple):
 
     states: Codes  # (contact,)
     step: float  # [s], the reciprocal of a bound of the rates of the motion
+    halved: bool  # whether it is shorter than that because the forces are faster
     rows: FloatArray  # (exit, linear)
     owner: list[int]  # (exit,) the contact that it belongs to
     goal: list[int]  # (exit,) the state to which it leads
@@ -36,12 +38,15 @@ class Flow(NamedTuple):
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
+    pushes: (
+        FloatArray  # (ORDER, 4, linear) h (A h)**k B for the forces B of sin and cos, and of omega^2 these
+    )
 
 
 def made(system: System, states: Codes) -> Flow:
     """The flow of a combination, with steps that resolve the frequency of the system as well."""
     matrix = _matrix(system, states)
-    step = _step(system, matrix)
+    step, halved = _step(system, matrix)
     change = matrix.T * step
     rows, owner, goal = _exits(system, states)
     terms = _terms(change)
@@ -55,10 +60,10 @@ def made(system: System, states: Codes) -> Flow:
     for _ in range(BLOCK):
         table.append(powers[0] @ table[-1])
     return Flow(
-        states.copy(), step, rows, owner, goal, np.array(powers), terms,
+        states.copy(), step, halved, rows, owner, goal, np.array(powers), terms,
         np.stack(leading, axis=2).reshape(rows.shape[1], -1),
         np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
-        np.hstack(table),
+        np.hstack(table), _pushes(system, change, step),
     )  # fmt: skip
 
 
@@ -86,10 +91,11 @@ def _matrix(system: System, states: Codes) -> FloatArray:
     return a
 
 
-def _step(system: System, a: FloatArray) -> float:
+def _step(system: System, a: FloatArray) -> tuple[float, bool]:
     """One over a bound of the rates [1/s] at which the motion changes: no frequency of it is higher.
 
-    The bound of the structure is doubled until it bounds the frequency of the forces.
+    And whether that is halved, as often as it takes to bound the frequency of the forces: never more often,
+    so that the step is the same whenever it is made.
     """
     loads = slice(system.f.start, system.n.stop)
     root = np.sqrt(system.scene.modal.mass)
@@ -100,9 +106,12 @@ def _step(system: System, a: FloatArray) -> float:
         raise SimulationError("the stiffness overflows; use units in which its numbers are smaller")
     damping = 2.0 * system.scene.modal.damping * system.scene.modal.frequency
     rate = float(np.sqrt(np.linalg.norm(stiffness, 2)) + np.abs(damping).max(initial=0.0))
-    if rate == 0.0:
-        return 1.0 / system.omega
-    return float(1.0 / (rate * 2.0 ** max(np.ceil(np.log2(system.omega / rate)), 0.0)))
+    # where nothing has a rate, the forces alone bound the step: from a power of two that is long enough
+    longest = 1.0 / rate if rate > SLOWEST else 2.0 ** np.ceil(1.0 - np.log2(system.omega))
+    step = longest
+    while system.omega * step > FITS:
+        step *= 0.5
+    return float(step), bool(step < longest)
 
 
 def _exponential(a: FloatArray) -> FloatArray:
@@ -128,6 +137,16 @@ def _terms(a: FloatArray) -> FloatArray:
         np.matmul(terms[j - 1], a, out=terms[j])
         terms[j] /= j
     return terms
+
+
+def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:
+    """See `Flow`."""
+    pushes, flows = np.zeros((ORDER, 4, change.shape[0])), system.flows
+    pushes[0, :2, system.p] = step * np.asarray(flows.constant)
+    pushes[0, 2:, system.p] = step * np.asarray(flows.square)
+    for k in range(1, ORDER):
+        np.matmul(pushes[k - 1], change, out=pushes[k])
+    return pushes
 
 
 def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[int]]:

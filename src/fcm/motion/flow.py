@@ -159,6 +159,7 @@ class Flows(Forced):
         j: cython.int
         x: cython.double = y[k, n]
         other: cython.double = y[k, n + 1]
+        self.expand(slot, e)
         for j in range(_ORDER + 1):
             powers[e, j] = self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
         for i in range(n):

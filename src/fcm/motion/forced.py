@@ -19,6 +19,7 @@ else:
     from fcm.motion.series import Series
 
 _ORDER = cython.declare(cython.int, 19)
+NOTHING = cython.declare(cython.double, 1e-20)  # of the first term: those from there on are left out
 
 
 @cython.cclass
@@ -36,7 +37,7 @@ class Forced(Series):
         springs: tuple[FloatArray, ...],
     ) -> None:
         Series.__init__(self, modal, ports, law, springs)
-        self._terms, self._grades = np.zeros((ORDER + 1, self.size)), np.zeros((ORDER + 1, self.size))
+        self._turned = np.zeros(ORDER)
 
     @cython.cfunc
     @cython.nogil
@@ -47,9 +48,23 @@ class Forced(Series):
         self.used[slot] = self.clock
         if self.made_for[slot] == self.omega:
             return
-        b: cython.Py_ssize_t
-        for b in range(2):
-            self._unit(slot, b)
+        e: cython.Py_ssize_t
+        exits: cython.Py_ssize_t = self.exits[slot]
+        b: cython.int
+        w: cython.Py_ssize_t
+        self._one_step(slot)
+        self._sized(slot)
+        self._angles(slot)
+        for e in range(exits):
+            w = e * (_ORDER + 1)
+            self.spread[slot, e] = 0
+            self._of_exit(slot, e, 1)
+            self._of_exit(slot, e, 2)
+            self._of_exit(slot, e, 4)
+            for b in range(2):
+                self.series_forced[slot, b, w] = self.table_forced[slot, b, e] = 0.0
+                self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
+                self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
         self.reached[slot] = self.looked[slot] = 0
         self.reach(slot, 0)
         self.made_for[slot] = self.omega
@@ -57,48 +72,120 @@ class Forced(Series):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _unit(self, slot: cython.Py_ssize_t, b: cython.Py_ssize_t) -> cython.void:
-        """One step from sin(theta) = 1 (b = 0) or cos(theta) = 1 alone, and its derivative by omega."""
+    def _one_step(self, slot: cython.Py_ssize_t) -> cython.void:
+        """One step from sin(theta) = 1 or cos(theta) = 1 alone, and its derivative by omega.
+
+        The j-th derivative of the forces by time grows as omega**j; what each does is known with the flow.
+        """
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
         j: cython.int
-        for i in range(self.size):
-            self._terms[0, i] = self._grades[0, i] = 0.0
-        self._terms[0, n + b] = 1.0
-        self.extend(slot, self._terms, _ORDER, self.step[slot], self._terms, False)
-        self.extend(slot, self._grades, _ORDER, self.step[slot], self._terms, True)
+        h: cython.double = self.step[slot]
+        x: cython.double = self.omega * h
+        square: cython.double = self.omega * self.omega
+        new: cython.double[:, ::1] = self.forced[slot, 0]
+        first: cython.double
+        other: cython.double
+        grade: cython.double
+        slope: cython.double
+        rate: cython.double
+        size: cython.double = 1.0
+        power: cython.double = 1.0
+        before: cython.double = 0.0
         for i in range(n):
-            self.forced[slot, 0, b, i] = self.forced[slot, 0, 2 + b, i] = 0.0
-            self.sizes_forced[slot, b, i] = fabs(self._terms[1, i]) + fabs(self._terms[2, i])
-        for j in range(_ORDER, 0, -1):
+            new[0, i] = new[1, i] = new[2, i] = new[3, i] = 0.0
+        for j in range(_ORDER):
+            slope, rate = j * before * h, 2.0 * self.omega * power
             for i in range(n):
-                self.forced[slot, 0, b, i] += self._terms[j, i]
-                self.forced[slot, 0, 2 + b, i] += self._grades[j, i]
-        self._unit_exits(slot, b)
+                first = self.pushed[slot, 0, j, i] + square * self.pushed[slot, 2, j, i]
+                other = self.pushed[slot, 1, j, i] + square * self.pushed[slot, 3, j, i]
+                grade = slope * first + rate * self.pushed[slot, 2, j, i]
+                new[j % 2, i] += power * first
+                new[2 + j % 2, i] += grade
+                grade = slope * other + rate * self.pushed[slot, 3, j, i]
+                if j % 2:
+                    new[0, i] -= power * other
+                    new[2, i] -= grade
+                else:
+                    new[1, i] += power * other
+                    new[3, i] += grade
+            size *= x / (j + 1)
+            if size < NOTHING * x:
+                return
+            before = power
+            power *= -x if j % 2 else x
+            if j % 2:
+                before = -before
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _unit_exits(self, slot: cython.Py_ssize_t, b: cython.Py_ssize_t) -> cython.void:
-        """The exits in that step."""
-        exits: cython.Py_ssize_t = self.exits[slot]
-        e: cython.Py_ssize_t
+    def _sized(self, slot: cython.Py_ssize_t) -> cython.void:
+        """The size of the first two terms of that step."""
         i: cython.Py_ssize_t
-        w: cython.Py_ssize_t
+        x: cython.double = self.omega * self.step[slot]
+        square: cython.double = self.omega * self.omega
+        sine: cython.double
+        cosine: cython.double
+        for i in range(self.linear):
+            sine = self.push[slot, 0, 0, i] + square * self.push[slot, 0, 2, i]
+            cosine = self.push[slot, 0, 1, i] + square * self.push[slot, 0, 3, i]
+            self.sizes_forced[slot, 0, i] = fabs(sine) + 0.5 * fabs(
+                self.push[slot, 1, 0, i] + square * self.push[slot, 1, 2, i] - x * cosine
+            )
+            self.sizes_forced[slot, 1, i] = fabs(cosine) + 0.5 * fabs(
+                self.push[slot, 1, 1, i] + square * self.push[slot, 1, 3, i] + x * sine
+            )
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _angles(self, slot: cython.Py_ssize_t) -> cython.void:
+        """The powers of the angle of a step, with the signs of the derivatives of sin from sin = 0."""
         j: cython.int
-        g: cython.double
-        for e in range(exits):
-            w = e * (_ORDER + 1)
-            for j in range(_ORDER + 1):
-                self.series_forced[slot, b, w + j] = 0.0
-            for i in range(self.linear):
-                g = self.row[slot, e, i]
-                if g != 0.0:
-                    for j in range(_ORDER + 1):
-                        self.series_forced[slot, b, w + j] += g * self._terms[j, i]
-            self.table_forced[slot, b, e] = self.series_forced[slot, b, w]
-            self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
-            self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
+        power: cython.double = 1.0
+        x: cython.double = self.omega * self.step[slot]
+        for j in range(_ORDER):
+            self._turned[j] = power
+            power *= -x if j % 2 else x
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _of_exit(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t, a: cython.int) -> cython.void:
+        """The Taylor coefficient a > 0 of an exit in that step."""
+        k: cython.int
+        j: cython.int
+        square: cython.double = self.omega * self.omega
+        first: cython.double
+        other: cython.double
+        sine: cython.double = 0.0
+        cosine: cython.double = 0.0
+        total: cython.double = 1.0
+        for k in range(a):
+            total *= k + 1
+            j = a - 1 - k
+            first = self._turned[j] * (self.kick[slot, e, 0, k] + square * self.kick[slot, e, 2, k])
+            other = self._turned[j] * (self.kick[slot, e, 1, k] + square * self.kick[slot, e, 3, k])
+            if j % 2:
+                sine, cosine = sine - other, cosine + first
+            else:
+                sine, cosine = sine + first, cosine + other
+        self.series_forced[slot, 0, e * (_ORDER + 1) + a] = sine / total
+        self.series_forced[slot, 1, e * (_ORDER + 1) + a] = cosine / total
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def expand(self, slot: cython.Py_ssize_t, e: cython.Py_ssize_t) -> cython.void:
+        """Make all Taylor coefficients of an exit, unless they are."""
+        a: cython.int
+        if self.spread[slot, e]:
+            return
+        self._angles(slot)
+        for a in range(1, _ORDER + 1):
+            self._of_exit(slot, e, a)
+        self.spread[slot, e] = 1
 
     @cython.cfunc
     @cython.nogil

@@ -4,14 +4,14 @@ cdef class Pool:
     cdef readonly double[::1] stiffness, damping, mu, k_u, k_v, n_0
     cdef readonly double[::1] hold
     cdef readonly double[:, ::1] constant, square, drive, slope, tangential, normal, push_u, push_v, stretch, pull
-    cdef readonly signed char[::1] rough
+    cdef readonly signed char[::1] rough, halved
     cdef readonly signed char[:, ::1] states
     cdef readonly double[::1] step
     cdef readonly Py_ssize_t[::1] exits, reached, looked
-    cdef readonly Py_ssize_t[:, ::1] owner, first
+    cdef readonly Py_ssize_t[:, ::1] owner, first, spread
     cdef readonly signed char[:, ::1] goal
     cdef readonly double[:, :, ::1] terms, row, table, table_forced, series, series_forced, sizes, sizes_forced
-    cdef readonly double[:, :, :, ::1] power, forced
+    cdef readonly double[:, :, :, ::1] power, forced, push, pushed, kick
     cdef readonly double[:, :, ::1] turn
     cdef readonly double[::1] made_for
     cdef dict _pool

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import factorial
 from typing import Any
 
 import cython
@@ -15,7 +16,13 @@ BLOCK = 8  # steps that are looked at together: a power of two
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
 SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
-FEWEST, MOST_BYTES = 8, 2**29  # flows that are kept at least, and the memory that they otherwise have
+FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most
+_FITS = cython.declare(cython.double, 1.0 + 1e-12)
+FEWEST, MOST_BYTES = 8, 2**30  # flows that are kept at least, and the memory that they otherwise have
+# of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
+PUSHED = np.array(
+    [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
+)
 
 
 @cython.cclass
@@ -81,6 +88,7 @@ class Pool:
         self,
         states: Any,
         step: float,
+        halved: bool,
         rows: FloatArray,
         owner: list[int],
         goal: list[int],
@@ -89,15 +97,19 @@ class Pool:
         series: FloatArray,
         sizes: FloatArray,
         table: FloatArray,
+        pushes: FloatArray,
     ) -> int:
         """Put a flow into the pool: see `fcm.motion.combination`; returns its place."""
         k, exits, made = self._place(), len(owner), self._pool
         made["states"][k], made["step"][k], made["exits"][k], made["made_for"][k] = states, step, exits, -1.0
+        made["halved"][k] = halved
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
         made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
         made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
         made["terms"][k] = terms.reshape(terms.shape[0], -1)
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
+        made["push"][k], made["kick"][k, :exits] = pushes[:2], np.einsum("ei,kci->eck", rows, pushes)
+        made["pushed"][k] = np.tensordot(PUSHED, pushes, 1).swapaxes(0, 1)
         return k
 
     def _place(self) -> int:
@@ -116,15 +128,17 @@ class Pool:
         n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
-            "states": (c,), "step": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
+            "states": (c,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
             "made_for": (), "used": (), "row": (e, n), "power": (POWERS, n, n),
             "forced": (POWERS, 4, n), "turn": (POWERS, 2), "reached": (), "looked": (),
             "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
+            "push": (2, 4, n), "pushed": (4, ORDER, n), "kick": (e, 4, ORDER), "spread": (e,),
             "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
         }  # fmt: skip
         kinds = {
             "states": np.int8,
+            "halved": np.int8,
             "goal": np.int8,
             "exits": np.intp,
             "owner": np.intp,
@@ -132,6 +146,7 @@ class Pool:
             "used": np.intp,
             "reached": np.intp,
             "looked": np.intp,
+            "spread": np.intp,
         }
         old, made = self._pool, {}
         for name, shape in shapes.items():
@@ -139,12 +154,14 @@ class Pool:
             if self.count:
                 made[name][: self.count] = old[name][: self.count]
         self.states, self.step, self.exits = made["states"], made["step"], made["exits"]
+        self.halved = made["halved"]
         self.owner, self.goal = made["owner"], made["goal"]
         self.row, self.first = made["row"], made["first"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
         self.terms = made["terms"]
         self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
-        self.reached, self.looked = made["reached"], made["looked"]
+        self.reached, self.looked, self.spread = made["reached"], made["looked"], made["spread"]
+        self.push, self.pushed, self.kick = made["push"], made["pushed"], made["kick"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]
         self._pool = made
@@ -153,11 +170,16 @@ class Pool:
     @cython.nogil
     @cython.exceptval(check=False)
     def find(self, states: cython.schar[:, ::1], k: cython.Py_ssize_t) -> cython.Py_ssize_t:
-        """The flow of the states in row k whose steps resolve the frequency too, -1 if there is none."""
+        """The flow of the states in row k, in the steps that they have at the frequency; -1 if there is none.
+
+        Whichever flows there are, these steps are the same: the lengths of segments are counted in them.
+        """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
+        angle: cython.double
         for i in range(self.count):
-            if self.omega * self.step[i] > 1.0 + 1e-12:
+            angle = self.omega * self.step[i]
+            if angle > _FITS or (self.halved[i] and 2.0 * angle <= _FITS):
                 continue
             j = 0
             while j < self.contacts and self.states[i, j] == states[k, j]:
