@@ -52,8 +52,10 @@ def responses(scene):
 def test_contacts_that_keep_their_state_are_left_out_and_told(responses):
     light, whole = responses
     assert len(light.left_out) == 2
-    assert "contact sticks: they stick" in light.left_out[0] and "springs in their" in light.left_out[0]
-    assert "contact open: they are open" in light.left_out[1]
+    assert light.left_out[0].startswith(
+        "the transitions of contact sticks, which sticks all over the range: "
+    )
+    assert light.left_out[1].startswith("the transitions of contact open, which is open all over the range: ")
     assert whole.left_out == [] and whole.curves[0].orbits.held.size == 0
     kept = light.curves[0].orbits.held
     assert np.isfinite(kept).tolist() == [[False, False], [True, False], [False, True]]
@@ -69,6 +71,17 @@ def test_the_curve_is_that_with_all_contacts(responses):
     assert set(light.regime[:, 0]) == set(whole.regime[:, 0]) != {"E"}
     for end in (0, -1):
         assert light.amplitude[end] == pytest.approx(whole.amplitude[end], rel=SAME)
+
+
+def test_of_a_sweep_it_is_told_in_how_many_curves(scene):
+    """The load of the second contact: it sticks in one of the two, and slips in the other."""
+    weak = replace(
+        scene, contacts=(scene.contacts[0], replace(scene.contacts[1], n_0=0.1), scene.contacts[2])
+    )
+    response = trace_exact(replace(scene, curves=(scene, weak)))
+    assert "which sticks all over the range of 1 of 2 curves: " in response.left_out[0]
+    assert "which is open all over the range: " in response.left_out[1]
+    assert {len(row) for row in response.curves[1].regime} == {3}
 
 
 def test_a_point_is_a_motion_of_all_contacts(scene):
@@ -107,7 +120,7 @@ def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, res
     wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
     monkeypatch.setattr(exact, "foreseen_held", lambda *_: wrong)
     response = trace_exact(scene)
-    assert [text.split(":")[0] for text in response.left_out] == ["the transitions of contact sticks"]
+    assert [text.split(",")[0] for text in response.left_out] == ["the transitions of contact sticks"]
     curve, whole = response.curves[0], responses[1].curves[0]
     assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
     assert set(curve.regime[:, 2]) == {"S"}

@@ -7,7 +7,7 @@ of them is computed after all.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,10 @@ from fcm.scene.model import Contact, Held, Scene
 IntArray = npt.NDArray[np.intp]
 ROOM = 0.3  # of its limit, or of its gap, that a contact is foreseen to keep
 ANGLES = 64  # of a cycle at which that is looked at
+WORDS = (  # on a contact that sticks, and on one that is open
+    ("sticks", "stick", "springs instead", "slip limit"),
+    ("is open", "are open", "nothing instead", "gap"),
+)
 STIFF = 100.0  # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
 
 
@@ -113,20 +117,26 @@ def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
     return tuple(letters[i] for i in range(len(letters)))
 
 
-def on_contacts(curves: Iterable[Curve], contacts: Sequence[Contact]) -> list[str]:
+def on_contacts(curves: Sequence[Curve], contacts: Sequence[Contact]) -> list[str]:
     """What was left out of curves: contacts that keep their state, with what they keep of their limits."""
     each = [curve.orbits.held for curve in curves if curve.orbits is not None and curve.orbits.held.size]
     if not each:
         return []
     said, kept = [], np.array(each)  # (curve, contact, state)
-    for state, words, limit in ((0, "stick", "slip limits"), (1, "are open", "gaps")):
-        places = np.flatnonzero(np.isfinite(kept[:, :, state]).any(axis=0)).tolist()
+    for state, (one, many, instead, limit) in enumerate(WORDS):
+        known = np.isfinite(kept[:, :, state])
+        places = np.flatnonzero(known.any(axis=0)).tolist()
         if places:
-            least, count = float(np.nanmin(kept[:, places, state])), len(each)
-            where = "" if np.isfinite(kept[:, places, state]).all() else f" of some of {count} curves"
-            instead = "springs in their places" if state == 0 else "nothing in their places"
+            count = int(known.any(axis=1).sum())
+            where = (
+                ""
+                if known[:, places].all() and count == len(curves)
+                else f" of {count} of {len(curves)} curves"
+            )
+            least = float(np.nanmin(kept[:, places, state]))
+            does = one if len(places) == 1 else many
             said.append(
-                f"the transitions of {named(contacts, places)}: they {words} all over the range{where}, "
-                f"{instead} (no effect: at every point found they keep at least {least:.0%} of their {limit})"
+                f"the transitions of {named(contacts, places)}, which {does} all over the range{where}: "
+                f"{instead} (no effect: at every point found at least {least:.0%} of the {limit} is left)"
             )
     return said
