@@ -22,7 +22,7 @@ from fcm.harmonic.looked import Looked
 from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import apart, dip
+from fcm.harmonic.windows import MANY, apart, dip
 from fcm.scene.model import FloatArray
 
 IntArray = npt.NDArray[np.intp]
@@ -126,6 +126,8 @@ class _Along:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
         one, other = (self.looked.verdicts[t] for t in ends)
         if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
+            return None
+        if max(len(one.values), len(other.values)) > MANY:
             return None
         if math.isnan(one.stable) != math.isnan(other.stable):
             return self._edge(*ends)

@@ -23,7 +23,7 @@ import numpy.typing as npt
 from fcm.harmonic.spectrum import SMALL, Verdict
 
 DOUBT = 0.2  # of the differences between three values, by which what they foretell may be too high
-MANY = 60  # multipliers, of which more have too many pairs
+MANY = 60  # multipliers, of more of which two are always about to meet
 LESS = 0.5  # size of multipliers that matter: one of a pair of 0.75 is not less as the other leaves
 NARROW = 1e-3  # a way, relative to the size of the solution, that is not divided
 LEAST = 1e-300  # a product, or a length
@@ -55,11 +55,9 @@ def seen(length: float, verdict: Verdict) -> Seen:
     if verdict.stable != 1.0:
         return Seen(length, verdict.stable, verdict.growth, 0.0, 0.0)
     values = np.array([value for value in verdict.values if abs(value) > LESS], dtype=np.complex128)
-    flip, pair = np.abs(1.0 + values), np.zeros(0)
-    if values.size <= MANY:
-        i, j = _pairs(values.size)
-        pair = np.abs(1.0 - values[i] * values[j])
-    sums = (float(np.log(product + LEAST).sum()) for product in (flip, pair))
+    i, j = _pairs(values.size)
+    products = np.abs(1.0 + values), np.abs(1.0 - values[i] * values[j])
+    sums = (float(np.log(product + LEAST).sum()) for product in products)
     return Seen(length, verdict.stable, verdict.growth, *sums)
 
 
