@@ -11,10 +11,10 @@ import numpy as np
 
 from fcm.continuation import Between, Mark, Path
 from fcm.harmonic.inserted import Inserted
-from fcm.harmonic.multipliers import FEW, far_above, multipliers_of
+from fcm.harmonic.multipliers import far_above, multipliers_of
 from fcm.harmonic.spectrum import SMALL, Verdict
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import Seen, seen
+from fcm.harmonic.windows import MANY, Seen, seen
 from fcm.scene.model import FloatArray
 
 
@@ -89,10 +89,11 @@ def _lengths(path: Path) -> FloatArray:
 def _turned(system: System, path: Path) -> FloatArray:
     """[rad] by how much multipliers that are not small have turned up to each point, about.
 
-    0 of many modes, of which one is always about to meet another.
+    0 where there are so many that two are always about to meet.
     """
     linear, omega = system.linear, path.parameter
     near = ~far_above(linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics])
     lasting = np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf)) > SMALL
-    fastest = float(linear.natural[lasting & near].max(initial=0.0)) if near.sum() <= FEW else 0.0
+    few = 2 * near.sum() + len(system.scene.contacts) <= MANY
+    fastest = float(linear.natural[lasting & near].max(initial=0.0)) if few else 0.0
     return np.concatenate(([0.0], np.cumsum(np.abs(np.diff(2.0 * np.pi * fastest / omega)))))
