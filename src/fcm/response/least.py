@@ -1,0 +1,153 @@
+"""The least peak of a scene in the numbers that are free, and the harmonics that its accuracy takes there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.harmonic.choice import enlarged, estimated
+from fcm.harmonic.cost import PATIENCE
+from fcm.harmonic.system import System
+from fcm.response.trace import ResponseError
+from fcm.response.tracked_work import as_curve
+from fcm.results.tracked import Optimal, TrackedCurve
+from fcm.run import Progress
+from fcm.run.progress import part
+from fcm.scene.draft import Number
+from fcm.scene.model import FloatArray, Scene
+from fcm.track.descent import Valley, descend
+from fcm.track.envelope import Least, Target
+from fcm.track.lowest import Lowest, Search
+from fcm.track.varied import along
+
+ROUNDS = 4  # of choosing harmonics by the accuracy at the optimum
+COUNTS = 1e-6  # of the greatest: peaks that are lower are none
+Found = tuple[Optimal, list[TrackedCurve]]  # an optimum, and the curves of peaks on which it is
+
+
+def with_values(scene: Scene, numbers: list[Number], values: FloatArray) -> Scene:
+    """The scene (of one curve) with values of numbers."""
+    assert scene.draft is not None
+    every = {
+        a: x
+        for number, value in zip(numbers, values, strict=True)
+        for a, x in number.values(float(value)).items()
+    }
+    return scene.draft.curve(scene, scene.parameters, every)
+
+
+class Task:
+    """One scene (of one curve) with what is to be chosen."""
+
+    def __init__(self, scene: Scene, numbers: list[Number], accuracy: float) -> None:
+        assert scene.optimum is not None
+        self.scene, self.numbers, self.accuracy = scene, numbers, accuracy
+        self.bounds = np.array(scene.optimum.bounds)
+        dofs = scene.modal.dofs
+        self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
+
+    def put(self, values: FloatArray) -> Scene:
+        """The scene with values of the numbers."""
+        return with_values(self.scene, self.numbers, values)
+
+
+def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
+    """With given harmonics, or with those that the accuracy takes at the optimum itself."""
+    chosen = harmonics or (1,)
+    known: Lowest | None = None
+    for i in range(ROUNDS):
+        shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
+        if len(task.numbers) == 1:
+            known = _search(task, chosen).run(known, _sharing(shown))
+            found = _on_line(task, known, chosen)
+        else:
+            found = _downhill(task, chosen)
+        if harmonics:
+            break
+        more = _enough(task, found[0], chosen)
+        if more == chosen:
+            break
+        chosen = more
+    return found
+
+
+def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:
+    """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
+    every = {h for one, _ in found for h in one.harmonics}
+    for _ in range(ROUNDS):
+        chosen = tuple(sorted(every))
+        found = [
+            one if one[0].harmonics == chosen else optimum(task, chosen, None)
+            for task, one in zip(tasks, found, strict=True)
+        ]
+        for task, one in zip(tasks, found, strict=True):
+            every |= set(_enough(task, one[0], chosen))
+        if len(every) == len(chosen):
+            break
+    return found
+
+
+def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
+    return None if progress is None else lambda share: progress(share, "optimum")
+
+
+def _enough(task: Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
+    """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on."""
+    scene = task.put(np.array(list(found.values.values())))
+    dofs = [target.dof for target in task.targets]
+    while True:
+        there = estimated(System(scene, harmonics), task.accuracy)
+        height = np.max([one.amplitude.max(axis=0) for one in there.shown], axis=0, initial=0.0)[dofs]
+        worst = float(there.peak[dofs][height > COUNTS * height.max()].max(initial=0.0))
+        there = replace(there, worst=worst)
+        if worst <= task.accuracy:
+            return harmonics
+        more = enlarged(there, task.accuracy)
+        if more == harmonics or there.seconds_with(more) > PATIENCE:
+            return harmonics
+        harmonics = more
+
+
+def _search(task: Task, harmonics: tuple[int, ...]) -> Search:
+    (number,), span = task.numbers, (float(task.bounds[0, 0]), float(task.bounds[0, 1]))
+    return Search(System(task.scene, harmonics), along(number), span, task.targets)
+
+
+def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
+    """Of one number, by the curves of the peaks."""
+    if found.best is None:
+        raise ResponseError(_nothing(task))
+    curves = [as_curve(task.scene, one) for one in found.curves]
+    return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
+
+
+def _downhill(task: Task, harmonics: tuple[int, ...]) -> Found:
+    """Of several numbers."""
+    found = descend(Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets))
+    if found is None:
+        raise ResponseError(_nothing(task))
+    return _optimal(task, found[0], found[1], harmonics), []
+
+
+def _nothing(task: Task) -> str:
+    dofs = " and ".join(task.scene.modal.dofs[target.dof] for target in task.targets)
+    why = f"{dofs} has no peak inside the range of frequencies"
+    return f"optimum: {why}; minimise greatest.NAME, or widen the range"
+
+
+def _optimal(task: Task, values: FloatArray, best: Least, harmonics: tuple[int, ...]) -> Optimal:
+    scene = task.scene
+    assert scene.optimum is not None
+    names = tuple(f"{'greatest' if aim.ends else 'peak'}.{aim.dof}" for aim in scene.optimum.minimise)
+    active = [(scene.modal.dofs[one.dof], float(one.z[-2])) for one in best.active]
+    return Optimal(
+        parameters=dict(scene.parameters),
+        values={number.key: float(value) for number, value in zip(task.numbers, values, strict=True)},
+        minimised=names,
+        value=best.value,
+        active=tuple(sorted(active, key=lambda pair: pair[1])),
+        kind=best.kind,
+        harmonics=harmonics,
+    )
