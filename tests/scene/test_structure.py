@@ -311,3 +311,17 @@ def test_a_matrix_that_says_it_is_larger_than_its_file(tmp_path):
     parts = {"row": [0], "col": [0], "data": [1.0], "format": "coo", "shape": [900_000_000] * 2}
     np.savez(tmp_path / "K.npz", **parts)
     assert "--largest-file" in refused(tmp_path, stiffness="K.npz")
+
+
+def test_one_mode_is_said_to_be_one():
+    data = {
+        "structure": {
+            "dofs": ["a", "b"],
+            "mass": [[1, 0], [0, 0]],
+            "stiffness": [[2, -1], [-1, 2]],
+            "damping": 0.01,
+        },
+        "force": [{"dof": "a", "amplitude": 1.0}],
+        "response": {"frequency": [0.5, 2.0]},
+    }
+    assert "structure: 1 mode of 2 degrees of freedom is kept" in scene_from_dict(data).notes[0]

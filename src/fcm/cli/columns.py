@@ -28,10 +28,10 @@ def short(value: float | None) -> str:
     return "-" if value is None else f"{value:.1e}"
 
 
-def counted(harmonics: Sequence[int]) -> str:
+def ranges(harmonics: Sequence[int]) -> str:
     """Harmonics as a range and those beyond it.
 
-    >>> counted([1]), counted([1, 2, 3]), counted([1, 2, 3, 9])
+    >>> ranges([1]), ranges([1, 2, 3]), ranges([1, 2, 3, 9])
     ('1', '1-3', '1-3,9')
     """
     last = next(i for i in range(len(harmonics), 0, -1) if list(harmonics[:i]) == list(range(1, i + 1)))

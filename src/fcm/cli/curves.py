@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import aligned, counted, number, short, swept
+from fcm.cli.columns import aligned, number, ranges, short, swept
 from fcm.rotation import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
@@ -111,7 +111,7 @@ def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
         at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
         cells += [number(peak.get("amplitude")), at, short(peak.get("error"))]
     if balanced:
-        cells.append(counted(curve["harmonics"]) if "harmonics" in curve else "-")
+        cells.append(ranges(curve["harmonics"]) if "harmonics" in curve else "-")
     folds = "  ".join(number(fold) for fold in curve.get("level_folds", curve["folds"])) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import aligned, counted, number, short, swept
+from fcm.cli.columns import aligned, number, ranges, short, swept
 
 if TYPE_CHECKING:
     from fcm.response import Response
@@ -76,7 +76,7 @@ def as_table(summary: Mapping[str, Any], names: list[str], unit: str) -> str:
                 *(f"{D:.4g}" for D in mode["damping"]),
                 f"{top['damping']:.4g}",
                 number(top["frequency"]),
-                counted(curve["harmonics"]),
+                ranges(curve["harmonics"]),
                 short(curve["truncation_error"]),
                 str(curve["points"]),
                 f"{curve['seconds']:.3f}",

@@ -23,7 +23,7 @@ from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import LEGS, Legs, TimeOver
 from fcm.response.only_peaks import peaks_alone
-from fcm.response.orbit_curve import traced_curve, visited_curve
+from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.trace import ResponseError
 from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import STATES, Visitor
@@ -218,7 +218,7 @@ def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
             f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
         )
         reason = over + where
-    return traced_curve(problem, paths, reason)
+    return orbit_curve(problem, paths, reason)
 
 
 def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:

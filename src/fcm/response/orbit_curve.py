@@ -27,7 +27,7 @@ UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def traced_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
+def orbit_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
     """The points of paths, with a point of NaN between one and the next; complete without a reason."""
     points, folds, scene = list[Sample | None](), list[float](), problem.scene
     branches = with_landings(problem, [samples(problem, path) for path in paths])

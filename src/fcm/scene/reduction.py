@@ -50,7 +50,8 @@ def modal_of_matrices(
 def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
     """What is kept of the structure, and how far it is off."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
-    text = f"structure: {found.kept} modes of {rows} degrees of freedom are kept"
+    verb = "is" if found.kept == 1 else "are"
+    text = f"structure: {counted(found.kept, 'mode')} of {rows} degrees of freedom {verb} kept"
     every = not np.isfinite(found.beyond)
     if every and not added:
         return f"{text}, all that there are"
