@@ -209,6 +209,16 @@ def test_forces_that_move_nothing(data, mistakes):
     assert "the forces move no mode" in mistakes(data)
 
 
+@pytest.mark.parametrize("phase", [np.pi, -np.pi, 3.0 * np.pi])
+def test_forces_that_cancel_each_other(data, mistakes, phase):
+    """The rounding of their sum would be traced, in the place of rest."""
+    del data["sweep"]
+    data["force"] = [{"dof": "u", "amplitude": 0.1}, {"dof": "u", "amplitude": 0.1, "phase": phase}]
+    assert "the forces move no mode, so the response is zero" in mistakes(data)
+    data["force"][0]["phase"] = 1e-6
+    assert scene_from_dict(data).has_range
+
+
 def test_keys_that_are_no_strings_and_values_that_are_nothing(data, mistakes):
     data[3] = None
     data["modal"]["mass"] = None

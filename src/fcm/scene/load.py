@@ -8,6 +8,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
@@ -26,7 +28,7 @@ from fcm.scene.linear import (
     without_rounding,
 )
 from fcm.scene.modal import UNITS
-from fcm.scene.model import FloatArray, Scene
+from fcm.scene.model import Scene
 from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (
     contact_of,
@@ -42,6 +44,7 @@ from fcm.scene.section import Section
 from fcm.scene.sweep import combinations, read_sweep
 from fcm.scene.toml import read_toml
 
+CANCELLED = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
 MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
 
 
@@ -188,10 +191,12 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
 
 
 def _moved(curve: Scene) -> bool:
-    """Whether any force has a component on any mode."""
-    pushes: list[FloatArray] = [force.direction for force in curve.forces if force.amplitude]
+    """Whether the forces together have a component on any mode, beyond the rounding of their sum."""
     shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(1)[2]
-    return any((shapes @ push).any() for push in pushes)
+    pushes = [shapes @ (force.amplitude * force.direction) for force in curve.forces]
+    size = np.sum([np.abs(push) for push in pushes], axis=0)
+    turned = [push * np.exp(1j * force.phase) for push, force in zip(pushes, curve.forces, strict=True)]
+    return bool((np.abs(np.sum(turned, axis=0)) > CANCELLED * size).any())
 
 
 def _unit(top: Section) -> str:
