@@ -36,6 +36,29 @@ def test_so_many_harmonics_are_refused_in_python_too():
         fcm.respond(fcm.load_scene("yang1998-n5"), harmonics=10**30)
 
 
+@pytest.mark.parametrize("harmonics", [3.0, "3", True, [1, 2.0], [2, 3], [], np.array([[1, 2]])])
+def test_harmonics_that_are_none_are_refused_in_one_line(harmonics):
+    with pytest.raises(ResponseError, match="harmonics must be whole numbers from 1 to 50, rising"):
+        fcm.respond(fcm.load_scene("yang1998-n5"), harmonics=harmonics)
+
+
+@pytest.mark.parametrize("accuracy", ["1e-2", 1.0, np.nan, 1j])
+def test_an_accuracy_that_is_none_is_refused_in_one_line(accuracy):
+    with pytest.raises(ResponseError, match="but it is a relative error between 0 and 1"):
+        fcm.respond(fcm.load_scene("yang1998-n5"), accuracy=accuracy)
+
+
+@pytest.mark.parametrize("harmonics", [np.int64(2), np.arange(1, 3), (np.int32(1), 2)])
+def test_integers_of_numpy_are_harmonics(harmonics):
+    scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.4, 1.5))
+    assert fcm.respond(scene, harmonics=harmonics).harmonic.values.tolist() == [1, 2]
+
+
+def test_the_name_of_a_scene_is_no_scene():
+    with pytest.raises(TypeError, match="scene is a str; "):
+        fcm.respond("yang1998")
+
+
 def test_an_accuracy_that_fifty_harmonics_do_not_reach_is_not_said_to_be():
     """Their error is what the harmonics beyond them do."""
     scene = replace(fcm.load_scene("yang1998-n5"), frequency_range=(1.1, 1.25))

@@ -66,6 +66,8 @@ def respond(
     ------
     ResponseError
         If the method is unknown, or does not fit the other arguments.
+    TypeError
+        If the scene is none, but the name of one, say.
     fcm.run.Gone
         If the executor takes nothing any more, and nothing is finished. Later what is finished is returned,
         with a warning; the other curves are not complete.
@@ -81,6 +83,8 @@ def respond(
     from fcm.response.visible import check_solvable, visible
     from fcm.results.output import to_dataset
 
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene is a {type(scene).__name__}; fcm.load_scene gives one of a file or a name")
     scene = scene.in_use()
     check_solvable(scene)
     if max_step is not None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral, Real
 from typing import Any
 
 import numpy as np
@@ -64,13 +65,22 @@ def wanted_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: flo
         harmonics, accuracy = scene.harmonics, scene.accuracy
     if harmonics is None:
         accuracy = ACCURACY if accuracy is None else accuracy
-        if not 0.0 < accuracy < 1.0:
-            raise ResponseError(f"accuracy is {accuracy:g}, but it is a relative error between 0 and 1")
+        if not isinstance(accuracy, Real) or not 0.0 < accuracy < 1.0:
+            value = f"{accuracy:g}" if isinstance(accuracy, Real) else repr(accuracy)
+            raise ResponseError(f"accuracy is {value}, but it is a relative error between 0 and 1")
         return Wanted(None, accuracy)
-    chosen = harmonics_up_to(harmonics) if isinstance(harmonics, int) else tuple(harmonics)
+    chosen = _numbers(harmonics)
     if fault := harmonics_fault(chosen):
-        raise ResponseError(f"harmonics: {fault}")
+        raise ResponseError(f"harmonics must be {fault}")
     return Wanted(chosen)
+
+
+def _numbers(harmonics: object) -> tuple[Any, ...]:
+    """Harmonics up to a number, or some; integers of numpy are as good as those of Python."""
+    if isinstance(harmonics, Integral) and not isinstance(harmonics, bool):
+        return harmonics_up_to(int(harmonics))
+    some = harmonics if isinstance(harmonics, Iterable) else (harmonics,)
+    return tuple(int(h) if isinstance(h, np.integer) else h for h in some)
 
 
 def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
