@@ -7,11 +7,11 @@ that derivative the motion is the same in the old and the new state, so that the
 
 from __future__ import annotations
 
-from enum import IntEnum
-
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
+
+from fcm.motion.stopped import Stopped
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
@@ -22,19 +22,7 @@ else:
     from fcm.motion.lookout import Lookout
     from fcm.motion.segments import Segments
 
-
-class Stopped(IntEnum):
-    """Why a march has stopped, and what lets it go on."""
-
-    DONE = 0  # its time is over
-    MISSING = 1  # the flow of a combination of states has to be made
-    FULL = 2  # of segments: there have to be more, or there are too many
-    UNDECIDED = 3  # no combination of states lasts
-    PAUSED = 4  # for signals
-    LONG = 5  # a segment has more steps than can be waited for
-
-
-_DONE = cython.declare(cython.int, Stopped.DONE)  # the same for the loops, which know numbers alone
+_DONE = cython.declare(cython.int, Stopped.DONE)  # as the loops know it, which have numbers alone
 _MISSING = cython.declare(cython.int, Stopped.MISSING)
 _FULL = cython.declare(cython.int, Stopped.FULL)
 _UNDECIDED = cython.declare(cython.int, Stopped.UNDECIDED)

@@ -10,10 +10,11 @@ import numpy as np
 from fcm.motion.combination import Codes
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import CycleError, SimulationError
-from fcm.motion.march import March, Stopped
+from fcm.motion.march import March
 from fcm.motion.motion import Motion
 from fcm.motion.segments import Segments
 from fcm.motion.state import State, entered, entry, leave, set_angle
+from fcm.motion.stopped import Stopped
 from fcm.motion.system import LETTERS, System
 from fcm.scene.model import FloatArray, Phase, Scene
 
