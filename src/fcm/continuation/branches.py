@@ -58,11 +58,21 @@ def all_branches(
         if problem is not None and any(contains(path, z, problem) for path in paths):
             continue
         path = _through(new_problem, z, span, max_step, stations, progress, along)
-        if path.z.shape[0]:
-            paths.append(path)
-        else:
+        if not path.z.shape[0]:
             lost.append(z)
+        elif problem is None or not _known(path, paths, problem):
+            paths.append(path)
     return Branches(tuple(paths), tuple(lost))
+
+
+def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
+    """Whether a path has the ends of one followed before: rounding may hide that its start is on that.
+
+    So it does where a preload is so large that displacements are not known to `SAME`.
+    """
+    return path.status is Status.COMPLETE and any(
+        contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
+    )
 
 
 def contains(path: Path, z: FloatArray, problem: Problem) -> bool:

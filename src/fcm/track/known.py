@@ -37,8 +37,9 @@ def passed(curve: Track, condition: Condition, spot: Spot, way: Way) -> bool:
 def _beside(points: FloatArray) -> npt.NDArray[np.intp]:
     """The chords between points next to which the origin lies, the nearest first."""
     chord = np.diff(points, axis=0)
-    length = np.maximum(np.linalg.norm(chord, axis=1), 1e-300)
-    part = np.clip(-(points[:-1] * chord).sum(axis=1) / length**2, 0.0, 1.0)
+    length = np.linalg.norm(chord, axis=1)
+    square = np.maximum(length * length, np.finfo(float).tiny)  # of two points that are one
+    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
     off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
     order = np.argsort(off)
     near: npt.NDArray[np.intp] = order[off[order] < BESIDE * length[order] + SAME][:CHORDS]
