@@ -150,6 +150,7 @@ def test_each_criterion_can_fail(rows):
     assert "no exact motion" in faults(replace(row, exact=[replace(point, difference=np.nan)]))[0]
     wrong = replace(point, difference=0.1, truncation=0.01)
     assert "differs" in faults(replace(row, exact=[wrong]))[0]
+    assert "not compared" in faults(replace(row, exact=[]))[0]
 
 
 def test_a_curve_without_limit_passes_if_it_says_so():
