@@ -87,8 +87,9 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
 
 
-def test_what_would_take_too_long_is_said():
-    found = accurate(System(scene("yang1998", 5)), 1e-3, patience=0.0)
+def test_what_would_take_too_long_is_said(monkeypatch):
+    monkeypatch.setattr(choice, "PATIENCE", 0.0)
+    found = accurate(System(scene("yang1998", 5)), 1e-3)
     assert not found.reached
     assert found.system.harmonics == (1,)
     assert found.worst == found.told == pytest.approx(0.062, rel=0.1)

@@ -7,7 +7,6 @@ import pytest
 
 import fcm
 from fcm.response import trace
-from fcm.response.trace import wanted_of
 
 from .random_scenes import random_scene
 
@@ -103,11 +102,3 @@ def test_stability_between_folds_ends_at_the_same_frequencies_whatever_the_step(
         crossings.append([f for f in curve.frequency[last] if f not in curve.folds])
     assert crossings[0]
     assert crossings[0] == pytest.approx(crossings[1], rel=1e-8)
-
-
-def test_who_asks_for_an_accuracy_has_more_patience():
-    """By a call or in the scene; the default accuracy is nobody's wish."""
-    scene = replace(fcm.load_scene("yang1998-n5"), harmonics=None, accuracy=None)
-    unasked = wanted_of(scene, None, None)
-    for asked in (wanted_of(scene, None, 1e-2), wanted_of(replace(scene, accuracy=1e-2), None, None)):
-        assert asked.accuracy == unasked.accuracy and asked.patience > unasked.patience

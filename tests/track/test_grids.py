@@ -85,7 +85,7 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
     enough = optimise(aimed, accuracy=1e-3)
     assert enough.tracking.optima[0].error <= 1e-3 and not enough.curves[0].short_of
-    monkeypatch.setattr(least, "PATIENCE", 0.0)
+    monkeypatch.setattr(least, "AGAIN", 0.0)
     short = optimise(aimed, accuracy=1e-3)
     assert short.tracking.harmonics == (1,) and short.tracking.optima[0].error > 1e-3
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of

@@ -146,6 +146,10 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     if harmonic is not None:
         untold = any(_untold(curve, dof) for curve in curves for dof in curve["peak"])
         but = ", and of some peaks not told" if untold else ""
+        told = [
+            one["error"] for curve in curves for one in curve["peak"].values() if one and one.get("error")
+        ]
+        harmonic = max([harmonic, *told])  # also where what lies around a peak is not told
         errors.append(f"{harmonic:.1e} by leaving out higher harmonics{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"

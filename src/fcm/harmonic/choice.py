@@ -64,9 +64,7 @@ class Accurate(Outline):
         return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])
 
 
-def accurate(
-    system: System, accuracy: float, progress: Progress | None = None, patience: float = PATIENCE
-) -> Accurate:
+def accurate(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
     Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from
@@ -74,8 +72,8 @@ def accurate(
     foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
     more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
     to it. Only what is foreseen to be enough has its errors estimated point by point. More harmonics than
-    take some seconds, the patience, are not begun. Whether the branches are complete is another question,
-    see their status.
+    anyone waits for are not begun, see `PATIENCE`. Whether the branches are complete is another question, see
+    their status.
     """
     found = outlined(system, progress)
     further: tuple[int, ...] = ()
@@ -89,7 +87,7 @@ def accurate(
             more = enlarged(sure, accuracy)
         if more == found.system.harmonics:
             break
-        if found.seconds_with(more) > patience:
+        if found.seconds_with(more) > PATIENCE:
             further = more
             break
         shown = [one.amplitude for one in found.shown]

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.harmonic.choice import enlarged, estimated
-from fcm.harmonic.cost import PATIENCE
+from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.system import System
 from fcm.response.trace import ResponseError
 from fcm.response.tracked_work import as_curve
@@ -105,7 +105,7 @@ def _enough(task: Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int
         if worst <= task.accuracy:
             return harmonics
         more = enlarged(there, task.accuracy)
-        if more == harmonics or there.seconds_with(more) > PATIENCE:
+        if more == harmonics or there.seconds_with(more) > AGAIN:
             return harmonics
         harmonics = more
 

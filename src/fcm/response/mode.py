@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Mark, Status
-from fcm.harmonic.cost import seconds_with
+from fcm.harmonic.cost import AGAIN, seconds_with
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops, states
@@ -84,7 +84,7 @@ def _curve(
     system = System(scene, wanted.harmonics or (1,))
     mode = nonlinear_mode(system, number, span, scene.max_step)
     error = truncation(mode)
-    while wanted.harmonics is None and not _enough(mode, error, wanted):
+    while wanted.harmonics is None and not _enough(mode, error, wanted.accuracy):
         highest = _more(mode)
         more = nonlinear_mode(
             system.with_harmonics(tuple(range(1, highest + 1))), number, span, scene.max_step
@@ -105,11 +105,11 @@ def _worst(error: FloatArray) -> float:
     return float(known.max()) if known.size else np.inf
 
 
-def _enough(mode: Mode, error: FloatArray, wanted: Wanted) -> bool:
+def _enough(mode: Mode, error: FloatArray, accuracy: float) -> bool:
     """Whether no more harmonics are needed, or can be afforded."""
-    if _worst(error) <= wanted.accuracy or mode.system.harmonics[-1] == MOST_HARMONICS:
+    if _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS:
         return True
-    return seconds_with(mode.system, mode.path.evaluations, _more(mode)) > wanted.patience
+    return seconds_with(mode.system, mode.path.evaluations, _more(mode)) > AGAIN
 
 
 def _more(mode: Mode) -> int:

@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, given
-from fcm.harmonic.cost import ASKED, PATIENCE
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, astray, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
@@ -40,8 +39,7 @@ class ResponseError(ValueError):
 
 @dataclass(frozen=True)
 class Wanted:
-    """How a curve is traced: with given harmonics, or with as many as an accuracy takes
-    that cost no more than some seconds.
+    """How a curve is traced: with given harmonics, or with as many as an accuracy takes.
 
     With one harmonic it is followed with the coefficients of a table, if there is one; unless they are not to
     be corrected, its points are solutions with the closed form.
@@ -49,7 +47,6 @@ class Wanted:
 
     harmonics: tuple[int, ...] | None = (1,)
     accuracy: float = ACCURACY
-    patience: float = PATIENCE
     table: Table | None = None
     corrected: bool = True
 
@@ -67,12 +64,11 @@ def wanted_of(scene: Scene, harmonics: int | Sequence[int] | None, accuracy: flo
     if harmonics is None and accuracy is None:
         harmonics, accuracy = scene.harmonics, scene.accuracy
     if harmonics is None:
-        patience = PATIENCE if accuracy is None else ASKED
         accuracy = ACCURACY if accuracy is None else accuracy
         if not isinstance(accuracy, Real) or not 0.0 < accuracy < 1.0:
             value = f"{accuracy:g}" if isinstance(accuracy, Real) else repr(accuracy)
             raise ResponseError(f"accuracy is {value}, but it is a relative error between 0 and 1")
-        return Wanted(None, accuracy, patience)
+        return Wanted(None, accuracy)
     chosen = _numbers(harmonics)
     if fault := harmonics_fault(chosen):
         raise ResponseError(f"harmonics must be {fault}")
@@ -95,7 +91,7 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
     by_need = wanted.harmonics is None
     try:
-        found = accurate(system, wanted.accuracy, patience=wanted.patience) if by_need else given(system)
+        found = accurate(system, wanted.accuracy) if by_need else given(system)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     if wanted.table is not None:
