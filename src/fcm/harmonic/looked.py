@@ -6,16 +6,21 @@ A place between is the number of the point that it follows, and the part of the 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
 from fcm.continuation import Between, Mark, Path
+from fcm.harmonic.balance import Balance
 from fcm.harmonic.inserted import Inserted
 from fcm.harmonic.multipliers import far_above, multipliers_of
 from fcm.harmonic.spectrum import SMALL, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.windows import MANY, Seen, seen
 from fcm.scene.model import FloatArray
+
+EITHER = (0.0, 1.0)
 
 
 class Looked:
@@ -37,10 +42,10 @@ class Looked:
             self.verdicts[i] = self.multipliers.verdict(self.path.z[i], bool(self.fold[i]))
         return self.verdicts[i]
 
-    def judge(self, z: FloatArray) -> Verdict:
-        """Of a solution that is not kept."""
+    def judge(self, z: FloatArray, enough: Sequence[float] = EITHER) -> Verdict:
+        """Of a solution that is not kept; its growth is not in doubt where its verdict is (`enough`)."""
         self.evaluations += 1
-        return self.multipliers.verdict(z)
+        return self.multipliers.verdict(z, enough=enough)
 
     def among(self, first: int, last: int) -> list[float]:
         """The places from one point to another of which there is a verdict, in order."""
@@ -62,18 +67,22 @@ class Looked:
         """[rad] by how much multipliers turn, about, between points around two places."""
         return float(self.turned[math.ceil(b)] - self.turned[int(a)])
 
+    @cached_property
+    def _balance(self) -> Balance:
+        return self._system.balance()
+
     def curve(self, k: int) -> Between:
         """From a point to the next."""
-        return Between(self._system.balance(), self.path, k)
+        return Between(self._balance, self.path, k)
 
-    def put(self, length: float) -> float | None:
+    def put(self, length: float, enough: Sequence[float] = ()) -> float | None:
         """The place at a length, if it is found between two points; it has a verdict then."""
         k = int(np.searchsorted(self.length, length)) - 1
         t = k + float((length - self.length[k]) / (self.length[k + 1] - self.length[k]))
         curve = self.curve(k)
         if not k < t < k + 1 or not curve.put(t - k):
             return None
-        self.verdicts[t] = verdict = self.judge(curve.z)
+        self.verdicts[t] = verdict = self.judge(curve.z, enough)
         self.between[t] = Inserted(t, curve.z, curve.direction, curve.orientation, verdict.stable)
         return t
 

@@ -9,6 +9,8 @@ the number of real multipliers above +1, and changes exactly at the folds: it de
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -63,8 +65,12 @@ class Multipliers:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""
         return values
 
-    def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
-        """Of a solution with an even number of real multipliers above 1, or of a fold (turning)."""
+    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
+        """Of a solution with an even number of real multipliers above 1, or of a fold (turning).
+
+        Where the finer motion says what is `enough`, stable (1) or unstable (0), it is not confirmed by that
+        of the balanced harmonics.
+        """
         fine, plain, omega = self.fine.transitions, self.plain.transitions, float(z[-1])
         self.finer.at(z)
         if not (self.see(plain, z) and self.see(fine, self.finer.x)):
@@ -74,13 +80,14 @@ class Multipliers:
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._found(Spectrum.of(values), omega, turning)
+        found = self._found(Spectrum.of(values), omega, turning, enough)
         return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
 
-    def _found(self, fine: Spectrum, omega: float, turning: bool) -> Verdict:
+    def _found(self, fine: Spectrum, omega: float, turning: bool, enough: Sequence[float]) -> Verdict:
         """The verdict, which the motion of the balanced harmonics alone confirms where that may matter."""
         alone = fine.verdict(turning)
-        if not fine.odd and alone.growth < -max(SAFE, SHIFT * self.finer.shift):
+        safe = alone.growth < -max(SAFE, SHIFT * self.finer.shift)
+        if not fine.odd and (safe or alone.stable in enough):
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
             return even(fine, fine, turning)

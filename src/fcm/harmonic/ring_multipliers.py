@@ -8,6 +8,7 @@ of travelling waves, another one breaks up the wave, even where it is a real mul
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,9 +112,9 @@ class RingMultipliers(Multipliers):
         whole[..., 2:] = turned.reshape(len(turn), self.contacts, 2 * count).view(np.float64)
         return bool(transitions.look(whole.ravel()))
 
-    def verdict(self, z: FloatArray, turning: bool = False) -> Verdict:
+    def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
-        found = Multipliers.verdict(self, z, turning)
+        found = Multipliers.verdict(self, z, turning, enough)
         return found._replace(turn=min(found.turn * self.ring.period, np.pi))
 
     def of_period(self, values: list[complex]) -> list[complex]:

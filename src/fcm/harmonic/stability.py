@@ -20,6 +20,7 @@ from fcm.continuation import Path
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
 from fcm.harmonic.looked import Looked
 from fcm.harmonic.multipliers import multipliers
+from fcm.harmonic.secants import Secants
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.windows import MANY, apart, dip
@@ -34,7 +35,7 @@ DEVIATION = 1.0  # of the growth from a straight line, over its own size, that i
 TURN = 0.4  # [rad] from -1 within which a multiplier is followed as it passes: there modes flip
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
-FINE = 1e-9  # of a step: a crossing is known to this, or to a growth of ZERO
+FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO
 ZERO = 1e-10
 LOOKS = 60  # at a crossing
 DIPS = 4  # times that a way between two points is divided in search of a window
@@ -137,7 +138,8 @@ class _Along:
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
         length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive])
-        return None if length is None else self.looked.put(length)
+        # a place like its ends is no window, whatever the balanced harmonics say of it
+        return None if length is None else self.looked.put(length, enough=(one.stable,))
 
     def _edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
@@ -182,15 +184,15 @@ class _Along:
                     yield found
 
     def _crossing(self, a: float, b: float) -> Crossing | None:
-        """Where the growth changes sign between two places: by secants that close in (Illinois)."""
-        first = int(a)
+        """Where the growth changes sign between two places."""
+        first, found = int(a), None
         curve = self.looked.curve(first)
-        low, high, last, found = a - first, b - first, 0, None
         before, after = (max(self.looked.verdicts[t].growth, ENOUGH) for t in (a, b))
         kind = self.looked.verdicts[a if before > 0.0 else b].kind
+        sides = Secants(a - first, b - first, before, after)
         for _ in range(LOOKS):
-            at = (low * after - high * before) / (after - before)
-            if high - low < FINE or not curve.put(at):
+            at = sides.at
+            if sides.width < FINE or not curve.put(at):
                 break
             verdict = self.looked.judge(curve.z)
             now = max(verdict.growth, ENOUGH)
@@ -200,12 +202,7 @@ class _Along:
             found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
             if abs(now) < ZERO:
                 break
-            if (now > 0.0) == (before > 0.0):
-                after = 0.5 * after if last == 1 else after
-                low, before, last = at, now, 1
-            else:
-                before = 0.5 * before if last == -1 else before
-                high, after, last = at, now, -1
+            sides.saw(at, now)
         return found
 
 
