@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.motion.cycle import Cycle
-from fcm.motion.scan import Rows, Scan
+from fcm.motion.rows import Rows
+from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
 from fcm.scene.model import FloatArray

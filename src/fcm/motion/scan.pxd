@@ -1,10 +1,5 @@
+from fcm.motion.rows cimport Rows
 from fcm.motion.walk cimport Walk
-
-cdef class Rows:
-    cdef readonly Py_ssize_t count
-    cdef double[::1] entry
-    cdef double[:, ::1] dense
-    cdef Py_ssize_t[::1] column, first
 
 cdef class Scan(Walk):
     cdef readonly double[::1] greatest, least
@@ -18,9 +13,6 @@ cdef class Scan(Walk):
     cdef void _step(self, Py_ssize_t slot, double[:, ::1] y, Py_ssize_t k) noexcept nogil
     cdef void _look(self, Py_ssize_t slot, double[:, ::1] out) noexcept nogil
     cdef bint _may_turn(self, Py_ssize_t r) noexcept nogil
-    cdef double _dot(self, Py_ssize_t r, double[:, ::1] y, Py_ssize_t k) noexcept nogil
     cdef void _extremes(self, Py_ssize_t r) noexcept nogil
     cdef void _turn(self, Py_ssize_t r, double low, double high) noexcept nogil
-    cdef void _note(self, Py_ssize_t r, double x, double value) noexcept nogil
-    cdef double _value(self, int order, double x) noexcept nogil
-    cdef double _root(self, int order, double low, double high) noexcept nogil
+    cdef void _note(self, Py_ssize_t r, double x, double here) noexcept nogil

@@ -11,30 +11,22 @@ import numpy as np
 from cython.cimports.libc.math import fabs
 
 from fcm.motion.pool import ORDER
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
+    from cython.cimports.fcm.motion.polynomial import root, value
+    from cython.cimports.fcm.motion.rows import Rows
     from cython.cimports.fcm.motion.segments import Segments
     from cython.cimports.fcm.motion.walk import Walk
 else:
     from fcm.motion.flow import Flows
+    from fcm.motion.polynomial import root, value
+    from fcm.motion.rows import Rows
     from fcm.motion.segments import Segments
     from fcm.motion.walk import Walk
 
 LARGEST = cython.declare(cython.double, 1.7976931348623157e308)  # beyond every value
 _ORDER = cython.declare(cython.int, 19)
-
-
-@cython.cclass
-class Rows:
-    """Rows (row, d - 2) without their zeros, of the state vector without its last two components."""
-
-    def __init__(self, rows: FloatArray) -> None:
-        places = np.nonzero(rows)
-        self.count, self.dense = rows.shape[0], np.ascontiguousarray(rows.T)
-        self.entry, self.column = rows[places], places[1].copy()
-        self.first = np.searchsorted(places[0], np.arange(self.count + 1))
 
 
 @cython.cclass
@@ -157,7 +149,7 @@ class Scan(Walk):
         self.flows.extend(slot, self._there, 2, h, self._there, False)
         for r in range(self.greatest.shape[0]):
             for j in range(3):
-                out[j, r] = self._dot(r, self._there, j)
+                out[j, r] = self._rows.dot(r, self._there, j)
             out[2, r] *= 2.0
 
     @cython.cfunc
@@ -181,35 +173,18 @@ class Scan(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _dot(self, r: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.double:
-        """Of row r with row k of y."""
-        i: cython.Py_ssize_t
-        total: cython.double = 0.0
-        other: cython.double = 0.0  # two sums, for one would wait for each addition
-        first: cython.Py_ssize_t = self._rows.first[r]
-        half: cython.Py_ssize_t = (self._rows.first[r + 1] - first) // 2
-        for i in range(first, first + half):
-            total += self._rows.entry[i] * y[k, self._rows.column[i]]
-            other += self._rows.entry[half + i] * y[k, self._rows.column[half + i]]
-        for i in range(first + 2 * half, self._rows.first[r + 1]):
-            total += self._rows.entry[i] * y[k, self._rows.column[i]]
-        return total + other
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def _extremes(self, r: cython.Py_ssize_t) -> cython.void:
         """Those of row r in a step whose terms are there."""
         first: cython.double = self._old[1, r]
         j: cython.int
         turn: cython.double
         for j in range(_ORDER + 1):
-            self._powers[j] = self._dot(r, self._terms, j)
+            self._powers[j] = self._rows.dot(r, self._terms, j)
         if first * self._new[1, r] < 0.0:
             self._turn(r, 0.0, self._length)
             return
-        turn = self._root(2, 0.0, self._length)
-        if self._value(1, turn) * first < 0.0:
+        turn = root(self._powers, 2, 0.0, self._length)
+        if value(self._powers, 1, turn) * first < 0.0:
             self._turn(r, 0.0, turn)
             self._turn(r, turn, self._length)
 
@@ -218,64 +193,17 @@ class Scan(Walk):
     @cython.exceptval(check=False)
     def _turn(self, r: cython.Py_ssize_t, low: cython.double, high: cython.double) -> cython.void:
         """Take the value where the velocity changes its sign."""
-        x: cython.double = self._root(1, low, high)
-        self._note(r, x, self._value(0, x))
+        x: cython.double = root(self._powers, 1, low, high)
+        self._note(r, x, value(self._powers, 0, x))
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _note(self, r: cython.Py_ssize_t, x: cython.double, value: cython.double) -> cython.void:
+    def _note(self, r: cython.Py_ssize_t, x: cython.double, here: cython.double) -> cython.void:
         """Take a value, at x, if it is an extreme so far."""
-        if value > self.greatest[r]:
-            self.greatest[r] = value
+        if here > self.greatest[r]:
+            self.greatest[r] = here
             self.place[r, 0], self.place[r, 1] = self.at, self._first + x
-        if value < self.least[r]:
-            self.least[r] = value
+        if here < self.least[r]:
+            self.least[r] = here
             self.place[r, 2], self.place[r, 3] = self.at, self._first + x
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _value(self, order: cython.int, x: cython.double) -> cython.double:
-        """The polynomial or one of its derivatives."""
-        j: cython.int
-        factor: cython.double
-        total: cython.double = 0.0
-        for j in range(_ORDER, order - 1, -1):
-            factor = (
-                1.0
-                if order == 0
-                else j
-                if order == 1
-                else j * (j - 1)
-                if order == 2
-                else j * (j - 1) * (j - 2)
-            )
-            total = total * x + factor * self._powers[j]
-        return total
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def _root(self, order: cython.int, low: cython.double, high: cython.double) -> cython.double:
-        """The root of a derivative with different signs at low and high: Newton's method between them."""
-        sense: cython.double = self._value(order, low)
-        x: cython.double = 0.5 * (low + high)
-        value: cython.double
-        slope: cython.double
-        new: cython.double
-        for _ in range(60):
-            value, slope = self._value(order, x), self._value(order + 1, x)
-            if value == 0.0:
-                return x
-            if value * sense > 0.0:
-                low = x
-            else:
-                high = x
-            new = x - value / slope if slope != 0.0 else low
-            if not low < new < high:
-                new = 0.5 * (low + high)
-            if fabs(new - x) <= 1e-15:
-                return new
-            x = new
-        return x

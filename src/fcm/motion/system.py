@@ -16,7 +16,8 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
-from fcm.motion.scan import Rows, Scan
+from fcm.motion.rows import Rows
+from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
 from fcm.motion.walk import Walk
