@@ -21,23 +21,23 @@ class Between:
         self._scale = np.array(problem.scale)
         self._ends = path.z[first : first + 2] / self._scale
         self._chord = self._ends[1] - self._ends[0]
-        self._length = float(np.linalg.norm(self._chord))
+        self.length = float(np.linalg.norm(self._chord))  # of the chord, in the curve's own size
         direction = path.direction[first : first + 2] / self._scale
         size = np.linalg.norm(direction, axis=1, keepdims=True)
-        self._slopes = self._length * direction / np.where(size > 0.0, size, 1.0)
+        self._slopes = self.length * direction / np.where(size > 0.0, size, 1.0)
 
     def put(self, part: float) -> bool:
         """Whether there is a point at the part of the way, in [0, 1]; it is then z."""
-        if self._length == 0.0:
+        if self.length == 0.0:
             return False
         rest = 1.0 - part
         guess = self._ends[0] * (rest * rest * (1.0 + 2.0 * part))
         guess += self._ends[1] * (part * part * (3.0 - 2.0 * part))
         guess += part * rest * (rest * self._slopes[0] - part * self._slopes[1])
         self.newton.scale[:] = self._scale
-        self.newton.row[:] = self._chord / self._length
+        self.newton.row[:] = self._chord / self.length
         self.newton.z[:] = guess * self._scale
-        return bool(self.newton.correct(self._length)) and self.newton.moved <= self._length
+        return bool(self.newton.correct(self.length)) and self.newton.moved <= self.length
 
     @property
     def z(self) -> FloatArray:

@@ -8,18 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Between, Mark, Path
+from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
 from fcm.motion.state import State
-from fcm.orbit.periodic import STABLE, within_unit_circle
+from fcm.orbit.crossing import crossing
+from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady
 from fcm.scene.model import FloatArray
-
-CROSSINGS = 40  # places looked at to find where stability changes
-NARROW = 1e-10  # part of a step to which that is known
 
 
 @dataclass(frozen=True)
@@ -86,39 +84,17 @@ def samples(problem: OrbitProblem, path: Path) -> list[Sample]:
 
 
 def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:
+    """A point of its own for each change of stability, but where that is at one already."""
     out = list(points[:1])
     for k, point in enumerate(points[1:]):
         before = points[k]
         if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
-            crossing = _crossing(problem, path, k, before, point)
-            out += [] if crossing is None else [crossing]
+            place = crossing(problem, path, k)
+            if place is not None and 0.0 < place.part < 1.0:
+                out.append(sampled(problem, place.z, place.direction, int(Mark.CROSSING)))
+            elif place is not None and before.stable:
+                out[-1] = replace(out[-1], mark=before.mark | Mark.CROSSING)
+            elif place is not None:
+                point = replace(point, mark=point.mark | Mark.CROSSING)
         out.append(point)
     return out
-
-
-def _crossing(problem: OrbitProblem, path: Path, first: int, before: Sample, after: Sample) -> Sample | None:
-    """The last place of the stable side between two points; None if the curve is not found.
-
-    By secants, every third place in the middle: the greatest multiplier may have a corner.
-    """
-    between, low, high, found = Between(problem, path, first), 0.0, 1.0, None
-    falls, rises = _excess(before.multipliers), _excess(after.multipliers)
-    for count in range(CROSSINGS):
-        part = 0.5 if count % 3 == 2 else min(max(falls / (falls - rises), 0.01), 0.99)
-        middle = low + part * (high - low)
-        if high - low < NARROW or not between.put(middle):
-            break
-        z = between.z
-        multipliers = _shot(problem, z).multipliers
-        stable = within_unit_circle(multipliers)
-        found = (z, between.direction) if stable else found
-        if stable == before.stable:
-            low, falls = middle, _excess(multipliers)
-        else:
-            high, rises = middle, _excess(multipliers)
-    return None if found is None else sampled(problem, *found, int(Mark.CROSSING))
-
-
-def _excess(multipliers: npt.NDArray[np.complex128]) -> float:
-    """By how much the greatest multiplier is beyond where stability ends, on a logarithmic scale."""
-    return float(np.log(max(abs(multipliers[0]), 1e-300)) - np.log1p(STABLE))

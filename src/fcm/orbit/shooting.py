@@ -13,7 +13,7 @@ from fcm.motion.run import march_from
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import period_derivative
-from fcm.orbit.residual_friction import Choice, choices, overshoots, resting
+from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting
 from fcm.scene.model import FloatArray, Scene
 
 
@@ -108,10 +108,23 @@ class Shot:
         return displaced(self.system, self.segments)
 
     @cached_property
+    def others(self) -> npt.NDArray[np.complex128]:
+        """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays.
+
+        With w = u - f / k_u for its f the others are those of the rest.
+        """
+        system, stuck = self.system, always_stuck(self.system, self.segments)
+        places, by_state = system.f.start + np.array(stuck, dtype=int), self.derivative.copy()
+        by_state[:, system.q] += by_state[:, places] @ (system.k_u[stuck, None] * system.tangential[stuck])
+        rest = np.delete(np.arange(self.x.size), places)
+        scale = self.scale[rest]
+        matrix = by_state[np.ix_(rest, rest)] * scale / scale[:, None]
+        return np.linalg.eigvals(matrix).astype(np.complex128)
+
+    @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
         """Floquet's, the greatest first; 1 for each contact that always sticks."""
-        matrix = self.derivative * self.scale / self.scale[:, None]
-        values = np.linalg.eigvals(matrix).astype(np.complex128)
+        values = np.concatenate((self.others, np.ones(self.x.size - self.others.size)))
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 

@@ -1,0 +1,78 @@
+"""Where stability changes between two points of an exact curve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.continuation import Between, Mark, follow
+from fcm.orbit import periodic
+from fcm.orbit.crossing import crossing
+from fcm.orbit.periodic import STABLE
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.shooting import Shooting
+
+from ..response.random_scenes import random_scene
+
+
+def light():
+    """Nine modes, hardly damped, and three contacts, of which the third sticks."""
+    scene = random_scene(8)
+    return replace(scene, modal=replace(scene.modal, damping=np.full(scene.modal.mass.size, 1e-4)))
+
+
+def greatest(problem, z):
+    """Of all multipliers, from the whole matrix of the period; the stuck contact's are exactly 1."""
+    return np.abs(np.linalg.eigvals(problem.shot(z).derivative)).max()
+
+
+def test_the_multipliers_beside_a_stuck_contact_are_those_of_the_whole_matrix():
+    orbit, problem = periodic(light(), 0.6), Shooting(light())
+    shot = problem.residual(problem.unknowns(orbit.state), 0.6)
+    assert [states for states in orbit.states if states == "E"] == ["E"]
+    assert shot.others.size == shot.x.size - 1
+    whole = np.linalg.eigvals(shot.derivative)
+    apart = np.delete(whole, np.abs(whole - 1.0).argmin())
+    for one in apart:
+        assert np.abs(shot.others - one).min() < 1e-9
+
+
+@pytest.fixture(scope="module")
+def crossed():
+    """A problem, its path, and the steps on which stability changes between folds."""
+    scene = replace(light(), frequency_range=(0.54, 0.55))
+    problem, begin = OrbitProblem(scene), periodic(scene, 0.54)
+    path = follow(problem, problem.z(begin.state, 0.54), scene.frequency_range, True, 0.05)
+    stable = [greatest(problem, z) <= 1.0 + STABLE for z in path.z]
+    steps = [
+        k
+        for k in range(len(stable) - 1)
+        if stable[k] != stable[k + 1] and not (path.mark[k] | path.mark[k + 1]) & Mark.FOLD
+    ]
+    return problem, path, stable, steps
+
+
+def test_stability_changes_at_the_place(crossed):
+    """It is stable; a little further on the unstable side, or as far as a jump may be off, it is not."""
+    problem, path, stable, steps = crossed
+    jumps = 0
+    assert len(steps) > 10
+    for k in steps:
+        place, between = crossing(problem, path, k), Between(problem, path, k)
+        assert place is not None and greatest(problem, place.z) <= 1.0 + STABLE
+        aside = max(1e-5, 2e-8 / between.length)
+        part = place.part + (aside if stable[k] else -aside)
+        assert between.put(part) and greatest(problem, between.z) > 1.0 + STABLE
+        jumps += greatest(problem, between.z) > 1.0 + 1e-3 and greatest(problem, place.z) < 1.0 + 1e-8
+    assert 0 < jumps < len(steps)
+
+
+def test_a_change_of_stability_takes_few_periods(crossed):
+    """A bisection to a rounding takes some forty places, each with a period or more."""
+    problem, path, _, steps = crossed
+    again = OrbitProblem(problem.scene)
+    for k in steps:
+        crossing(again, path, k)
+    assert again.periods < 45 * len(steps)
