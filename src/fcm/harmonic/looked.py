@@ -6,6 +6,7 @@ A place between is the number of the point that it follows, and the part of the 
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right, insort
 from collections.abc import Sequence
 from functools import cached_property
 
@@ -30,6 +31,7 @@ class Looked:
         self.path, self.evaluations = path, 0
         self.verdicts: dict[float, Verdict] = {}
         self.between: dict[float, Inserted] = {}
+        self._places: list[float] = []  # with a verdict, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
         self.fold = (path.mark & Mark.FOLD) != 0
         self.length, self.turned = _lengths(path), _turned(system, path)
@@ -39,8 +41,14 @@ class Looked:
         """Of a point."""
         if i not in self.verdicts:
             self.evaluations += 1
-            self.verdicts[i] = self.multipliers.verdict(self.path.z[i], bool(self.fold[i]))
+            self._keep(i, self.multipliers.verdict(self.path.z[i], bool(self.fold[i])))
         return self.verdicts[i]
+
+    def _keep(self, t: float, verdict: Verdict) -> Verdict:
+        if t not in self.verdicts:
+            insort(self._places, t)
+        self.verdicts[t] = verdict
+        return verdict
 
     def judge(self, z: FloatArray, enough: Sequence[float] = EITHER) -> Verdict:
         """Of a solution that is not kept; its growth is not in doubt where its verdict is (`enough`)."""
@@ -49,7 +57,19 @@ class Looked:
 
     def among(self, first: int, last: int) -> list[float]:
         """The places from one point to another of which there is a verdict, in order."""
-        return sorted(t for t in self.verdicts if first <= t <= last)
+        return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]
+
+    def framed(self, a: float, b: float) -> bool:
+        """Whether what is told on both sides of the untold way that a or b ends is the same."""
+        k = bisect_left(self._places, a)
+        before = next((t for t in reversed(self._places[: k + 1]) if self._told(t)), None)
+        after = next((t for t in self._places[k + 1 :] if self._told(t)), None)
+        if before is None or after is None:
+            return False
+        return self.verdicts[before].stable == self.verdicts[after].stable
+
+    def _told(self, t: float) -> bool:
+        return not math.isnan(self.verdicts[t].stable)
 
     def grows(self, t: float) -> bool:
         """Whether a disturbance does at a place with a verdict."""
@@ -82,7 +102,7 @@ class Looked:
         curve = self.curve(k)
         if not k < t < k + 1 or not curve.put(t - k):
             return None
-        self.verdicts[t] = verdict = self.judge(curve.z, enough)
+        verdict = self._keep(t, self.judge(curve.z, enough))
         self.between[t] = Inserted(t, curve.z, curve.direction, curve.orientation, verdict.stable)
         return t
 

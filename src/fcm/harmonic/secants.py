@@ -1,4 +1,8 @@
-"""Where a function along a curve changes its sign: by secants that close in (Illinois), and halves at a jump."""
+"""Where a function along a curve changes its sign: by secants that close in (Illinois), or halves at a jump.
+
+Between ends that are much nearer than they were a smooth function differs by much less; one that jumps does
+not, and the secants would leave one end where it is.
+"""
 
 from __future__ import annotations
 

@@ -38,6 +38,7 @@ ENOUGH = -0.3  # growth that is as good as any that is less
 FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO
 ZERO = 1e-10
 LOOKS = 60  # at a crossing
+EDGE = 0.3  # of a step: between places nearer than this the edge of a window is not looked for
 DIPS = 4  # times that a way between two points is divided in search of a window
 PHASE = 1.5  # [rad] by which multipliers that are not small turn at most between points that are looked at
 AHEAD, ABOUT = 1.5, 0.4  # times that, and [rad], by which two of them may come nearer to one another
@@ -107,23 +108,25 @@ class _Along:
         """Look where a window may be hidden between two places of a run that were looked at."""
         places = self.looked.among(first, last)
         for k, (a, b) in enumerate(itertools.pairwise(places)):
-            self._dips(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], DIPS)
+            self._dips(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
 
-    def _dips(self, before: list[float], ends: tuple[float, float], after: list[float], times: int) -> None:
+    def _dips(self, before: list[float], ends: tuple[float, float], after: list[float], divided: int) -> None:
         """Divide the way between two places as long as what both and their neighbours tell is in doubt."""
-        t = self._doubtful(before, ends, after) if times > 0 else None
+        t = self._doubtful(before, ends, after, divided) if divided < DIPS else None
         if t is None or not ends[0] < t < ends[1]:
             return
         one, found, other = (self.looked.verdicts[place].stable for place in (ends[0], t, ends[1]))
         if found in (one, other) or math.isnan(found):
-            self._dips(before, (ends[0], t), [ends[1]], times - 1)
-            self._dips([ends[0]], (t, ends[1]), after, times - 1)
+            self._dips(before, (ends[0], t), [ends[1]], divided + 1)
+            self._dips([ends[0]], (t, ends[1]), after, divided + 1)
             return
         self.looked.verdict(int(t)), self.looked.verdict(math.ceil(t))
         self._between(math.ceil(ends[0]), int(t))
         self._between(math.ceil(t), int(ends[1]))
 
-    def _doubtful(self, before: list[float], ends: tuple[float, float], after: list[float]) -> float | None:
+    def _doubtful(
+        self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
+    ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
         one, other = (self.looked.verdicts[t] for t in ends)
         if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
@@ -137,15 +140,16 @@ class _Along:
         verdicts, seen = self.looked.verdicts, self.looked.seen
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
-        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive])
+        length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive], divided)
         # a place like its ends is no window, whatever the balanced harmonics say of it
         return None if length is None else self.looked.put(length, enough=(one.stable,))
 
     def _edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
-        if self.looked.grows(a) == self.looked.grows(b) or b - a > 1.0:
+        looked = self.looked
+        if looked.grows(a) == looked.grows(b) or not EDGE < b - a <= 1.0 or not looked.framed(a, b):
             return None
-        return self.looked.put(0.5 * (self.looked.seen(a).length + self.looked.seen(b).length))
+        return looked.put(0.5 * (looked.seen(a).length + looked.seen(b).length))
 
     def _may_meet(self, ends: tuple[float, float]) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""

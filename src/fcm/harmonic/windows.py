@@ -22,7 +22,8 @@ import numpy.typing as npt
 
 from fcm.harmonic.spectrum import SMALL, Verdict
 
-DOUBT = 0.2  # of the differences between three values, by which what they foretell may be too high
+DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,
+CLOSER = 0.5  # and this part of it where the way was divided: differences fall by squares, errors by cubes
 MANY = 60  # multipliers, of more of which two are always about to meet
 LESS = 0.5  # size of multipliers that matter: one of a pair of 0.75 is not less as the other leaves
 NARROW = 1e-3  # a way, relative to the size of the solution, that is not divided
@@ -67,7 +68,7 @@ def _pairs(count: int) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     return i, j
 
 
-def dip(low: Seen, high: Seen, places: Sequence[Seen]) -> float | None:
+def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> float | None:
     """Length at which a product is foretold to be so small that stability may have changed; None if nowhere.
 
     Parameters
@@ -76,6 +77,8 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen]) -> float | None:
         Between which it is looked for; both stable or both not.
     places : sequence of Seen
         These and their neighbours in order, three or four.
+    divided : int
+        Times that the way between places was.
     """
     near, most, at = NEAR * (high.length - low.length), 0.0, None
     if high.length - low.length < NARROW:
@@ -84,7 +87,8 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen]) -> float | None:
         three = places[k : k + 3]
         for values in _positive(three):
             place, least = _lowest([one.length for one in three], values)
-            doubt = (DOUBT * (max(values) - least) - least) / max(values)
+            too_high = DOUBT * CLOSER**divided * (max(values) - least)
+            doubt = (too_high - least) / max(values)
             if low.length + near < place < high.length - near and doubt > most:
                 most, at = doubt, place
     return at
