@@ -18,7 +18,7 @@ from fcm.harmonic.inserted import Inserted
 from fcm.harmonic.multipliers import far_above, multipliers_of
 from fcm.harmonic.spectrum import SMALL, Verdict
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import MANY, Seen, seen
+from fcm.harmonic.windows import MANY, Seen, apart, seen
 from fcm.scene.model import FloatArray
 
 EITHER = (0.0, 1.0)
@@ -35,7 +35,7 @@ class Looked:
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
         self.fold = (path.mark & Mark.FOLD) != 0
         self.length, self.turned = _lengths(path), _turned(system, path)
-        self._system, self._seen = system, dict[float, Seen]()
+        self._system, self._seen, self._apart = system, dict[float, Seen](), dict[float, float]()
 
     def verdict(self, i: int) -> Verdict:
         """Of a point."""
@@ -82,6 +82,12 @@ class Looked:
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
             self._seen[t] = seen(float(length), self.verdicts[t])
         return self._seen[t]
+
+    def apart(self, t: float) -> float:
+        """[rad] by which multipliers at a place with a verdict have to turn until two of them meet."""
+        if t not in self._apart:
+            self._apart[t] = apart(self.verdicts[t])
+        return self._apart[t]
 
     def way(self, a: float, b: float) -> float:
         """[rad] by how much multipliers turn, about, between points around two places."""

@@ -23,7 +23,7 @@ from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.secants import Secants
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import MANY, apart, dip
+from fcm.harmonic.windows import MANY, dip
 from fcm.scene.model import FloatArray
 
 IntArray = npt.NDArray[np.intp]
@@ -153,7 +153,7 @@ class _Along:
 
     def _may_meet(self, ends: tuple[float, float]) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
-        nearest = sum(apart(self.looked.verdicts[t]) for t in ends)
+        nearest = sum(self.looked.apart(t) for t in ends)
         return nearest < AHEAD * self.looked.way(*ends) + ABOUT
 
     def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
