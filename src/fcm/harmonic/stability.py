@@ -98,7 +98,7 @@ class _Along:
         turned = self.looked.turned[first : last + 1]
         turns = np.floor((turned - turned[0]) / PHASE)
         some = np.linspace(first, last, parts + 1).astype(int)
-        nodes = np.union1d(some, first + 1 + np.flatnonzero(np.diff(turns))).tolist()
+        nodes = sorted({*some.tolist(), *(first + 1 + np.flatnonzero(np.diff(turns))).tolist()})
         for i in nodes:
             self.looked.verdict(i)
         for a, b in itertools.pairwise(nodes):

@@ -85,11 +85,14 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> floa
         return None
     for k in range(len(places) - 2):
         three = places[k : k + 3]
+        lengths = [one.length for one in three]
         for values in _positive(three):
-            place, least = _lowest([one.length for one in three], values)
-            too_high = DOUBT * CLOSER**divided * (max(values) - least)
-            doubt = (too_high - least) / max(values)
-            if low.length + near < place < high.length - near and doubt > most:
+            place, least = _lowest(lengths, values)
+            if not low.length + near < place < high.length - near:
+                continue
+            greatest = max(values)
+            doubt = (DOUBT * CLOSER**divided * (greatest - least) - least) / greatest
+            if doubt > most:
                 most, at = doubt, place
     return at
 
