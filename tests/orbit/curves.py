@@ -2,7 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from fcm.response.exact import trace_exact
+
+from ..response.random_scenes import random_scene
 
 
 def between(scene, low, high, **changes):
@@ -12,3 +16,9 @@ def between(scene, low, high, **changes):
 def curve_of(scene, **options):
     (curve,) = trace_exact(scene, **options).curves
     return curve
+
+
+def light():
+    """Nine modes, hardly damped, and three contacts, of which the third sticks."""
+    scene = random_scene(8)
+    return replace(scene, modal=replace(scene.modal, damping=np.full(scene.modal.mass.size, 1e-4)))

@@ -14,13 +14,7 @@ from fcm.orbit.periodic import STABLE
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shooting
 
-from ..response.random_scenes import random_scene
-
-
-def light():
-    """Nine modes, hardly damped, and three contacts, of which the third sticks."""
-    scene = random_scene(8)
-    return replace(scene, modal=replace(scene.modal, damping=np.full(scene.modal.mass.size, 1e-4)))
+from .curves import light
 
 
 def greatest(problem, z):

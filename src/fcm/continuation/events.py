@@ -106,6 +106,20 @@ def turns(here: Place, there: Place, k: cython.Py_ssize_t, greatest: cython.doub
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
+def may_exceed(front: Front, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
+    """Whether a peak of an output within the step may be the greatest so far, by the slopes at its ends.
+
+    Each look is dear where a problem is soft; on a curve with many loops most peaks are lower than an
+    earlier one.
+    """
+    here: Place = front.here
+    there: Place = front.there
+    slope: cython.double = max(here.growth[k], -there.growth[k] / front.spread())
+    return max(here.output[k], there.output[k]) + front.step * slope >= greatest
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
 def closes(front: Front, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
     """Whether the step passes the point where the curve began, in the direction that it had there."""
     i: cython.Py_ssize_t
@@ -140,7 +154,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     for value in values:
         events += passings(front, value, fold)
     for k in range(front.problem.outputs):
-        if turns(here, there, k, most[k]):
+        if turns(here, there, k, most[k]) and (looks is None or may_exceed(front, k, most[k])):
             events += located(front, PEAK, k, limit, Mark.PEAK, looks)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 

@@ -124,7 +124,8 @@ class Shot:
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
         """Floquet's, the greatest first; 1 for each contact that always sticks."""
-        values = np.concatenate((self.others, np.ones(self.x.size - self.others.size)))
+        ones = np.ones(self.x.size - self.others.size, dtype=np.complex128)
+        values = np.concatenate((self.others, ones))
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 
