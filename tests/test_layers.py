@@ -66,3 +66,10 @@ def test_continuation_knows_nothing_of_contacts():
 def test_numerics_import_numpy_and_scipy_alone(package):
     outside = {module.split(".")[0] for _, module in imported(package)} - set(sys.stdlib_module_names)
     assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"}
+
+
+def test_nothing_else_lies_at_the_top():
+    """What was left there by a measurement once was taken for a part of the project."""
+    there = {path.name for path in ROOT.iterdir() if not path.name.startswith(".")}
+    made = {"build", "dist"}  # which git ignores
+    assert there - made == {"LICENSE", "Makefile", "README.md", "pyproject.toml", "src", "tables", "tests"}

@@ -92,7 +92,7 @@ def states_of(
     i: cython.Py_ssize_t
     p: cython.int
     for i in range(x.shape[0]):
-        kernel.solve(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
+        kernel.cycle.take(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
         for p in range(kernel.cycle.pieces):
             out[i, p] = kernel.cycle.state[p]
 
@@ -108,7 +108,7 @@ def borne(
     """Greatest normal and friction force, way of the slip and energy of the same, (point, 4)."""
     i: cython.Py_ssize_t
     for i in range(x.shape[0]):
-        kernel.solve(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
+        kernel.cycle.take(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
         measures.bear(contact[1])
         out[i, 0] = max(measures.greatest_load, 0.0)
         out[i, 1], out[i, 2] = measures.greatest_friction, measures.slip_path

@@ -24,16 +24,6 @@ cdef class PeriodicContact:
         double start,
         bint gradient,
     ) noexcept nogil
-    cdef int solve(
-        self,
-        double[::1] x,
-        Py_ssize_t first,
-        double mu,
-        double k_u,
-        double k_v,
-        double n_0,
-        double start,
-    ) noexcept nogil
     cdef void stick(self) noexcept nogil
     cdef void slip(self) noexcept nogil
     cdef void rescale(self, double mu, double k_u, double k_v, bint gradient) noexcept nogil

@@ -126,7 +126,7 @@ class PeriodicContact:
         int
             OPEN, STUCK, MIXED; or UNKNOWN where a number is not finite, and then so are the results.
         """
-        self.solve(x, first, mu, k_u, k_v, n_0, start)
+        self.kind = self.cycle.take(x, first, mu, k_u, k_v, n_0, start)
         nothing: float = NAN if self.kind == UNKNOWN else 0.0
         i: cython.int
         for i in range(self.equations):
@@ -144,20 +144,6 @@ class PeriodicContact:
                 self.derivatives.slip()
         if self.kind == STUCK or self.kind == MIXED:
             self.rescale(mu, k_u, k_v, gradient)
-        return self.kind
-
-    def solve(
-        self,
-        x: cython.double[::1],
-        first: cython.Py_ssize_t,
-        mu: float,
-        k_u: float,
-        k_v: float,
-        n_0: float,
-        start: float,
-    ) -> cython.int:
-        """The cycle of the motion x[first:] alone, without its forces; see `evaluate`."""
-        self.kind = self.cycle.take(x, first, mu, k_u, k_v, n_0, start)
         return self.kind
 
     def stick(self) -> None:
