@@ -9,10 +9,10 @@ import cython
 
 if cython.compiled:
     from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
-    from cython.cimports.fcm.contact.cycle import UNKNOWN, Cycle
+    from cython.cimports.fcm.contact.slip_limits import UNKNOWN, SlipLimits
 else:
     from fcm.contact.coefficient_law import CoefficientLaw
-    from fcm.contact.cycle import UNKNOWN, Cycle
+    from fcm.contact.slip_limits import UNKNOWN, SlipLimits
 
 
 @cython.cclass
@@ -20,7 +20,7 @@ class Boundaries(CoefficientLaw):
     """n0 + b, n0 - b and n0 - (ell_1 + ell_2) / 2, laid out as coefficients and their gradients."""
 
     def __init__(self) -> None:
-        self.cycle = Cycle()
+        self.limits = SlipLimits()
 
     def evaluate(
         self,
@@ -33,20 +33,20 @@ class Boundaries(CoefficientLaw):
     ) -> None:
         """See `CoefficientLaw`."""
         i: cython.Py_ssize_t
-        if self.cycle.place(n0_bar, b_bar, phi) == UNKNOWN:
+        if self.limits.place(n0_bar, b_bar, phi) == UNKNOWN:
             self.unknown(gradient, out, at)
             return
-        out[at] = self.cycle.n0 + self.cycle.b
-        out[at + 1] = self.cycle.n0 - self.cycle.b
-        out[at + 2] = 0.5 * (self.cycle.upper_N - self.cycle.lower_P)
+        out[at] = self.limits.n0 + self.limits.b
+        out[at + 1] = self.limits.n0 - self.limits.b
+        out[at + 2] = 0.5 * (self.limits.upper_N - self.limits.lower_P)
         if gradient:
             for i in range(3):
                 out[at + 3 + 3 * i] = 1.0
             out[at + 4], out[at + 5] = 1.0, 0.0
             out[at + 7], out[at + 8] = -1.0, 0.0
             # d ell / d(b, phi) by the directions theta_P and theta_N, which stay bounded
-            cos_phi: float = self.cycle.cos_phi
-            sin_phi: float = self.cycle.sin_phi
-            cosines: float = self.cycle.cos_P + self.cycle.cos_N
-            out[at + 10] = 0.5 * (cos_phi * (self.cycle.sin_P + self.cycle.sin_N) + sin_phi * cosines)
-            out[at + 11] = 0.5 * (self.cycle.cos_P - self.cycle.cos_N)
+            cos_phi: float = self.limits.cos_phi
+            sin_phi: float = self.limits.sin_phi
+            cosines: float = self.limits.cos_P + self.limits.cos_N
+            out[at + 10] = 0.5 * (cos_phi * (self.limits.sin_P + self.limits.sin_N) + sin_phi * cosines)
+            out[at + 11] = 0.5 * (self.limits.cos_P - self.limits.cos_N)

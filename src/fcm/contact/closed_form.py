@@ -10,10 +10,12 @@ import cython
 
 if cython.compiled:
     from cython.cimports.fcm.contact.coefficient_law import CoefficientLaw
-    from cython.cimports.fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
+    from cython.cimports.fcm.contact.cycle import PI, Cycle, arc
+    from cython.cimports.fcm.contact.slip_limits import SLIPPING, STUCK, UNKNOWN
 else:
     from fcm.contact.coefficient_law import CoefficientLaw
-    from fcm.contact.cycle import PI, SLIPPING, STUCK, UNKNOWN, Cycle, arc
+    from fcm.contact.cycle import PI, Cycle, arc
+    from fcm.contact.slip_limits import SLIPPING, STUCK, UNKNOWN
 
 LIGHT = cython.declare(cython.double, 0.01)  # loads below are integrated as forces, see `Integrals`
 

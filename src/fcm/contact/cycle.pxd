@@ -1,11 +1,8 @@
-cdef int UNKNOWN, STUCK, SLIPPING, OPEN
+from fcm.contact.slip_limits cimport SlipLimits
+
 cdef double PI
 
-cdef class Cycle:
-    # the contact
-    cdef double n0, b, sin_phi, cos_phi
-    cdef double ell_1, ell_2, sin_P, cos_P, sin_N, cos_N, lower_P, upper_N
-    # its cycle
+cdef class Cycle(SlipLimits):
     cdef bint opens
     cdef double theta_1, closing_rate, first_sin, first_cos, pull
     # the span that it is at
@@ -16,10 +13,7 @@ cdef class Cycle:
     cdef bint goes_on
 
     cdef int find(self, double n0_bar, double b_bar, double phi) noexcept nogil
-    cdef int place(self, double n0_bar, double b_bar, double phi) noexcept nogil
     cdef void take(self) noexcept nogil
-    cdef double stuck_force(self) noexcept nogil
-    cdef void _limits(self, double phi) noexcept nogil
     cdef void _pass(self) noexcept nogil
     cdef void _start(self) noexcept nogil
     cdef void _until_P(self, double length) noexcept nogil

@@ -1,31 +1,23 @@
 """Kernel: one steady cycle of the contact, event by event in closed form (sections 3.2 to 3.4, appendix).
 
-While the contact is closed, |f| <= n says that the slip motion w = u - f lies between
-
-    lower(theta) = sin(theta) - n(theta) =  ell_1 cos(theta - theta_P) - n0_bar
-    upper(theta) = sin(theta) + n(theta) = -ell_2 cos(theta - theta_N) + n0_bar
-
-Positive slip is the lower limit pushing w up, so it ends at theta_P, where that limit is greatest; negative
-slip is the upper limit pushing w down, and ends at theta_N. Between consecutive extremes of the two limits
-the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start, upper))``, and at most
-one slip, which lasts until the end of that *span*. A cycle has at most three spans: those ended by theta_P,
-by theta_N, and by the separation (or by theta_N again when the contact never opens). Nothing has to be
-searched for, and a rounding error can shift an event but never choose a wrong sequence by more than that.
+Positive slip is the lower limit of w, see `slip_limits`, pushing it up, so it ends at theta_P, where that
+limit is greatest; negative slip is the upper limit pushing w down, and ends at theta_N. Between consecutive
+extremes of the two limits the whole of sections 3.2.1 to 3.2.4 is one clip, ``w_end = max(lower, min(w_start,
+upper))``, and at most one slip, which lasts until the end of that *span*. A cycle has at most three spans:
+those ended by theta_P, by theta_N, and by the separation (or by theta_N again when the contact never opens).
+Nothing has to be searched for, and a rounding error can shift an event but never choose a wrong sequence by
+more than that.
 """
 
 import cython
-from cython.cimports.libc.math import atan2, cos, fabs, hypot, isfinite, isnan, sin, sqrt
+from cython.cimports.libc.math import atan2, cos, fabs, sin, sqrt
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.slip_limits import SLIPPING, SlipLimits
+else:
+    from fcm.contact.slip_limits import SLIPPING, SlipLimits
 
 PI = cython.declare(cython.double, 3.141592653589793)
-LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
-FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
-SHRINK = cython.declare(cython.double, 2.0**-32)
-
-# what a contact does over a cycle
-UNKNOWN = cython.declare(cython.int, -1)  # an argument is no number
-STUCK = cython.declare(cython.int, 0)  # above the slip limit (25)
-SLIPPING = cython.declare(cython.int, 1)
-OPEN = cython.declare(cython.int, 2)  # below n0 = -b
 
 
 def arc(y: float) -> tuple[float, float, float]:
@@ -50,7 +42,7 @@ def angle_from(sin_0: float, cos_0: float, sin_1: float, cos_1: float) -> float:
 
 
 @cython.cclass
-class Cycle:
+class Cycle(SlipLimits):
     """Goes through the cycle of a contact, span by span; what is made of the spans is for subclasses to say.
 
     Of the cycle: ``theta_1`` is half the contact duration [rad], pi where the contact never opens, and
@@ -73,52 +65,6 @@ class Cycle:
         if behaviour == SLIPPING:
             self._pass()
         return behaviour
-
-    def place(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
-        """What a contact does. An infinite n0_bar is as any very large one."""
-        if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
-            return UNKNOWN
-        # above LARGEST only the ratio matters: the spacing of float64 is far more than 1 there
-        shrink: float = SHRINK if b_bar > LARGEST else 1.0
-        self.n0 = min(max(n0_bar * shrink, -FARTHEST), FARTHEST)
-        self.b = b_bar * shrink
-        self._limits(phi)
-        if self.n0 <= -self.b or (self.b == 0.0 and self.n0 <= 0.0):
-            return OPEN
-        if self.n0 >= self.b and self.lower_P <= self.upper_N:
-            return STUCK
-        return SLIPPING
-
-    def stuck_force(self) -> cython.double:
-        """Mean force of a contact that never slips: the admissible one nearest to zero."""
-        return min(max(0.0, -self.upper_N), max(-self.lower_P, -self.upper_N))
-
-    def _limits(self, phi: float) -> None:
-        """Amplitudes ell_1, ell_2 of (A9) and the directions of theta_P, theta_N, for every phi.
-
-        theta_P = atan2(1 - b cos phi, -b sin phi) and theta_N = atan2(-(1 + b cos phi), -b sin phi) are the
-        branch-free forms of (A4), (A5). Only their sines and cosines are needed. Where an amplitude vanishes
-        (b = 1 at phi = 0 or pi) the limit is constant, and any angle serves.
-        """
-        b: float = self.b
-        sin_half: float = sin(0.5 * phi)
-        cos_half: float = cos(0.5 * phi)
-        self.sin_phi = 2.0 * sin_half * cos_half
-        self.cos_phi = (cos_half - sin_half) * (cos_half + sin_half)
-        # 1 -+ b cos(phi), written so that nothing cancels near b = 1 with phi near 0 or pi
-        minus: float = (1.0 - b) + 2.0 * b * sin_half * sin_half
-        plus: float = (1.0 - b) + 2.0 * b * cos_half * cos_half
-        side: float = b * self.sin_phi
-        self.ell_1, self.ell_2 = hypot(minus, side), hypot(plus, side)
-        self.sin_P, self.cos_P, self.sin_N, self.cos_N = 1.0, 0.0, -1.0, 0.0
-        if self.ell_1 > 0.0:
-            self.sin_P, self.cos_P = minus / self.ell_1, -side / self.ell_1
-        if self.ell_2 > 0.0:
-            self.sin_N, self.cos_N = -plus / self.ell_2, -side / self.ell_2
-        # the extremes of the limits, by ell - b without the cancellation at large b
-        twice: float = 2.0 * b * self.cos_phi
-        self.lower_P = (1.0 - twice) / (self.ell_1 + b) - (self.n0 - b)
-        self.upper_N = (self.n0 - b) - (1.0 + twice) / (self.ell_2 + b)
 
     def _pass(self) -> None:
         """Through the spans, in the order in which theta_P and theta_N come while the contact is closed."""

@@ -5,9 +5,11 @@ import numpy as np
 from cython.cimports.libc.math import atan2, fabs
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.cycle import OPEN, PI, SLIPPING, STUCK, Cycle
+    from cython.cimports.fcm.contact.cycle import PI, Cycle
+    from cython.cimports.fcm.contact.slip_limits import OPEN, SLIPPING, STUCK
 else:
-    from fcm.contact.cycle import OPEN, PI, SLIPPING, STUCK, Cycle
+    from fcm.contact.cycle import PI, Cycle
+    from fcm.contact.slip_limits import OPEN, SLIPPING, STUCK
 
 NAN = cython.declare(cython.double, float("nan"))
 # A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.

@@ -1,4 +1,3 @@
-# cython: wraparound=True
 """What happens within a step: roots of functions along it, each found on the curve itself."""
 
 from __future__ import annotations
@@ -7,40 +6,24 @@ from typing import NamedTuple
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.libc.math import sqrt
 
 from fcm.continuation.front import Front
 from fcm.continuation.looks import Look, Looks
 from fcm.continuation.path import FloatArray, Mark
 from fcm.continuation.place import Place
+from fcm.continuation.roots import Sought
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.margins import NEARLY_GREATEST, RISE
     from cython.cimports.fcm.continuation.prediction import along
+    from cython.cimports.fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
 else:
     from fcm.continuation.margins import NEARLY_GREATEST, RISE
     from fcm.continuation.prediction import along
+    from fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
 
-LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
-FINE = cython.declare(cython.double, 1e-11)  # of a step: a root is known to this
 SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
-LOST = cython.declare(cython.double, -1.0)  # a root that is none
-MARGIN = cython.declare(cython.int, 0)  # the functions along a step
-FOLD = cython.declare(cython.int, 1)
-PEAK = cython.declare(cython.int, 2)
-PASSING = cython.declare(cython.int, 3)
-
-
-@cython.cclass
-class Sought:
-    """A function along a step: of margin k, of output k, of the parameter, less a level."""
-
-    kind: cython.int
-    k: cython.Py_ssize_t
-    level: cython.double
-
-    def __init__(self, kind: int, k: int = 0, level: float = 0.0) -> None:
-        self.kind, self.k, self.level = kind, k, level
 
 
 class Found(NamedTuple):
@@ -196,76 +179,3 @@ def passing(front: Front, value: float, low: float, high: float, before: float, 
         return []
     front.between.z[front.problem.unknowns] = value
     return [found(front, at, Mark.STATION, front.between)]
-
-
-@cython.cfunc
-def value(front: Front, place: Place, sought: Sought) -> cython.double:
-    """A function along the step; a margin that there is not has not changed its sign."""
-    k: cython.Py_ssize_t = sought.k
-    if sought.kind == MARGIN:
-        margin: cython.double = (
-            front.here.margin[k] if place is front.here else front.here.margin_at(k, place)
-        )
-        return margin if margin != 0.0 else front.here.margin[k]
-    if sought.kind == PASSING:
-        return place.z[place.z.shape[0] - 1] - sought.level
-    return place.tangent[place.tangent.shape[0] - 1] if sought.kind == FOLD else place.growth[k]
-
-
-@cython.cfunc
-def root_within(front: Front, sought: Sought) -> cython.double:
-    """Length at which a function changes sign between here and there."""
-    before: cython.double = value(front, front.here, sought)
-    return root(front, sought, 0.0, front.step, before, value(front, front.there, sought))
-
-
-@cython.cfunc
-def root(
-    front: Front,
-    sought: Sought,
-    low: cython.double,
-    high: cython.double,
-    before: cython.double,
-    after: cython.double,
-) -> cython.double:
-    """Length at which a function changes sign between two lengths, before and after which it is known.
-
-    By the secant through the last two places; or halfway between those that enclose the root, where that
-    leads out of them, or three looks have not halved their distance. Where the curve cannot be found, that
-    length is the root; but of a margin LOST: what is there may be another part of a curve that goes back in
-    the corner.
-    """
-    at: cython.double
-    now: cython.double
-    rise: cython.double
-    count: cython.int
-    width: cython.double = high - low
-    last: cython.double = low
-    value_last: cython.double = before
-    here: cython.double = high
-    value_here: cython.double = after
-    fine: cython.double = FINE * front.step
-    turning: cython.bint = sought.kind == FOLD or sought.kind == PEAK
-    for count in range(LOOKS):
-        rise = value_here - value_last
-        at = here - value_here * (here - last) / rise if rise != 0.0 else low
-        if fabs(at - here) <= fine or high - low <= fine:
-            return min(max(at, low), high)
-        if count % 3 == 2:
-            at = at if high - low <= 0.5 * width else low
-            width = high - low
-        if not low < at < high:
-            at = 0.5 * (low + high)
-        if not front.put(at, sought.kind == MARGIN, False):
-            return high if turning else LOST
-        if turning and not front.sharpen(False, sought.kind == PEAK):
-            return high
-        now = value(front, front.between, sought)
-        if now == 0.0:
-            return at
-        last, value_last, here, value_here = here, value_here, at, now
-        if now * before > 0.0:
-            low = at
-        else:
-            high = at
-    return high

@@ -27,6 +27,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Problem
 from fcm.harmonic.law import kind_of
+from fcm.harmonic.scaled_contacts import ScaledContacts
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -64,24 +65,16 @@ class Autonomous(Problem):
     """The unknowns: those of the contacts as in `law`, over a; Re and Im of the kept Q; omega; D."""
 
     def __init__(self, system: System, guess: Guess) -> None:
-        self.laws = system.laws()
-        self.contacts, self.linear, self.guess = system.scene.contacts, system.linear, guess
+        self.contacts, self.linear, self.guess = ScaledContacts(system), system.linear, guess
         self.h = np.array(system.harmonics, dtype=np.float64)
         self.driven = system.harmonics.index(1)
-        self.width, self.ports = 2 + 4 * self.h.size, 2 * len(self.laws)
-        self.contact_unknowns, self.kept = self.width * len(self.laws), guess.kept.size
+        self.mean_rows, self.rows = self.contacts.mean_rows, self.contacts.rows
+        self.ports = self.mean_rows.size
+        self.contact_unknowns, self.kept = self.contacts.unknowns, guess.kept.size
         count = self.contact_unknowns + 2 * self.kept + 2
-        super().__init__(count, sum(law.margins for law in self.laws), 2)
+        super().__init__(count, sum(law.margins for law in self.contacts.laws), 2)
         self.n = count
-        p = np.arange(self.ports)
-        self.mean_rows = (p // 2) * self.width + p % 2
-        self.rows = (p // 2) * self.width + 2 + 4 * np.arange(self.h.size)[:, None] + 2 * (p % 2)
         self.static = self.linear.ports.T @ self.linear.flexibility @ self.linear.ports
-        self.springs = np.zeros(self.contact_unknowns)  # of each unknown's displacement, where all stick
-        self.springs[self.mean_rows] = system.springs(stuck=True)
-        self.springs[self.rows] = self.springs[self.rows + 1] = system.springs(stuck=True)
-        self.force = np.zeros(self.contact_unknowns)
-        self.tangent = np.zeros((self.contact_unknowns, self.contact_unknowns))
         self.largest = np.zeros(self.ports)
         self.views = {name: np.asarray(getattr(self, name)) for name in ("residual", "jacobian", "scale")}
 
@@ -112,40 +105,17 @@ class Autonomous(Problem):
         m, n = self.contact_unknowns, self.n
         J, residual = self.views["jacobian"], self.views["residual"]
         J[:], residual[:] = 0.0, 0.0
-        self.contact_forces(z)
-        grows = self.tangent @ z[:m] - self.force  # by ln a
-        J[self.mean_rows, :m] = self.static @ self.tangent[self.mean_rows]
+        self.contacts.evaluate(z[:m], self.modal_amplitude(z))
+        force, tangent = self.contacts.force, self.contacts.tangent
+        grows = tangent @ z[:m] - force  # by ln a
+        J[self.mean_rows, :m] = self.static @ tangent[self.mean_rows]
         J[self.mean_rows, n] = self.static @ grows[self.mean_rows]
-        residual[self.mean_rows] = self.static @ self.force[self.mean_rows]
+        residual[self.mean_rows] = self.static @ force[self.mean_rows]
         for j, h in enumerate(self.h):
             self.harmonic(j, h, z, grows)
         residual[:m] += z[:m]
         J[range(m), range(m)] += 1.0
         return 0
-
-    def contact_forces(self, z: FloatArray) -> None:
-        """Forces over a, and tangents of the contacts, without those counted to the structure."""
-        a, w = self.modal_amplitude(z), self.width
-        x = a * z[: self.contact_unknowns]
-        for c, law in enumerate(self.laws):
-            here = slice(c * w, (c + 1) * w)
-            if self.held(c, x[here]):
-                self.force[here] = self.springs[here] * z[here]
-                self.tangent[here, here] = np.diag(self.springs[here])
-            else:
-                law.evaluate(x, c * w)
-                self.force[here] = np.asarray(law.force) / a
-                self.tangent[here, here] = law.tangent
-            self.force[c * w + 1] -= self.linear.counted[c] * z[c * w + 1]
-            self.tangent[c * w + 1, c * w + 1] -= self.linear.counted[c]
-
-    def held(self, c: int, x: FloatArray) -> bool:
-        """Whether a contact surely neither slips nor opens: then two springs, without rounding by n_0."""
-        contact = self.contacts[c]
-        size = np.hypot(x[2::2], x[3::2])
-        u, v = abs(x[0]) + size[::2].sum(), abs(x[1]) + size[1::2].sum()
-        least = contact.n_0 - contact.k_v * v
-        return bool(least > 0.0 and (contact.mu == 0.0 or contact.k_u * u < contact.mu * least))
 
     def denominators(self, h: float, z: FloatArray) -> tuple[ComplexArray, ComplexArray, complex]:
         """e (mode,), and its derivatives by omega (mode,) and D."""
@@ -159,7 +129,7 @@ class Autonomous(Problem):
         """Rows of one harmonic: X + G F, without the modes kept, which have rows of their own."""
         m, n, P, rows = self.contact_unknowns, self.n, self.linear.ports, self.rows[j]
         e, by_omega, by_damping = self.denominators(h, z)
-        push, d_push = P @ _complex(self.force, rows), P @ _complex(self.tangent, rows)
+        push, d_push = P @ _complex(self.contacts.force, rows), P @ _complex(self.contacts.tangent, rows)
         derivative = np.zeros((e.size, n + 1), dtype=np.complex128)
         kept = self.guess.kept if j == self.driven else self.guess.kept[:0]
         c = 1.0 / np.where(np.isin(np.arange(e.size), kept), 1.0, e)
@@ -219,8 +189,8 @@ class Autonomous(Problem):
         """The margins of the contacts, one after the other."""
         z = np.asarray(z)
         x, at = self.modal_amplitude(z) * z[: self.contact_unknowns], 0
-        for c, law in enumerate(self.laws):
-            law.bound(x, c * self.width)
+        for c, law in enumerate(self.contacts.laws):
+            law.bound(x, c * self.contacts.width)
             for i in range(law.margins):
                 self.margin[at], self.angle[at] = law.margin[i], law.angle[i]
                 self.kind[at] = kind_of(law, i, c)
@@ -236,16 +206,16 @@ class Autonomous(Problem):
 
     def motion(self, z: FloatArray) -> Motion:
         """The modes' motion at a point."""
-        self.contact_forces(z)
-        P = self.linear.ports
-        Q = np.array([-(P @ _complex(self.force, rows)) for rows in self.rows])
+        self.contacts.evaluate(z[: self.contact_unknowns], self.modal_amplitude(z))
+        P, force = self.linear.ports, self.contacts.force
+        Q = np.array([-(P @ _complex(force, rows)) for rows in self.rows])
         for j, h in enumerate(self.h):
             e = self.denominators(h, z)[0]
             e[self.guess.kept] = 1.0 if j == self.driven else e[self.guess.kept]
             Q[j] /= e
         own = z[self.contact_unknowns : self.n - 2].reshape(-1, 2)
         Q[self.driven, self.guess.kept] = own[:, 0] + 1j * own[:, 1]
-        mean = -self.linear.flexibility @ (P @ self.force[self.mean_rows])
+        mean = -self.linear.flexibility @ (P @ force[self.mean_rows])
         return Motion(self.modal_amplitude(z), float(z[self.n - 2]), float(z[self.n - 1]), mean, Q)
 
 

@@ -1,0 +1,23 @@
+from fcm.continuation.dense cimport Solver
+from fcm.continuation.problem cimport Problem
+
+cdef double FAR, ROUNDINGS
+
+cdef class Bordered:
+    cdef public Problem problem
+    cdef public Solver solver
+    cdef public double[::1] z
+    cdef public double[::1] scale
+    cdef public double[::1] row
+    cdef public double[::1] tangent
+    cdef public double orientation
+    cdef public double moved
+    cdef public int evaluations
+    cdef double[::1] guess
+    cdef double[::1] delta
+    cdef double[::1] closing
+    cdef bint factor(self) except -1
+    cdef int solve(self) except -1
+    cdef double step(self) except -1
+    cdef bint direct(self) except -1
+    cdef double rounding(self) except -1
