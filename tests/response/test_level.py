@@ -12,7 +12,8 @@ from fcm.harmonic.start import highest, least, level_curve, resonances, solution
 from fcm.harmonic.system import System
 from fcm.response import trace
 from fcm.response.level import trace_levels
-from fcm.results.output import to_dataset, write_csv
+from fcm.results.csv_file import write_csv
+from fcm.results.output import to_dataset
 from fcm.scene import load_scene
 
 from ..harmonic.scenes import isola, isola_stuck, up_to, yang

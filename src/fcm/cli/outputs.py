@@ -67,10 +67,11 @@ class Outputs:
 
     def _files(self, response: Response) -> list[tuple[Path, Callable[[Response, Path], None]]]:
         from fcm.results import output
+        from fcm.results.csv_file import write_csv, write_tracked_csv
 
-        table = output.write_csv if response.curves else schedule.write_csv
+        table = write_csv if response.curves else schedule.write_csv
         if response.tracking is not None and not response.curves:
-            table = output.write_tracked_csv
+            table = write_tracked_csv
         files = (
             (self.output, output.write_netcdf),
             (self.csv, table),

@@ -6,4 +6,5 @@ cdef class Newton(Bordered):
     cdef bint chords(self, double before) except -1
     cpdef bint look(self) except -1
     cdef bint settled(self, double step, double ratio, int count) except -1
+    cdef bint too_far(self, double step, double before, double most, int count) except -1
     cdef bint noise(self, double step, int count) except -1

@@ -52,7 +52,6 @@ class Newton(Bordered):
         count: cython.int
         step: cython.double
         ratio: cython.double
-        limit: cython.double
         before: cython.double = reach
         self.guess[:] = self.z
         self.unsure = 0.0
@@ -60,16 +59,8 @@ class Newton(Bordered):
             if not self.factor():
                 return False
             step = self.step()
-            if most < FAR:
-                if count == 0:
-                    self.moved = step
-                    limit = most
-                elif count == 1:  # of short steps the first may be rounding, in a stiff direction
-                    limit = max(0.5 * before, SLIGHT * most)
-                else:
-                    limit = FAR
-                if not step < limit:
-                    return False
+            if most < FAR and self.too_far(step, before, most, count):
+                return False
             if self.problem.soft and step < before and self.settled(step, step / before, count):
                 return self.direct()
             noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
@@ -92,6 +83,19 @@ class Newton(Bordered):
                 return self.direct()
             before = step
         return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def too_far(
+        self, step: cython.double, before: cython.double, most: cython.double, count: cython.int
+    ) -> cython.bint:
+        """Whether the first step is longer than the most, or the second neither slight nor half as long."""
+        if count == 0:
+            self.moved = step
+            return not step < most
+        if count == 1:  # of short steps the first may be rounding, in a stiff direction
+            return not step < max(0.5 * before, SLIGHT * most)
+        return not step < FAR
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

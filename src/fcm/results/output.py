@@ -1,8 +1,7 @@
-"""A response as netCDF, CSV, JSON summary and xarray dataset, all from one description."""
+"""A response as netCDF, JSON summary and xarray dataset, all from one description; see `csv_file`."""
 
 from __future__ import annotations
 
-import csv
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -15,19 +14,13 @@ import fcm
 from fcm.files import replacing
 from fcm.results.field import Field
 from fcm.results.fields import fields_of
-from fcm.results.meanings import ORBIT_KINDS
-from fcm.results.orbits import Orbits
 from fcm.results.padded import CHUNK, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
-from fcm.rotation import unit_of
-from fcm.units import in_unit
 
 if TYPE_CHECKING:
     import xarray
 
-LAST_COLUMNS = ("stable", "table_error", "truncation_error")
-ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
 SMALL = 1 << 16  # bytes of a variable up to which to compress it takes longer than to write it
 LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 
@@ -171,79 +164,3 @@ def _variable(file: Any, name: str, dims: tuple[str, ...], kind: np.dtype[Any], 
 
 def _storable(values: Any) -> Any:
     return values.astype(object) if values.dtype.kind == "U" else values
-
-
-def write_csv(response: Response, path: str | Path) -> None:
-    """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
-    keys = list(response.parameters[0]) if response.parameters else []
-    exact = response.method == "exact"
-    levels = any(curve.level is not None for curve in response.curves)
-    modes = ("modal_amplitude", "damping_ratio") if any(c.mode is not None for c in response.curves) else ()
-    kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
-    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
-    columns = [
-        f"{kind} {dof} [{units[dof]}]" if units[dof] and kind not in ("phase", "error") else f"{kind} {dof}"
-        for dof in response.dofs
-        for kind in kinds
-    ]
-    regimes = [f"regime {name}" for name in response.contacts]
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            [
-                "curve",
-                "branch",
-                *keys,
-                f"frequency [{response.frequency_unit}]",
-                *(["level"] if levels else []),
-                *modes,
-                *columns,
-                *regimes,
-                *LAST_COLUMNS,
-                *(ORBIT_COLUMNS if exact else ()),
-            ]
-        )
-        for number, c in enumerate(response.curves):
-            orbits = c.orbits
-            own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
-            parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
-            frequency = in_unit(c.frequency, response.frequency_unit)
-            values = np.stack(parts, axis=2).reshape(c.frequency.size, len(columns))
-            for k in np.flatnonzero(np.isfinite(c.frequency)):
-                writer.writerow(
-                    [number, c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
-                    + ([] if c.level is None else [repr(float(c.level[k]))])
-                    + (
-                        []
-                        if c.mode is None
-                        else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
-                    )
-                    + [repr(float(value)) for value in values[k]]
-                    + [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
-                    + [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
-                    + ([] if orbits is None else _of_orbit(orbits, int(k)))
-                )
-
-
-def write_tracked_csv(response: Response, path: str | Path) -> None:
-    """Write tracked curves as CSV, a row for each point; frequencies in the scene's unit."""
-    tracking = response.tracking
-    assert tracking is not None
-    keys = list(tracking.curves[0].parameters) if tracking.curves else []
-    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
-    amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
-    header = ["track", "what", *keys, tracking.key, f"frequency [{response.frequency_unit}]", *amplitudes]
-    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow([*header, "corner", "turn", "trough"])
-        for number, one in enumerate(tracking.curves):
-            frequency = in_unit(one.frequency, response.frequency_unit)
-            for k in range(one.number.size):
-                values = [repr(float(x)) for x in (one.number[k], frequency[k], *one.amplitude[k])]
-                marks = [str(one.corner[k]), int(one.turn[k]), int(one.trough[k])]
-                writer.writerow([number, one.what, *one.parameters.values(), *values, *marks])
-
-
-def _of_orbit(orbits: Orbits, point: int) -> list[Any]:
-    """The last columns of a row of CSV."""
-    return [repr(float(orbits.closure_error[point])), orbits.sweep[point], int(orbits.repeats[point])]

@@ -12,6 +12,16 @@ from fcm.results.result import Response
 from fcm.results.tracked import Tracking
 from fcm.units import in_unit
 
+WHAT = "what of the response is tracked"
+MEANINGS = {  # of what is known of each point of a tracked curve
+    "number": "tracked value of {key}",
+    "frequency": "excitation frequency of the tracked point",
+    "amplitude": "half the peak-to-peak displacement at the tracked point",
+    "turn": "1 where the number turns back: a window of several solutions opens or closes",
+    "trough": "1 where a tracked peak is a least amplitude, between two peaks",
+    "corner": "onset at which the response has a corner there, if it has",
+}
+
 Parts = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]
 
 
@@ -27,46 +37,28 @@ def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Parts]:
 
 def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
     unit, curves, dims = response.frequency_unit, tracking.curves, ("track", "tracked")
-    cf_unit = {"rad/s": "rad s-1", "Hz": "Hz"}[unit]
-    ended = np.array([int(curve.complete) for curve in curves], dtype=np.int8)
+    values = {name: _padded([getattr(curve, name) for curve in curves]) for name in MEANINGS}
+    values["frequency"] = in_unit(values["frequency"], unit)
+    more = {
+        "number": {"key": tracking.key},
+        "frequency": {"units": {"rad/s": "rad s-1", "Hz": "Hz"}[unit]},
+    }
     out: dict[str, Parts] = {
         "track_what": (
             ("track",),
             np.array([curve.what for curve in curves], dtype=str),
-            {"long_name": "what of the response is tracked"},
+            {"long_name": WHAT},
         ),
-        "track_complete": (("track",), ended, {"long_name": "1 where the curve is whole", "units": "1"}),
-        "tracked_number": (
-            dims,
-            _padded([curve.number for curve in curves]),
-            {"long_name": f"tracked value of {tracking.key}", "key": tracking.key},
-        ),
-        "tracked_frequency": (
-            dims,
-            in_unit(_padded([curve.frequency for curve in curves]), unit),
-            {"long_name": "excitation frequency of the tracked point", "units": cf_unit},
-        ),
-        "tracked_amplitude": (
-            (*dims, "dof"),
-            _padded([curve.amplitude for curve in curves]),
-            {"long_name": "half the peak-to-peak displacement at the tracked point"},
-        ),
-        "tracked_turn": (
-            dims,
-            _padded([curve.turn.astype(float) for curve in curves]),
-            {"long_name": "1 where the number turns back: a window of several solutions opens or closes"},
-        ),
-        "tracked_trough": (
-            dims,
-            _padded([curve.trough.astype(float) for curve in curves]),
-            {"long_name": "1 where a tracked peak is a least amplitude, between two peaks"},
-        ),
-        "tracked_corner": (
-            dims,
-            _padded([curve.corner for curve in curves]),
-            {"long_name": "onset at which the response has a corner there, if it has"},
+        "track_complete": (
+            ("track",),
+            np.array([int(curve.complete) for curve in curves], dtype=np.int8),
+            {"long_name": "1 where the curve is whole", "units": "1"},
         ),
     }
+    for name, meaning in MEANINGS.items():
+        of = (*dims, "dof") if name == "amplitude" else dims
+        meaning = meaning.format(key=tracking.key)
+        out[f"tracked_{name}"] = of, values[name], {"long_name": meaning, **more.get(name, {})}
     if tracking.what != "optimum":
         out |= _errors(tracking)
     for key in curves[0].parameters:

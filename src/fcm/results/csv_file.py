@@ -1,0 +1,90 @@
+"""Responses and tracked curves as CSV, a row for each point."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fcm.files import replacing
+from fcm.results.meanings import ORBIT_KINDS
+from fcm.results.orbits import Orbits
+from fcm.results.result import Curve, Response
+from fcm.rotation import unit_of
+from fcm.units import in_unit
+
+LAST_COLUMNS = ("stable", "table_error", "truncation_error")
+ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
+
+
+def write_csv(response: Response, path: str | Path) -> None:
+    """Write the response as CSV, a row for each point; frequencies in the scene's unit."""
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(_columns(response))
+        for number, curve in enumerate(response.curves):
+            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit))
+
+
+def _columns(response: Response) -> list[str]:
+    """Names of what `_rows` gives of each point."""
+    exact, unit = response.method == "exact", response.frequency_unit
+    kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
+    columns = [
+        "curve",
+        "branch",
+        *(response.parameters[0] if response.parameters else ()),
+        f"frequency [{unit}]",
+    ]
+    columns += ["level"] if any(curve.level is not None for curve in response.curves) else []
+    if any(curve.mode is not None for curve in response.curves):
+        columns += ["modal_amplitude", "damping_ratio"]
+    for dof in response.dofs:
+        own = unit_of(dof, response.units[0])
+        units = {kind: f" [{own}]" if own and kind not in ("phase", "error") else "" for kind in kinds}
+        columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
+    columns += [f"regime {name}" for name in response.contacts]
+    return [*columns, *LAST_COLUMNS, *(ORBIT_COLUMNS if exact else ())]
+
+
+def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
+    """The points of a curve, without its number."""
+    orbits, frequency = c.orbits, in_unit(c.frequency, unit)
+    own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
+    parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
+    values = np.stack(parts, axis=2).reshape(c.frequency.size, -1)
+    for k in np.flatnonzero(np.isfinite(c.frequency)):
+        row = [c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
+        row += [] if c.level is None else [repr(float(c.level[k]))]
+        row += [] if c.mode is None else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
+        row += [repr(float(value)) for value in values[k]]
+        row += [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
+        row += [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
+        yield row + ([] if orbits is None else _of_orbit(orbits, int(k)))
+
+
+def write_tracked_csv(response: Response, path: str | Path) -> None:
+    """Write tracked curves as CSV, a row for each point; frequencies in the scene's unit."""
+    tracking = response.tracking
+    assert tracking is not None
+    keys = list(tracking.curves[0].parameters) if tracking.curves else []
+    units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
+    amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
+    header = ["track", "what", *keys, tracking.key, f"frequency [{response.frequency_unit}]", *amplitudes]
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([*header, "corner", "turn", "trough"])
+        for number, one in enumerate(tracking.curves):
+            frequency = in_unit(one.frequency, response.frequency_unit)
+            for k in range(one.number.size):
+                values = [repr(float(x)) for x in (one.number[k], frequency[k], *one.amplitude[k])]
+                marks = [str(one.corner[k]), int(one.turn[k]), int(one.trough[k])]
+                writer.writerow([number, one.what, *one.parameters.values(), *values, *marks])
+
+
+def _of_orbit(orbits: Orbits, point: int) -> list[Any]:
+    """The last columns of a row of CSV."""
+    return [repr(float(orbits.closure_error[point])), orbits.sweep[point], int(orbits.repeats[point])]
