@@ -1,9 +1,10 @@
-"""The program as the tests start it, by no other way: here, in a process of its own, or left to run."""
+"""The program as the tests start it, by no other way: called here, as a process or by a shell."""
 
 import os
 import signal
 import subprocess
 import sys
+import sysconfig
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,14 +32,22 @@ def called(*args):
     return Run(done.exit_code, done.stdout, done.stderr)
 
 
-def python(*args, **options):
-    """A Python of its own, run to its end: ``python("-c", CODE)``, ``python(*AS_A_MODULE, "respond", ...)``.
-
-    options: of subprocess.run.
-    """
-    options = {"capture_output": True, "text": True, "timeout": 300} | options
-    done = subprocess.run([sys.executable, *map(str, args)], **options)
+def ended(*command, **options):
+    """Any command, run to its end; options are those of subprocess.run."""
+    options = {"capture_output": True, "text": True, "timeout": 300, "stdin": subprocess.DEVNULL} | options
+    done = subprocess.run([str(word) for word in command], **options)
     return Run(done.returncode, done.stdout, done.stderr)
+
+
+def python(*args, **options):
+    """A Python of its own: ``python("-c", CODE)``, ``python(*AS_A_MODULE, "respond", ...)``."""
+    return ended(sys.executable, *args, **options)
+
+
+def shell(line, folder=None, **options):
+    """A line as a user types it, with fcm on the path."""
+    path = os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]])
+    return ended("bash", "-euc", line, cwd=folder, env={**os.environ, "PATH": path}, **options)
 
 
 @contextmanager

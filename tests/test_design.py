@@ -1,8 +1,6 @@
 """The design of README.md: its six commands are those of `make design`, run on less; its numbers are true."""
 
 import re
-import subprocess
-import sysconfig
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +12,8 @@ from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
+
+from .program import shell
 
 ROOT = Path(__file__).parents[1]
 SCENES = ROOT / "src/fcm/scenes"
@@ -29,8 +29,8 @@ LESS = {  # of what takes minutes
 
 
 def test_make_runs_the_commands_that_are_shown():
-    done = subprocess.run(["make", "-n", "design"], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert re.findall(r"^cd build/design && \S*/(fcm .*)$", done.stdout, re.M) == COMMANDS
+    done = shell("make -n design", ROOT)
+    assert re.findall(r"^cd build/design && \S*/(fcm .*)$", done.out, re.M) == COMMANDS
     assert len(COMMANDS) == 6
 
 
@@ -42,13 +42,10 @@ def test_the_commands_run(tmp_path):
         (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
     for matrix in SCENES.glob("blade-*.mtx"):
         (tmp_path / matrix.name).write_bytes(matrix.read_bytes())
-    scripts = Path(sysconfig.get_path("scripts"))
     for command in COMMANDS:
         words = [f"{word}.toml" if word in ("blade", "blade-scatter") else word for word in command.split()]
-        done = subprocess.run(
-            [scripts / words[0], *words[1:]], cwd=tmp_path, capture_output=True, text=True, timeout=300
-        )
-        assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+        done = shell(" ".join(words), tmp_path)
+        assert done.code == 0, f"{command}\n{done.out}{done.err}"
     pictures = {path.name for path in tmp_path.glob("*.png")}
     assert len(pictures) == 4 and pictures == set(re.findall(r"-o (\S+\.png)", SECTION))
 

@@ -2,12 +2,12 @@
 
 import os
 import shutil
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
 import pytest
+
+from .program import python
 
 ROOT = Path(__file__).parents[1]
 
@@ -21,15 +21,10 @@ def wheel(tmp_path_factory):
         shutil.copytree(ROOT / name, folder / name, symlinks=True, ignore=unwanted)
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, folder)
-    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
-    done = subprocess.run(
-        [*pip, "--no-build-isolation", "--wheel-dir", "made", "."],
-        cwd=folder,
-        env={**os.environ, "PIP_ROOT_USER_ACTION": "ignore", "CC": "false"},
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    pip = ["-m", "pip", "--disable-pip-version-check", "wheel", "--quiet", "--no-deps"]
+    env = {**os.environ, "PIP_ROOT_USER_ACTION": "ignore", "CC": "false"}
+    done = python(*pip, "--no-build-isolation", "--wheel-dir", "made", ".", cwd=folder, env=env)
+    assert done.code == 0, done.out + done.err
     (made,) = (folder / "made").iterdir()
     with zipfile.ZipFile(made) as archive:
         return {info.filename: info.file_size for info in archive.infolist()}

@@ -2,8 +2,6 @@
 
 import re
 import shlex
-import shutil
-import subprocess
 from dataclasses import replace
 from html import escape
 from pathlib import Path
@@ -19,7 +17,7 @@ from fcm.report.page import Page, Section, Table, render
 from fcm.report.paper import FIGURES, commands, paper
 from fcm.report.rows import near
 
-from .program import AS_A_MODULE, called, python
+from .program import AS_A_MODULE, called, ended, python
 
 ROOT = Path(__file__).parents[1]
 # what every run of the program imports, or has no part in a result
@@ -30,8 +28,9 @@ SLOW = "figure10.png", "figure11.png", "figure13.png"  # pictures drawn by other
 
 def planned(*args):
     """The lines that make would run, all of them."""
-    make = [shutil.which("make"), "--no-print-directory", "-nB", "VENV=none", *args]
-    return subprocess.run(make, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+    done = ended("make", "--no-print-directory", "-nB", "VENV=none", *args, cwd=ROOT)
+    assert done.code == 0, done.err
+    return done.out.splitlines()
 
 
 def arguments(line):
@@ -155,8 +154,7 @@ def test_names_are_not_read_as_html():
 )
 def test_a_figure_is_made_again_when_what_it_uses_changes(folder, name):
     """What a command imports is among the prerequisites of its target, but for the frame of the program."""
-    make = [shutil.which("make"), "-npq", "VENV=none", "figures"]
-    database = subprocess.run(make, cwd=ROOT, capture_output=True, text=True, check=False).stdout
+    database = ended("make", "-npq", "VENV=none", "figures", cwd=ROOT).out
     (prerequisites,) = re.findall(rf"^build/paper/{name}: (.*)$", database, re.M)
     (line,) = (one for one in planned("figures") if re.match(rf"none/bin/fcm .*-o build/paper/{name}\b", one))
     done = python("-X", "importtime", *AS_A_MODULE, *arguments(line)[0], cwd=folder)

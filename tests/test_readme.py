@@ -2,9 +2,7 @@
 
 import doctest
 import json
-import os
 import re
-import subprocess
 import sys
 import sysconfig
 from pathlib import Path
@@ -15,6 +13,8 @@ import fcm
 from fcm.compare.exact import exact_lines
 from fcm.report.convergence import greatest_error
 from fcm.response import trace
+
+from .program import shell
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
@@ -43,17 +43,7 @@ def folder(tmp_path_factory):
 def run(command, folder):
     if command.startswith("make "):  # that the target exists; tests do not call what calls them
         command, folder = command.replace("make ", "make -n ", 1), ROOT
-    scripts = sysconfig.get_path("scripts")
-    path = os.pathsep.join([scripts, os.environ["PATH"]])
-    return subprocess.run(
-        ["bash", "-euc", command],
-        cwd=folder,
-        env={**os.environ, "PATH": path},
-        stdin=subprocess.DEVNULL,
-        capture_output=True,
-        text=True,
-        timeout=300,
-    )
+    return shell(command, folder)
 
 
 def commands():
@@ -65,7 +55,7 @@ def test_every_command_runs(folder):
     assert len(commands()) >= 20
     for command in commands():
         done = run(command, folder)
-        assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+        assert done.code == 0, f"{command}\n{done.out}{done.err}"
     written = {path.name for path in folder.iterdir()}
     named = {name for line in commands() for name in re.findall(r"(?:-o|--csv) (\S+)", line)}
     assert named and written == {SCENE, *named}
@@ -73,7 +63,7 @@ def test_every_command_runs(folder):
 
 def test_the_output_shown_is_what_the_command_prints(folder):
     (shown,) = blocks("text")
-    printed = run(next(line for line in commands() if line.startswith(f"fcm respond {SCENE}")), folder).stdout
+    printed = run(next(line for line in commands() if line.startswith(f"fcm respond {SCENE}")), folder).out
     for ours, theirs in zip(printed.split("\n\n"), shown.split("\n\n"), strict=True):
         header, *rows = theirs.splitlines()
         assert ours.splitlines()[0] == header
@@ -106,7 +96,7 @@ def test_the_python_prints_what_it_shows():
 
 def test_the_errors_are_as_claimed(folder):
     (claim,) = re.findall(r"moves no point by more than (\S+) of", text_of())
-    curves = json.loads(run("fcm respond yang1998 --json", folder).stdout)["curves"]
+    curves = json.loads(run("fcm respond yang1998 --json", folder).out)["curves"]
     table, harmonic = (max(curve[name] for curve in curves) for name in ("table_error", "truncation_error"))
     assert 0 < table < float(claim) and harmonic > 100 * table  # "by far the larger error"
 

@@ -2,8 +2,6 @@
 
 import json
 import os
-import subprocess
-import sys
 import time
 import warnings
 
@@ -14,7 +12,7 @@ from fcm.cli import COMMANDS
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 
-from ..program import AS_A_MODULE, python
+from ..program import AS_A_MODULE, python, shell
 
 HEAVY = {"numpy", "scipy", "xarray", "netCDF4", "matplotlib", "pandas"}
 
@@ -148,18 +146,12 @@ def test_names_that_the_terminal_cannot_show_are_escaped(scene):
 
 
 def test_a_reader_that_leaves_is_no_error():
-    done = subprocess.run(
-        ["bash", "-c", f"{sys.executable} -m fcm.cli respond yang1998-n5 | true; echo ${{PIPESTATUS[0]}}"],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout == "0\n"
-    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+    done = shell("fcm respond yang1998-n5 | true; echo ${PIPESTATUS[0]}")
+    assert done.out == "0\n"
+    assert "Traceback" not in done.err and "Exception" not in done.err
 
 
 def test_a_full_disk_under_standard_output_is_not_completed():
-    command = f"{sys.executable} -m fcm.cli respond yang1998-n5 > /dev/full; echo $?"
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
-    assert done.stdout == "3\n"
-    assert "Traceback" not in done.stderr and "Exception" not in done.stderr
+    done = shell("fcm respond yang1998-n5 > /dev/full || echo $?")
+    assert done.out == "3\n"
+    assert "Traceback" not in done.err and "Exception" not in done.err

@@ -6,7 +6,6 @@ import random
 import resource
 import shutil
 import signal
-import subprocess
 import sys
 import time
 
@@ -17,7 +16,7 @@ import pytest
 from fcm.cli.terminal import plain
 
 from ..oscillator import oscillator
-from ..program import python
+from ..program import ended, python
 from .conftest import ONE
 
 # 8
@@ -169,12 +168,8 @@ def test_a_file_without_degrees_of_freedom_is_refused(program):
 
 # 14
 
-SMALL = (
-    shutil.which("unshare")
-    and not subprocess.run(
-        ["unshare", "-rm", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False
-    ).returncode
-)
+UNSHARED = ("unshare", "-rm")
+SMALL = shutil.which("unshare") and ended(*UNSHARED, "mount", "-t", "tmpfs", "none", "/mnt").code == 0
 
 
 @pytest.mark.skipif(not SMALL, reason="no disk can be made here")
@@ -204,12 +199,10 @@ END
 {sys.executable} -m fcm.cli respond one.toml -o a.nc --resume >/dev/null; echo $?; ls -A
 """,
     )
-    done = subprocess.run(
-        ["unshare", "-rm", "bash", "full.sh"], cwd=program.folder, capture_output=True, text=True, check=True
-    )
+    done = ended(*UNSHARED, "bash", "full.sh", cwd=program.folder)
     disk = f"No space left on device (the disk of {program.folder / 'small'})"
-    assert done.stdout.split() == ["3", "3", "0", "a.nc", "fill.py", "one.toml", "sweep.toml"], done.stderr
-    errors = [line for line in done.stderr.splitlines() if line.startswith("fcm:")]
+    assert done.out.split() == ["3", "3", "0", "a.nc", "fill.py", "one.toml", "sweep.toml"], done.err
+    errors = [line for line in done.err.splitlines() if line.startswith("fcm:")]
     assert errors == [
         f"fcm: error: t.nc: {disk}",
         "fcm: warning: what is finished is kept in a.nc.unfinished: continue with --resume",

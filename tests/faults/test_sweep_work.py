@@ -21,6 +21,7 @@ from fcm.run.fingerprint import installed
 from fcm.run.fingerprint import program as of_program
 from fcm.run.records import Record, packed
 
+from ..interrupted import interrupted_beyond
 from .conftest import FEW, ONE, SWEEP, end, session, variables
 
 ALONE = FEW.replace("= 2", "= 1")
@@ -373,12 +374,8 @@ def test_of_120_curves_84_percent_are_kept(tmp_path):
     one = replace(fcm.load_scene("yang1998-n5"), max_step=0.5, frequency_range=(1.3, 1.5))
     scene = replace(one, curves=tuple(replace(one, parameters={"n": float(n)}) for n in range(120)))
 
-    def stop(share, _text):
-        if share > 0.84 * 0.9:
-            raise KeyboardInterrupt
-
     keep = tmp_path / "kept"
-    part = trace(scene, "closed-form", progress=stop, keep=keep)
+    part = trace(scene, "closed-form", progress=interrupted_beyond(0.84 * 0.9), keep=keep)
     assert sum(curve.complete for curve in part.curves) == 100 and part.interrupted
     assert all(curve.complete for curve in trace(scene, "closed-form", keep=keep, resume=True).curves)
 

@@ -17,6 +17,7 @@ from fcm.motion.system import LETTERS
 from fcm.orbit import periodic
 from fcm.scene import Phase, Start
 
+from ..interrupted import interrupted_after
 from .cases import one_mode, two_contacts, yang
 
 PHASES = (Phase(1.3, 4.0), Phase(1.1, 2.5), Phase(1.9, 3.0))
@@ -146,20 +147,9 @@ def test_what_does_not_decay_has_not_settled():
     assert np.isnan(unsettled(np.ones((20, 2))))
 
 
-def interrupt_after(cycles):
-    calls = []
-
-    def progress(_share, _text):
-        calls.append(0)
-        if len(calls) == cycles:
-            raise KeyboardInterrupt
-
-    return progress
-
-
 def test_an_interrupted_schedule_keeps_what_is_finished():
     scene = scheduled(yang())
-    whole, part = record(scene), record(scene, progress=interrupt_after(5))
+    whole, part = record(scene), record(scene, progress=interrupted_after(4))
     assert part.reason == INTERRUPTED and not part.complete and part.cycles == 5.0
     assert np.array_equal(part.amplitude[:5], whole.amplitude[:5]) and np.isnan(part.amplitude[5:]).all()
     reached = 5 * 64
@@ -172,7 +162,7 @@ def test_an_interrupted_schedule_keeps_what_is_finished():
 def test_an_interrupted_sweep_keeps_the_finished_curves():
     scene = scheduled(yang())
     curves = tuple(replace(scene, parameters={"k": float(i)}) for i in range(3))
-    found = histories(replace(scene, curves=curves), interrupt_after(15))
+    found = histories(replace(scene, curves=curves), interrupted_after(14))
     assert [one.reason for one in found.records] == ["", INTERRUPTED, NOT_BEGUN]
     assert [one.cycles for one in found.records] == [9.5, 5.0, 0.0] and not found.complete
 

@@ -18,6 +18,7 @@ from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
 from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
 
+from ..interrupted import interrupted_after
 from ..motion.cases import one_mode, two_contacts, yang
 from ..response.random_scenes import random_scene
 from .curves import between, curve_of
@@ -102,23 +103,11 @@ def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said()
     assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""
 
 
-class Interrupt:
-    """A progress that interrupts after some calls."""
-
-    def __init__(self, after):
-        self.left = after
-
-    def __call__(self, fraction, text):
-        self.left -= 1
-        if self.left < 0:
-            raise KeyboardInterrupt
-
-
 def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):
     scene, keep = between(yang(), 1.15, 1.27), tmp_path / "kept"
     whole = curve_of(scene)
-    first = curve_of(scene, keep=keep, progress=Interrupt(20))
-    again = curve_of(scene, keep=keep, progress=Interrupt(20), resume=True)
+    first = curve_of(scene, keep=keep, progress=interrupted_after(20))
+    again = curve_of(scene, keep=keep, progress=interrupted_after(20), resume=True)
     done = curve_of(scene, keep=keep, resume=True)
     assert 15 < first.points < again.points < whole.points
     assert again.reason.startswith("interrupted at ")

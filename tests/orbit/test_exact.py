@@ -14,6 +14,7 @@ from fcm.orbit import periodic, trace_orbits
 from fcm.response import ResponseError
 from fcm.response.exact import trace_exact
 
+from ..interrupted import interrupted_after
 from ..motion.cases import one_mode, two_contacts, yang
 from .curves import between, curve_of
 
@@ -166,20 +167,8 @@ def test_what_cannot_be_asked_for():
         fcm.respond(scene, "magic")
 
 
-class Interrupt:
-    """A progress that interrupts after some calls."""
-
-    def __init__(self, after):
-        self.left = after
-
-    def __call__(self, fraction, text):
-        self.left -= 1
-        if self.left < 0:
-            raise KeyboardInterrupt
-
-
 def test_an_interrupted_curve_keeps_its_points():
-    curve = curve_of(one_mode(), progress=Interrupt(7))
+    curve = curve_of(one_mode(), progress=interrupted_after(7))
     assert not curve.complete and curve.points == 8
     assert curve.reason.startswith("interrupted at ") and curve.reason.endswith(" rad/s")
 
@@ -188,10 +177,10 @@ def test_an_interrupted_sweep_goes_on(tmp_path):
     curves = tuple(replace(one_mode(n_0=n), parameters={"n_0": n}) for n in (0.5, 1.0, 2.0))
     scene = replace(curves[0], curves=curves)
     keep, at = tmp_path / "kept", [0.9, 1.1]
-    first = trace_exact(scene, at, Interrupt(6), keep=keep)
+    first = trace_exact(scene, at, interrupted_after(6), keep=keep)
     assert [curve.complete for curve in first.curves] == [True, False, False]
     assert keep.is_file()
-    done = trace_exact(scene, at, Interrupt(10), keep=keep, resume=True)
+    done = trace_exact(scene, at, interrupted_after(10), keep=keep, resume=True)
     assert all(curve.complete for curve in done.curves) and not keep.exists()
     whole = trace_exact(scene, at)
     for one, other in zip(done.curves, whole.curves, strict=True):

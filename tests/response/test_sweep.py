@@ -14,6 +14,7 @@ from fcm.response import groups, sweep
 from fcm.response.sweep import trace
 from fcm.results.result import NOT_BEGUN
 
+from ..interrupted import interrupted_beyond
 from ..oscillator import oscillator
 from ..program import called, python
 
@@ -206,12 +207,8 @@ def test_resume_needs_a_file():
 def test_an_interrupted_sweep_is_not_continued_with_other_harmonics(scene, small_groups, tmp_path):
     few = replace(scene, curves=tuple(replace(one, frequency_range=(1.3, 1.5)) for one in scene.curves))
 
-    def stop(share, _text):
-        if share > 0.4:
-            raise KeyboardInterrupt
-
     keep = tmp_path / "kept"
-    assert trace(few, "closed-form", progress=stop, keep=keep, harmonics=1).interrupted
+    assert trace(few, "closed-form", progress=interrupted_beyond(0.4), keep=keep, harmonics=1).interrupted
     with pytest.warns(UserWarning, match="other options"):
         done = trace(few, "closed-form", keep=keep, resume=True, harmonics=2)
     assert [curve.harmonics for curve in done.curves] == [(1, 2)] * len(few.curves)

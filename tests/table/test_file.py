@@ -1,6 +1,5 @@
 """The file: a CF grid that any program reads, written whole, refused when it is not sound."""
 
-import subprocess
 import sys
 from pathlib import Path
 
@@ -12,6 +11,9 @@ import xarray
 import fcm
 from fcm.table import TableError, build_table, open_table, seal, shipped, store
 from fcm.table.arrays import encode
+
+from ..interrupted import interrupted_beyond
+from ..program import ended
 
 
 def refused(path, match):
@@ -85,10 +87,8 @@ def test_xarray_opens_it_with_the_coefficients_at_every_node(tiny_file):
 def test_cf_checker_has_nothing_to_say(tiny_file):
     checker = Path(sys.executable).with_name("compliance-checker")
     assert checker.exists(), "compliance-checker is one of the development packages"
-    done = subprocess.run(
-        [checker, "--test=cf:1.8", tiny_file], capture_output=True, text=True, check=False, timeout=60
-    )
-    assert "All tests passed" in done.stdout, done.stdout + done.stderr
+    done = ended(checker, "--test=cf:1.8", tiny_file)
+    assert "All tests passed" in done.out, done.out + done.err
 
 
 def test_missing_file(tmp_path):
@@ -181,12 +181,8 @@ def test_failed_write_leaves_the_old_file_and_nothing_else(copy, monkeypatch):
 
 
 def test_interrupted_build_leaves_nothing(tmp_path):
-    def interrupt(share, what):
-        if share > 0.5:
-            raise KeyboardInterrupt
-
     with pytest.raises(KeyboardInterrupt):
-        build_table(tmp_path / "table.nc", (5, 5, 5, 5), points=10_000, progress=interrupt)
+        build_table(tmp_path / "table.nc", (5, 5, 5, 5), points=10_000, progress=interrupted_beyond(0.5))
     assert not list(tmp_path.iterdir())
 
 

@@ -27,6 +27,8 @@ from fcm.track.spot import Ending, Spot
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
+from ..interrupted import interrupted_beyond
+
 PRELOAD = "contact.shroud.n_0"
 
 
@@ -118,10 +120,7 @@ def test_at_a_cusp_no_branch_is_born(scene, folds):
 
 def test_interrupted_the_curves_that_are_finished_are_kept(scene, folds, tmp_path):
     def stop_at(limit):
-        def progress(share, _):
-            if share > limit:
-                raise KeyboardInterrupt
-
+        progress = interrupted_beyond(limit)
         return track(scene, "folds", PRELOAD, (-20.0, 10.0), harmonics=1, progress=progress)
 
     kept = stop_at(0.2)
