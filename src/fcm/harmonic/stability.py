@@ -17,10 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.continuation.secants import Secants
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
 from fcm.harmonic.looked import Looked
 from fcm.harmonic.multipliers import multipliers
-from fcm.harmonic.secants import Secants
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.windows import MANY, dip

@@ -7,30 +7,29 @@ from itertools import pairwise
 
 import numpy as np
 
+from fcm.continuation.secants import Secants
 from fcm.scene.model import FloatArray
 from fcm.track.place import FIRST, KINK, Place
 from fcm.track.spot import Ending
 
 FINE = 1e-11  # of a step: a turn is known to this
+LOOKS = 40  # at a turn
 
 
 class Passing(Place):
     """A place with the ways to find what lies between it and the next."""
 
     def _turn(self, step: float, after: FloatArray) -> None:
-        """Keep where s turns back within the step, by the secant kept between two signs (Illinois)."""
-        low, high, below, above, last = 0.0, step, self.t[-1], after[-1], 0
-        for _ in range(40):
-            at = (low * above - high * below) / (above - below)
-            if high - low <= FINE * step or not self._between(at):
+        """Keep where s turns back within the step."""
+        sides = Secants(0.0, step, float(self.t[-1]), float(after[-1]))
+        for _ in range(LOOKS):
+            at = sides.at
+            if sides.width <= FINE * step or not self._between(at):
                 break
             now = float(self.newton.tangent[-1])
-            if now * below > 0.0:
-                above, low, below, last = above * (0.5 if last == 1 else 1.0), at, now, 1
-            else:
-                below, high, above, last = below * (0.5 if last == -1 else 1.0), at, now, -1
             if now == 0.0:
                 break
+            sides.saw(at, now)
         self.spots.append(
             replace(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)), turn=True)
         )

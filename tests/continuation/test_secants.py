@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.optimize import brentq
 
-from fcm.harmonic.secants import Secants
+from fcm.continuation.secants import Secants
 
 
 def looked(f, low, high, within, zero=1e-10):
