@@ -10,6 +10,7 @@ x' = 0 at the one turn and x = -x_0, x' = 0 at the other give x_0 = sqrt(Q^2 - (
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +18,12 @@ import pytest
 from scipy.optimize import fsolve
 
 import fcm
+from fcm.harmonic.rigid import too_stiff
+from fcm.harmonic.system import System
 from fcm.orbit.start import solution_at
 from fcm.response import trace
 
+SAID = r"the k_u of contact (\w+) is .*: try (\S+), some 0.001 from a rigid contact"
 FRICTION = 0.5  # over the amplitude of the force
 
 
@@ -99,3 +103,27 @@ def test_the_bundled_curves_come_to_it():
     for r in (0.6, 0.7, 0.8):
         off = [1.0 - np.interp(r, c.frequency, c.amplitude[:, 0]) / without_stops(r) for c in curves]
         assert off[0] > off[1] > off[2] > 0.0 and off[2] < 0.03
+
+
+def test_what_is_said_of_a_contact_too_stiff_is_as_rigid_as_it_says():
+    assert not too_stiff(System(scene(1e4)))
+    said = re.search(SAID, too_stiff(System(scene(1e12))))
+    assert said and said[1] == "wall"
+    for r in (0.6, 0.7, 0.8):
+        assert exact(float(said[2]), r) == pytest.approx(without_stops(r), rel=1e-3)
+
+
+def test_where_rounding_leaves_no_solution_it_is_said_what_would_do():
+    """A force on what is held: all that moves is the contact's spring, by its compliance."""
+    bundled = fcm.load_scene("yang1998-n5")
+
+    def held(k_u):
+        contact = replace(bundled.contacts[0], k_u=k_u)
+        return trace(replace(bundled, contacts=(contact,), forces=bundled.forces[:1])).curves[0]
+
+    curve = held(1e15)
+    said = re.search(SAID, curve.reason)
+    assert not curve.complete and said and said[1] == "shroud"
+    softer = held(float(said[2]))
+    assert softer.complete
+    assert softer.amplitude[:, 0] * float(said[2]) == pytest.approx(1.0, rel=1e-5)

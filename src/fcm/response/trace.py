@@ -17,6 +17,7 @@ from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, astray, reported_at
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
+from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
@@ -99,7 +100,7 @@ def traced_curve(scene: Scene, wanted: Wanted = Wanted()) -> Curve:
     if not found.traced.branches.paths:
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
-        return lost_curve(scene, f"{why}{FLOATING if rigid else ''}")
+        return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
     curve = _curve(found)
     if wanted.harmonics is None and not found.reached and curve.complete:
         curve.short_of = _short_of(found)
@@ -225,8 +226,8 @@ def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bo
     if status is Status.COMPLETE:
         return "", nowhere
     broken = next((path for path in branches.paths if path.status is status), None)
-    rigid = bool((system.linear.natural == 0.0).any()) and status is Status.STALLED
-    why = FLOATING if rigid else ""
+    rigid = bool((system.linear.natural == 0.0).any())
+    why = "" if status is not Status.STALLED else FLOATING if rigid else too_stiff(system)
     if broken is None:
         return f"{status.value}{why}", nowhere
     end = float(in_unit(broken.parameter[-1], scene.frequency_unit))

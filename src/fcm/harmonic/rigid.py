@@ -1,0 +1,48 @@
+"""Contacts so much stiffer than the structure that rounding decides what they do: what to take instead.
+
+A contact's force is its stiffness times a difference of displacements, of which one rounding stays. Beside
+the force that the structure bears this is k |G| roundings, and where the force changes from stick to slip no
+curve is followed through more than some 1e-9 of it. Long before, the contact is as good as rigid: what its
+spring adds falls with the root of the stiffness at the latest, as where a mass is turned round by it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
+ENOUGH = 1e6  # k |G|, at which a contact is rigid but for
+OFF = 1e-3  # of the response, the root of its inverse
+
+
+def too_stiff(system: System) -> str:
+    """Which contact's stiffness leaves no digits, and what to take instead; empty if none does."""
+    springs = system.springs(stuck=True)
+    if not springs.size:
+        return ""
+    receptance = _least_receptance(system)
+    worst = int((springs * receptance).argmax())
+    ratio = springs[worst] * receptance[worst]
+    if not ratio > TOO_STIFF:
+        return ""
+    contact, key = system.scene.contacts[worst // 2], ("k_u", "k_v")[worst % 2]
+    instead = ENOUGH / receptance[worst]
+    return (
+        f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
+        f"that rounding decides when it slips or opens: try {instead:.0e}, some {OFF:g} from a rigid contact"
+    )
+
+
+def _least_receptance(system: System) -> FloatArray:
+    """|G| of each port in its own direction, the least at the ends of the range."""
+    seen, found = system.looking.seen, []
+    for omega in system.scene.frequency_range:
+        seen.at(omega)
+        j = seen.driven
+        G = np.asarray(seen.G_re)[j] + 1j * np.asarray(seen.G_im)[j]
+        found.append(np.abs(G.diagonal()))
+    least: FloatArray = np.min(found, axis=0)
+    return least
