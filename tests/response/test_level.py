@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.proportion import forget
+from fcm.harmonic.record import recorded_at_levels
 from fcm.harmonic.start import highest, least, level_curve, resonances, solutions
 from fcm.harmonic.system import System
+from fcm.orbit import periodic
 from fcm.response import trace
 from fcm.response.level import trace_levels
 from fcm.results.csv_file import write_csv
@@ -17,6 +19,7 @@ from fcm.results.output import to_dataset
 from fcm.scene import load_scene
 
 from ..harmonic.scenes import isola, isola_stuck, up_to, yang
+from ..harmonic.truth import state
 from .random_scenes import random_scene
 
 
@@ -69,6 +72,25 @@ def test_where_the_level_is_not_followed_to_its_end_branches_are_not_said_to_be_
         assert (frequency in curve.unsure) != reached
     assert curve.unsure and curve.summary()["branches_unsure_at"] == curve.unsure
     assert not trace(load_scene("yang1998-n5")).curves[0].unsure
+
+
+def test_a_curve_of_levels_is_followed_where_next_to_no_force_is_left():
+    """A light preload opens under little; the stiffened resonance then takes a tenth of what led to it."""
+    scene, level = isola_stuck(), 8e-4
+    scene = replace(scene, contacts=(replace(scene.contacts[0], n_0=0.01),))
+    weak = replace(scene, forces=tuple(replace(one, amplitude=level) for one in scene.forces))
+    (raised,) = trace_levels(scene, [1.5], (0.0, 2.0), harmonics=5).curves
+    assert raised.complete and len(raised.level_folds) == 2 and min(raised.level_folds) < level
+    system = System(scene, up_to(5))
+    path = level_curve(system, 1.5, (0.0, 2.0), stations=(level,), linear=0.9 * least(system, 1.5))
+    passings = path.z[path.parameter == level]
+    passings[:, -1] = 1.5
+    amplitude = recorded_at_levels(system, passings, np.full(2, level))[2]
+    for z, each in zip(passings, amplitude, strict=True):  # and one more on the way to where all is linear
+        exact = periodic(weak, 1.5, state(System(weak, up_to(5)), z))
+        assert exact.states == ("SEP",)
+        assert each == pytest.approx(exact.measure.amplitude, rel=5e-3)
+    assert solutions(system, 1.5).complete
 
 
 @pytest.mark.parametrize(

@@ -139,10 +139,9 @@ def level_curve(
 ) -> Path:
     """Response at omega against the level of the forces, from rest, or from a level up to which it is
     linear; hasty if only its stations matter, as of `follow`."""
-    path = None
+    path, low = None, max(span[0], WEAK[-1])  # a stiffened resonance may take much less than leads to it
     for weak in WEAK:
-        low = max(span[0], weak)
-        level = max(low, linear)
+        level = max(span[0], weak, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
             path = _raised(system, start, omega, whole, step, stations, hasty)
