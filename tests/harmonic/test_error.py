@@ -10,11 +10,14 @@ from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.error import astray, errors_along
 from fcm.harmonic.system import System
+from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
 from fcm.scene import load_scene
 
+from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
 from .calibration import points
+from .scenes import up_to
 from .truth import Truth, exact, scene
 
 EXACT_FOLDS = {5: (1.239829, 1.193559)}  # of the exact motion: `trace_exact`, to 1e-6
@@ -120,6 +123,21 @@ def test_a_peak_is_corrected_until_it_settles():
     many = truth.amplitude(truth.beside(path.z[top], path.direction[top]))
     change = np.abs(many - shown.amplitude[top])
     assert (np.abs(settled - many) < 0.02 * change.max()).all()
+
+
+@pytest.mark.parametrize(
+    ("seed", "harmonics", "span", "dofs"),
+    [(100, (*up_to(8), 12, 17), (1.5, 1.6), (3,)), (181, up_to(6), (2.0, 2.2), (2, 3, 4))],
+)
+def test_the_errors_of_peaks_of_irregular_curves_are_those_of_the_exact_motion(seed, harmonics, span, dofs):
+    """One is a corner that moves along its curve; the others lie where each place is corrected by chance."""
+    one = replace(random_scene(seed), harmonics=harmonics, frequency_range=span)
+    found = estimated(System(one, harmonics), 0.0)
+    problem, known = OrbitProblem(one), []
+    for d in dofs:
+        now = found.shown[0].amplitude[:, d].max()
+        true = abs(now / height(found, problem, known, 0, d) - 1.0)
+        assert true > 4e-4 and found.peak[d] == pytest.approx(true, rel=0.25)
 
 
 def test_what_hardly_moves_says_nothing_of_what_moves():

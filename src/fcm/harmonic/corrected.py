@@ -17,8 +17,9 @@ FARTHER = 32  # the same, to see along which stretches no displacement is found
 OFF = 0.2  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
 STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
-UNSETTLED = 2e-3  # a displacement at a top, relative, that is worth to be settled
-TOGETHER = 8  # points, within which tops of degrees of freedom lie together
+UNSETTLED = 5e-4  # a displacement at a top, relative, that is worth to be settled
+TOGETHER = 8  # points, within which tops of degrees of freedom lie together,
+NEXT = 1  # and within which they are settled together: elsewhere another harmonic may do most
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
 
 Indices = npt.NDArray[np.intp]
@@ -58,7 +59,7 @@ class Corrected:
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
-        for group in _groups(np.unique(tops)):
+        for group in _groups(np.unique(tops), TOGETHER):
             self.find_group(group)
         lost = self.lost()
         places = places[~lost[places]]
@@ -94,23 +95,23 @@ class Corrected:
             lost[some[i] + 1 : some[i + 2]] = True
         return lost
 
-    def settled(self, tops: Indices) -> FloatArray:
-        """By which amplitudes (dof,) at their tops change when the displacement there is settled, a factor.
+    def settled(self, places: Indices, found: FloatArray) -> FloatArray:
+        """Corrected amplitudes (dof,) at places of their own, where the displacement is settled.
 
-        One where no displacement is known, or a small one; of tops that lie together the middle one speaks
-        for all.
+        Those found are each as good as the harmonics that it was found with, so that the greatest of some is
+        high by chance. Of places that lie together the middle one speaks for all. Small displacements stay as
+        they were found; nan where settling leads nowhere.
         """
-        factor = np.ones(len(tops))
-        for group in _groups(np.unique(tops)):
+        d, amplitude = np.arange(len(places)), found.copy()
+        for group in _groups(np.unique(places), NEXT):
             i = int(group[len(group) // 2])
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
-            there = np.isin(tops, group)
-            now = self.amplitude[i] + self.unit[i] * self.change[i, 1:]
-            z, direction = self.path.z[i], self.path.direction[i]
-            settled = self.corrector.settled(z, direction, self.amplitude[i])
-            factor[there] = (settled / np.where(now > 0.0, now, 1.0))[there]
-        return factor
+            there, now = np.isin(places, group), self.amplitude[i]
+            factor = self.corrector.settled(self.path.z[i], self.path.direction[i], now)
+            factor /= np.where(now > 0.0, now, 1.0)
+            amplitude[there] = (self.amplitude[places, d] * factor)[there]
+        return amplitude
 
     def shares(self, places: Indices, size: FloatArray) -> FloatArray:
         """Greatest share (harmonic,), at some points, of sizes (dof,)."""
@@ -188,9 +189,9 @@ class Corrected:
         self.known[places] = True
 
 
-def _groups(tops: Indices) -> list[Indices]:
+def _groups(tops: Indices, together: int) -> list[Indices]:
     """Those that lie together."""
-    return np.split(tops, np.flatnonzero(np.diff(tops) > TOGETHER) + 1)
+    return np.split(tops, np.flatnonzero(np.diff(tops) > together) + 1)
 
 
 def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

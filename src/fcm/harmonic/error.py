@@ -29,6 +29,7 @@ CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
+GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
 
@@ -123,7 +124,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     now = shown.amplitude[tops, d]
     height = np.where(
         inside,
-        _heights(corrected, change[:, 1:], tops) * corrected.settled(tops),
+        _heights(corrected, shown, change[:, 1:], tops),
         now + unit[tops, d] * shift[tops, d],
     )
     relative = np.abs(height - now) / unit[tops, d]
@@ -184,7 +185,7 @@ def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
     return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))
 
 
-def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatArray:
+def _heights(corrected: Corrected, shown: Reported, change: FloatArray, tops: Indices) -> FloatArray:
     """Greatest amplitudes of the corrected curve (dof,).
 
     Unknown where the corrected curve is not known at the highest point, or along a stretch that is nearly as
@@ -194,7 +195,15 @@ def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatAr
     d = np.arange(len(tops))
     now = amplitude[tops, d]
     found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
-    greatest = np.where(found, amplitude + corrected.unit * change, 0.0).max(axis=0)
+    value = np.where(found, amplitude + corrected.unit * change, 0.0)
+    places = value.argmax(axis=0)
+    greatest = corrected.settled(places, value[places, d])
+    for top in np.unique(tops[(corrected.path.mark[tops] & Mark.CORNER) > 0]).tolist():
+        if _gap(corrected, shown, top):
+            beyond = heights(corrected, top - 1, top + 1)
+            greatest = (
+                greatest if beyond is None else np.maximum(greatest, np.where(tops == top, beyond, 0.0))
+            )
     unknown = np.zeros(len(tops), dtype=np.bool_)
     for first, end in _stretches(np.isnan(change[:, 0])):
         may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
@@ -207,6 +216,23 @@ def _heights(corrected: Corrected, change: FloatArray, tops: Indices) -> FloatAr
                 greatest = np.maximum(greatest, followed)
     known: FloatArray = np.where(unknown, np.nan, greatest)
     return known
+
+
+def _gap(corrected: Corrected, shown: Reported, top: int) -> bool:
+    """Whether a corner moves so far along the curve that no point of the corrected one is near its top.
+
+    Of the two pieces of the corrected curve beside it one then goes on beyond what is displaced to it.
+    """
+    path, beside = corrected.path, np.array([top - 1, top + 1])
+    if top == 0 or top == len(path.z) - 1:
+        return False
+    corrected.find(beside)
+    moved = path.parameter[beside] * corrected.change[beside, 0]
+    slope = np.abs(shown.growth[beside] / path.direction[beside, -1][:, None]).min(axis=0)
+    higher = np.abs(moved[1] - moved[0]) * slope
+    changed = np.abs(corrected.change[beside, 1:]).max(axis=0) * corrected.unit[top]
+    top_of = shown.amplitude[top] >= shown.amplitude.max(axis=0)
+    return bool((higher > GAP * changed)[top_of].any())
 
 
 def _stretches(lost: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
