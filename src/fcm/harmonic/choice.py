@@ -12,6 +12,7 @@ from fcm.harmonic.beside import beside
 from fcm.harmonic.cost import PATIENCE, seconds_with
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
+from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
@@ -83,8 +84,12 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
         if ahead.told and ahead.change <= accuracy:
             sure = judged(found, accuracy)
             if sure.reached or (sure.told <= accuracy and not np.isnan(sure.peak).any()):
-                return sure  # folds that cannot be told do not come to be by more harmonics
-            more = enlarged(sure, accuracy)
+                # folds that cannot be told do not come to be by more harmonics, but windows do
+                more = with_a_window(found.system, found.traced.looked)
+                if more == found.system.harmonics:
+                    return sure
+            else:
+                more = enlarged(sure, accuracy)
         if more == found.system.harmonics:
             break
         if found.seconds_with(more) > PATIENCE:

@@ -38,13 +38,15 @@ ComplexArray = npt.NDArray[np.complex128]
 @dataclass(frozen=True)
 class Found:
     """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end,
-    or back to its beginning; how far it is to be followed with more harmonics, infinite if that is not told.
+    or back to its beginning; how far it is to be followed with more harmonics, infinite if that is not told;
+    and the levels at which it turned.
     """
 
     omega: float
     solutions: tuple[FloatArray, ...]
     complete: bool
     reach: float
+    turns: tuple[float, ...] = ()
 
 
 def solutions(system: System, omega: float, reach: float | None = None) -> Found:
@@ -79,7 +81,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
     found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    return Found(omega, found, complete, _reach(path.status, path.parameter))
+    return Found(omega, found, complete, _reach(path.status, path.parameter), _turns(path.parameter))
 
 
 def _shared(system: System, omega: float, top: float) -> Found | None:
@@ -95,7 +97,8 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
     found = None if path is None else passings(system, path, omega)
     if path is None or found is None:
         return None
-    return Found(omega, tuple(found), True, _reach(path.status, system.unit * path.parameter))
+    levels = system.unit * path.parameter
+    return Found(omega, tuple(found), True, _reach(path.status, levels), _turns(levels))
 
 
 def _whole(system: System, omega: float) -> Path:
@@ -126,6 +129,12 @@ def _reach(status: Status, levels: FloatArray) -> float:
         return np.inf
     near = np.flatnonzero(levels < NEAR)
     return FURTHER * float(levels[: near[-1] + 1].max()) if near.size else FURTHER * NEAR
+
+
+def _turns(levels: FloatArray) -> tuple[float, ...]:
+    """Levels about which a curve folds."""
+    rises = np.diff(levels) > 0.0
+    return tuple(levels[1:-1][rises[:-1] != rises[1:]].tolist())
 
 
 def level_curve(
