@@ -265,6 +265,18 @@ def test_a_start_needs_a_schedule(data, mistakes):
     assert mistakes(data) == ("test.toml: start: is of no use without a [[schedule]], which starts from it")
 
 
+def test_of_a_start_without_a_schedule_friction_alone_is_of_use(data, mistakes):
+    """It chooses among the exact motions of a contact that never slips."""
+    del data["schedule"]
+    friction = [1.0] * len(data["contact"])
+    data["start"] = {"friction": friction, "angle": 1.0}
+    assert mistakes(data) == (
+        "test.toml: start.angle: is of no use without a [[schedule]], which starts from it"
+    )
+    del data["start"]["angle"]
+    assert scene_from_dict(data).start.friction.tolist() == friction
+
+
 def test_a_schedule_has_a_limit(data, mistakes):
     data["schedule"] = [{"frequency": 1.0, "cycles": 6e6}] * 2
     assert "schedule: asks for 1.2e+07 cycles; there can be 10000000" in mistakes(data)

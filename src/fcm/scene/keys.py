@@ -145,7 +145,8 @@ TABLES: dict[str, dict[str, Key]] = {
     "start": {
         "displacement": Key("modal, one number for each mode", "list of numbers", "zeros"),
         "velocity": Key("modal, one number for each mode", "list of numbers", "zeros"),
-        "friction": Key("friction forces, one number for each contact", "list of numbers", "zeros"),
+        "friction": Key("friction forces, one for each contact; of one that never slips, of exact curves too",
+                        "list of numbers", "zeros"),
         "angle": Key("of the forces, omega t", RULES["phase"], "0"),
     },
     "sweep": {

@@ -40,13 +40,16 @@ def _whole(cycles: float) -> float:
 
 
 def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
-    """The state that the schedule starts from; None, which is rest, without a [start] table."""
+    """The state that the schedule starts from; None, which is rest, without a [start] table.
+
+    Its friction alone also says which motion is meant where a contact never slips, of which there are many.
+    """
     section = top.table("start", "") if "start" in top.data else None
     if section is None:
         return None
     section.only(*names("start"))
     if not top.data.get("schedule"):
-        section.wrong("", "is of no use without a [[schedule]], which starts from it")
+        _without_schedule(section)
     frequency = parts["modal"]["frequency"]
     modes = None if frequency is None else len(frequency)
     return Start(
@@ -55,6 +58,12 @@ def read_start(top: Section, parts: Mapping[str, Any]) -> Start | None:
         _vector(section, "friction", len(parts["contact"]), "contact"),
         section.number("angle", RULES["phase"], default=0.0),
     )
+
+
+def _without_schedule(section: Section) -> None:
+    unused = [key for key in section.data if key != "friction"]
+    for key in unused if "friction" in section.data else [""]:
+        section.wrong(key, "is of no use without a [[schedule]], which starts from it")
 
 
 def _vector(section: Section, key: str, count: int | None, each: str) -> FloatArray:
