@@ -15,12 +15,13 @@ import numpy as np
 
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
+from fcm.harmonic.raised import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.trace import ResponseError, Rows, Wanted, pick, wanted_of
+from fcm.response.trace import BEYOND, ResponseError, Rows, Wanted, pick, wanted_of
 from fcm.results.result import Curve, Peak, Response
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
@@ -40,7 +41,8 @@ def trace_levels(
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
-    with the harmonics given, or those of the scene, or one. Errors and stability are not estimated: NaN.
+    with the harmonics given, or those of the scene, or one. The errors are what the harmonics left out would
+    change at the same level, NaN where that cannot be told, as beside folds.
 
     Raises
     ------
@@ -107,9 +109,10 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     )
     if inside.size:
         curve = replace(curve, **_points(system, path, inside, omega))
+        tops = np.nanargmax(curve.amplitude, axis=0)
         curve.peaks = {
-            dof: Peak(float(top), omega)
-            for dof, top in zip(curve.peaks, np.nanmax(curve.amplitude, axis=0), strict=True)
+            dof: Peak(float(curve.amplitude[i, d]), omega, float(curve.error[i, d]))
+            for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
         }
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
         curve.complete, curve.harmonics, curve.evaluations = whole, harmonics, path.evaluations
@@ -126,7 +129,11 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     z[:, -1] = omega
     X, mean, amplitude = recorded_at_levels(system, z, level)
     X = 1j * X
-    first, unknown = X[:, system.harmonics.index(1)], np.full(level.size, np.nan)
+    first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
+    error = errors_at_levels(system, z, level, amplitude, even)
+    truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
+    stable = stable_at_levels(system, z, even)
+    stable[(truncation > BEYOND) & (stable == 1.0)] = np.nan  # as of curves against the frequency
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,
@@ -137,10 +144,10 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "regime": states(system, z),
         "loop": loops(system, z),
         "cycle": cycles(system, z),
-        "stable": unknown,
+        "stable": stable,
         "table_error": np.zeros(level.size),
-        "error": np.full(amplitude.shape, np.nan),
-        "truncation_error": unknown,
+        "error": error,
+        "truncation_error": truncation,
     }
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
