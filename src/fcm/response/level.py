@@ -133,7 +133,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     error = errors_at_levels(system, z, level, amplitude, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
-    stable[(truncation > BEYOND) & (stable == 1.0)] = np.nan  # as of curves against the frequency
+    known = truncation <= BEYOND  # with more harmonics there may be no solution where it is not
+    stable[~known & (stable == 1.0)] = np.nan
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,
