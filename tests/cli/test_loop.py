@@ -108,6 +108,19 @@ def test_all_solutions_of_a_folded_curve(fcm, folded, undrawn):
             assert regime[np.argmin(np.abs(frequency - one["frequency"]))] == one["sequence"]
 
 
+def test_of_several_harmonics_the_loop_is_said_to_be_the_fundamentals(fcm, undrawn, tmp_path):
+    """The states with all of them are others, and stand in the file."""
+    scene = replace(load_scene("yang1998-n5"), harmonics=(1, 2, 3))
+    write_netcdf(trace(scene), tmp_path / "three.nc")
+    done = fcm("plot", "loop", tmp_path / "three.nc", "--at", 1.16, "--json")
+    (one,) = loops(done)
+    assert "fundamental alone of harmonics 1-3" in done.err
+    with netCDF4.Dataset(tmp_path / "three.nc") as data:
+        nearest = np.argmin(np.abs(data["frequency"][0] - 1.16))
+        assert one["states"] == data["regime"][0, nearest, 0] != ""
+    assert one["harmonics"] == [1, 2, 3]
+
+
 def test_one_of_them(fcm, folded, undrawn):
     (one,) = loops(fcm("plot", "loop", folded, "--curve", 1, "--at", 1.2, "--solution", 2, "--json"))
     assert one["solution"] == 2 and not one["stable"]

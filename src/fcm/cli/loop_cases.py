@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from fcm.cli.columns import ranges
 from fcm.cli.drawing import shorten
 
 if TYPE_CHECKING:
@@ -179,17 +180,20 @@ def _at_point(point: LoopPoint, unit: str) -> Case:
     symbol = "$f$" if unit == "Hz" else r"$\omega$"
     at = f"{point.frequency:.5g} {unit}"
     swept = ", ".join(f"{key} = {value:g}" for key, value in point.parameters.items())
-    names = (
+    names: tuple[Name, ...] = (
         Name(shorten(point.contact, LONGEST).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters), swept),
         Name(f"{symbol} = {at}", at),
     )
+    if len(point.harmonics) > 1:
+        names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
     several = f"{point.solution} of {point.solutions}, " if point.solutions > 1 else ""
     stable = {True: "stable", False: "unstable", None: ""}[point.stable]
     facts = {
         "curve": point.curve, "parameters": point.parameters, "contact": point.contact,
         "frequency": point.frequency, "solution": point.solution, "solutions": point.solutions,
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
+        "harmonics": point.harmonics, "states": point.states,
     }  # fmt: skip
     ratios = point.n0_bar, point.b_bar, point.phi
     return Case(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, read_response
@@ -29,6 +30,8 @@ class LoopPoint:
     phi: float  # [rad]
     amplitude: float  # a, of the tangential motion
     force: float  # k_u a
+    harmonics: tuple[int, ...]  # of the motion, of which the loop is that of the first
+    states: str  # with all of them
 
 
 @dataclass(frozen=True)
@@ -42,6 +45,8 @@ class LoopFile:
     frequency: FloatArray  # (curve, point) in the file's unit
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     loop: FloatArray  # (5, curve, point, contact)
+    harmonics: tuple[int, ...]
+    states: npt.NDArray[np.str_]  # (curve, point, contact)
 
 
 def read_loops(path: Path) -> LoopFile:
@@ -57,11 +62,18 @@ def read_loops(path: Path) -> LoopFile:
         frequency = floats(data["frequency"])
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
+        orders = data["harmonic"][:].tolist() if "harmonic" in data.variables else [1]
+        states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
     shape = (*frequency.shape, len(contacts))
     if any(part.shape != shape for part in parts):
         raise PlotError(f"{path}: holds no loops: {_PARTS[0]} has shape {parts[0].shape}, not {shape}")
     swept = tuple(curve.parameters for curve in response.curves)
-    return LoopFile(path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts))
+    if states is None or states.shape != shape:
+        states = np.full(shape, "", dtype="<U1")
+    return LoopFile(
+        path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
+        tuple(int(h) for h in orders), states,
+    )  # fmt: skip
 
 
 def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
@@ -116,6 +128,7 @@ def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutio
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
+        file.harmonics, str(file.states[row, k, column]),
     )  # fmt: skip
 
 
