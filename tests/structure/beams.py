@@ -20,11 +20,13 @@ def beam(elements: int, clamped: bool = True):
          [-13 * h, -3 * h * h, -22 * h, 4 * h * h]]
     )  # fmt: skip
     rows = 2 * (elements + 1)
-    K, M = scipy.sparse.lil_array((rows, rows)), scipy.sparse.lil_array((rows, rows))
-    for element in range(elements):
-        at = slice(2 * element, 2 * element + 4)
-        K[at, at] += k
-        M[at, at] += m
+    at = 2 * np.arange(elements)[:, None, None]
+    places = [np.broadcast_to(at + np.arange(4).reshape(shape), (elements, 4, 4)) for shape in ((4, 1), 4)]
+    row, column = (place.ravel() for place in places)
+    K, M = (
+        scipy.sparse.coo_array((np.tile(one.ravel(), elements), (row, column)), (rows, rows))
+        for one in (k, m)
+    )
     names = [f"{node}{kind}" for node in range(elements + 1) for kind in "wr"]
     first = 2 if clamped else 0
     return K.tocsc()[first:, first:], M.tocsc()[first:, first:], names[first:]

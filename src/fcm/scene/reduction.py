@@ -44,7 +44,19 @@ def modal_of_matrices(
         "added": found.modes.count - found.kept,
         "complete": not np.isfinite(found.beyond),
     }
+    said += of_rounding([found.rounding], ratio[found.rigid :])
     return draft, found.modes.shapes, [_kept(matrices, found, ends), *_warnings(found, ends), *said]
+
+
+def of_rounding(frequencies: list[float], ratios: FloatArray) -> list[str]:
+    """What is to be said of frequencies that are off by that much: at resonance it is more than that."""
+    off = max(frequencies, default=0.0)
+    if not off > WORTH_SAYING * float(ratios.min(initial=1.0)):
+        return []
+    return [
+        f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "
+        "as its stiff parts hide the energy of the soft ones"
+    ]
 
 
 def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.reduction import MOST_OUTPUTS, damping_of, how_far_off
+from fcm.scene.reduction import MOST_OUTPUTS, damping_of, how_far_off, of_rounding
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
@@ -118,4 +118,6 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     ):
         numbers = [str(one.number) for one, flag in zip(diameters, which, strict=True) if flag]
         notes += [f"structure: nodal diameter {', '.join(numbers)} {what}"] if numbers else []
+    ratios = np.concatenate([one.damping[one.found.rigid :] for one in diameters])
+    notes += of_rounding([one.rounding for one in all_found], ratios)
     return [*notes, *dict.fromkeys(text for one in diameters for text in one.said)]

@@ -7,10 +7,10 @@ space); Galerkin's method on it gives again modes, of modal mass 1, that are ort
 b blocks the first 2 b terms of the answer's series in w^2 are exact.
 
 How far it is off is bounded, not estimated. Below the first mode left out, lambda_h, the operator is positive
-definite on what is left out, and there K - w^2 M >= (1 - w^2 / lambda_h) K. So with the residual r of
-Galerkin's solution u of one load,
+definite on what is left out, and there K - w^2 M >= (lambda_h - w^2) / (lambda_h - s) (K - s M) with the
+shift s < 0 at which the stiffness is factorised. So with the residual r of Galerkin's solution u of one load,
 
-    0 <= error of p^T u <= r^T K^-1 r / (1 - w^2 / lambda_h),
+    0 <= error of p^T u <= r^T (K - s M)^-1 r (lambda_h - s) / (lambda_h - w^2),
 
 and between two different loads the error is at most the geometric mean of theirs (Cauchy, Schwarz).
 
@@ -34,11 +34,12 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg
 
-from fcm.structure.eigen import FloatArray, Modes, System, energy_of
+from fcm.structure.eigen import FloatArray, Modes, System, energy_of, nearer
 
 ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
 MOST_BLOCKS = 4  # of vectors, each by a further solution with the stiffness
 INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
+NEAR = 1e-6  # of lambda_h: so near to zero the displacements are static ones
 FAR = 1e3  # times the frequencies of interest and those kept: where nothing that has no mass is noticed
 
 
@@ -56,6 +57,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
 
     beyond is the square of the angular frequency of the first mode left out, a lower limit of all of them.
     """
+    system = nearer(system, -NEAR * beyond)
     basis = np.zeros((system.rows, 0))
     outer = _without(system, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
@@ -89,7 +91,8 @@ def error_bound(
     residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
     residual = _without(system, kept, residual)
     error = np.einsum("ij,ij->j", residual.conj(), _orthogonal(system, kept, system.solve(residual)))
-    return float((np.abs(error) / (1.0 - omega**2 / beyond) / static_receptance(system, kept, loads)).max())
+    farther = (beyond - system.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
+    return float((np.abs(error) * farther / static_receptance(system, kept, loads)).max())
 
 
 def _damping_off(modes: Modes, outer: FloatArray, beyond: float, sixth: bool) -> FloatArray:

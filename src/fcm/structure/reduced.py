@@ -10,6 +10,7 @@ import numpy as np
 from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, system_of
 from fcm.structure.flexibility import flexibility
 from fcm.structure.rigid_body import rigid_by_energy
+from fcm.structure.rounding import of_frequencies, of_receptances
 
 FEWEST = 10  # modes that are kept at least, where none are asked for
 ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
@@ -27,6 +28,7 @@ class Reduced:
     bound: float  # of the receptances among the loads, relative to their static ones
     missed: int | None  # modes that the eigensolver has missed; None where it cannot be told
     damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
+    rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
 
 
 def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | None, rest: bool) -> Reduced:
@@ -43,18 +45,19 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | No
     wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
-    lost = missed(system, found)
+    lost, off = missed(system, found), float(of_frequencies(K, kept).max(initial=0.0))
     if found.count == wanted and (wanted == system.rows or not rest):
-        return Reduced(kept, wanted, rigid, np.inf, 0.0, lost)
+        return Reduced(kept, wanted, rigid, np.inf, 0.0, lost, rounding=off)
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
     if not rest:
-        return Reduced(kept, wanted, rigid, float(np.sqrt(beyond)), np.nan, lost)
+        return Reduced(kept, wanted, rigid, float(np.sqrt(beyond)), np.nan, lost, rounding=off)
     more = flexibility(system, kept, loads, top, beyond)
     both = Modes(
         np.concatenate((kept.stiffness, more.modes.stiffness)),
         np.concatenate((kept.shapes, more.modes.shapes), axis=1),
     )
-    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), more.bound, lost, more.damping)
+    bound = more.bound + of_receptances(K, M, both, loads)
+    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), bound, lost, more.damping, off)
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:

@@ -11,9 +11,9 @@ if TYPE_CHECKING:
 
 FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
 MOST = 6  # rigid-body modes of one body
-FARTHER_BELOW = 1e-4  # the same where the stiffness is there to be asked, and may be that of soft supports
-CANCELLED = 1e-13  # share of the elastic energy's terms that is left of their sum: rounding
-NEARLY = 1e-6  # the same, of a matrix written with few digits
+CANCELLED = 4e-16  # share of the elastic energy's terms that is left of their sum: rounding of its entries
+NEARLY = {1e-13: 0.03, 1e-6: 1e-4}  # the same, of a matrix written with fewer digits: of the next frequency
+AT_REST = 1e-3  # the share of the elastic forces of a row: a soft mode of stiff parts has some of its own
 
 
 def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW) -> int:
@@ -29,7 +29,12 @@ def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW) -> int:
 
 def rigid_by_energy(K: Matrix, modes: Modes) -> int:
     """How many of the lowest modes have no elastic energy, beyond the rounding of its sum."""
-    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
+    forces = abs(K) @ np.abs(modes.shapes)
+    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), forces)
     left = modes.stiffness / np.where(terms > 0.0, terms, 1.0)
-    far_below = np.arange(left.size) < rigid_by_gap(np.sqrt(np.maximum(modes.stiffness, 0.0)), FARTHER_BELOW)
-    return int(((left <= CANCELLED) | (far_below & (left <= NEARLY))).sum())
+    of_rows = np.divide(np.abs(K @ modes.shapes), forces, out=np.zeros_like(forces), where=forces > 0.0)
+    none = left <= CANCELLED
+    frequency = np.sqrt(np.maximum(modes.stiffness, 0.0))
+    for most, below in NEARLY.items():
+        none |= (left <= most) & (np.arange(left.size) < rigid_by_gap(frequency, below))
+    return int((none & (of_rows.max(axis=0, initial=0.0) <= AT_REST)).sum())

@@ -1,0 +1,46 @@
+"""What rounding leaves uncertain of modes and receptances: of a low mode's elastic energy most cancels.
+
+Stiff parts beside soft ones, and fine meshes, make the terms of the elastic energy of a mode many orders
+greater than their sum. The frequency is off by what is lost of that sum. The shapes are off, too: they have
+some stiffness in common, which modes have not. The answer u of the modes to a load p at w^2 = -a < 0, where
+nothing resonates, then has not the energy u^T (K + a M) u that p^T u is, and is off by the difference.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.structure.eigen import FloatArray, Matrix, Modes, elastic_energy
+
+LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic energy is summed
+
+
+def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
+    """How far the frequency of each mode may be off, relative; 0 for rigid-body modes."""
+    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
+    elastic = modes.stiffness > 0.0
+    off: FloatArray = np.divide(0.5 * LONG * terms, modes.stiffness, out=np.zeros_like(terms), where=elastic)
+    return off
+
+
+def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray) -> float:
+    """How far the answer to a load along itself is off, relative to the static one: at rest and near it."""
+    elastic = modes.stiffness > 0.0
+    if not (elastic.any() and loads.size):
+        return 0.0
+    some = Modes(modes.stiffness[elastic], modes.shapes[:, elastic])
+    static, off = _energy_and_error(K, M, some, loads, 0.0)
+    off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
+    return float(np.divide(off, static, out=np.zeros_like(off), where=static > 0.0).max())
+
+
+def _energy_and_error(
+    K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, a: float
+) -> tuple[FloatArray, FloatArray]:
+    """Displacement of each load along itself at w^2 = -a, and how far the answer's energy is from it."""
+    on_modes = modes.shapes.conj().T @ loads
+    answer = on_modes / (modes.stiffness + a)[:, None]
+    work: FloatArray = np.einsum("ij,ij->j", on_modes.conj(), answer).real
+    moved = modes.shapes @ answer
+    energy = elastic_energy(K, moved) + (a * elastic_energy(M, moved) if a else 0.0)
+    return work, np.abs(energy - work)

@@ -1,0 +1,86 @@
+"""Stiff parts beside soft ones, and fine meshes: little is left of the terms of a mode's elastic energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.linalg
+import scipy.sparse
+
+from fcm.scene import scene_from_dict
+from fcm.structure.reduced import reduced
+
+from . import beams
+
+CANTILEVER, FREE = 1.8751040687**2, 4.7300407449**2  # (beta L)^2, published
+MASSES, AT, OMEGA = 30, 20, 0.25
+
+
+@pytest.mark.parametrize("elements, off", [(2000, 1e-5), (4000, 1e-4)])
+def test_a_fine_mesh_has_no_other_rigid_body_modes(elements, off):
+    """Their stiffness is summed of terms that are up to 1e15 times as great."""
+    for clamped, rigid, first in ((True, 0, CANTILEVER), (False, 2, FREE)):
+        K, M, names = beams.beam(elements, clamped)
+        load = np.eye(len(names))[:, [names.index(f"{elements}w")]]
+        found = reduced(K, M, load, 30.0, None, True)
+        error = np.sqrt(found.modes.stiffness[rigid]) / first - 1.0
+        assert found.rigid == rigid
+        assert abs(error) < off and abs(error) < 3.0 * found.rounding
+
+
+def chain(springs):
+    """Stiffness and mass of equal masses, the first of them on a spring to the ground."""
+    K = np.diag(springs + np.append(springs[1:], 0.0)) - np.diag(springs[1:], 1) - np.diag(springs[1:], -1)
+    return K, np.eye(len(springs))
+
+
+def as_one(K, M):
+    """The same with the two masses beside the stiff spring as one body, exact but for 1 / its stiffness."""
+    both = np.delete(np.eye(MASSES), AT, axis=1)
+    both[AT, AT - 1] = 1.0
+    return both.T @ K @ both, both.T @ M @ both, both
+
+
+@pytest.mark.parametrize("stiff", [1e6, 1e9, 1e12])
+@pytest.mark.parametrize("free", [False, True])
+def test_a_stiff_spring_hides_no_soft_mode_and_the_bound_has_the_rounding(stiff, free):
+    springs = np.ones(MASSES)
+    springs[0], springs[AT] = 0.0 if free else 1.0, stiff
+    K, M = chain(springs)
+    loads = np.eye(MASSES)[:, [MASSES - 1, 12]]
+    found = reduced(scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), loads, OMEGA, 4, True)
+    springs[AT] = 0.0  # the two are one body: no entry is large
+    k, m, both = as_one(*chain(springs))
+    exact = scipy.linalg.eigh(k, m, eigvals_only=True)
+    assert found.rigid == free
+    assert np.sqrt(found.modes.stiffness[free:4] / exact[free:4]) == pytest.approx(
+        1.0, abs=3.0 * found.rounding + 2.0 / stiff
+    )
+    static = ((found.modes.shapes[:, free:].T @ loads) ** 2 / found.modes.stiffness[free:, None]).sum(axis=0)
+    for omega in (0.3 * OMEGA, OMEGA):
+        on_modes = found.modes.shapes.T @ loads
+        own = on_modes.T @ (on_modes / (found.modes.stiffness - omega**2)[:, None])
+        true = both[[MASSES - 1, 12]] @ np.linalg.solve(k - omega**2 * m, both.T @ loads)
+        off = np.abs(own - true) / np.sqrt(static * static[:, None])
+        near = max(1.0, (np.abs(true) / np.sqrt(static * static[:, None])).max())  # a resonance raises it
+        assert off.max() < near * found.bound + 2.0 / stiff
+
+
+def test_a_scene_says_by_how_much_rounding_moves_its_frequencies():
+    """Where that is some of the width of a resonance, and only there."""
+
+    def notes(stiff, damping):
+        springs = np.ones(MASSES)
+        springs[AT] = stiff
+        K, M = chain(springs)
+        structure = {"stiffness": K.tolist(), "mass": np.diag(M).tolist(), "damping": damping, "modes": 4}
+        data = {
+            "structure": structure | {"dofs": [f"x{i}" for i in range(MASSES)]},
+            "force": [{"dof": "x5", "amplitude": 1.0}],
+            "response": {"frequency": [0.02, OMEGA]},
+        }
+        return scene_from_dict(data).notes
+
+    (said,) = (note for note in notes(1e12, 1e-3) if "rounding moves" in note)
+    assert 1e-7 < float(said.partition("by up to ")[2].split()[0]) < 1e-3
+    assert not any("rounding" in note for note in (*notes(1e12, 1.0), *notes(1e3, 1e-4)))
