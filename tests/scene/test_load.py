@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import threading
 from dataclasses import FrozenInstanceError
 from math import pi
 from pathlib import Path
@@ -195,6 +197,21 @@ def test_a_file_too_large_is_not_read(tmp_path):
     with path.open("wb") as file:
         file.truncate(10**9)
     assert "is too large" in refused(path)
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_pipe_is_a_scene_and_waiting_for_it_is_said(tmp_path, monkeypatch, text, late):
+    monkeypatch.setattr("fcm.scene.toml.PATIENCE", 0.05 if late else 60.0)
+    os.mkfifo(tmp_path / "pipe")
+    writer = threading.Timer(0.5 if late else 0.0, (tmp_path / "pipe").write_text, [text])
+    writer.start()
+    if late:
+        with pytest.warns(UserWarning, match="pipe is a pipe: waiting until something is written"):
+            scene = load_scene(tmp_path / "pipe")
+    else:
+        scene = load_scene(tmp_path / "pipe")
+    writer.join()
+    assert scene.modal.dofs == ("u", "v", "w.x")
 
 
 def test_a_scene_imports_no_more_than_numpy():

@@ -90,7 +90,7 @@ def _bands(
     import numpy as np
 
     from fcm.plot import read_response
-    from fcm.plot.band import column_of, draw_bands
+    from fcm.plot.band import banded_column, draw_bands
     from fcm.plot.read import wide
     from fcm.results.bands import bands_of
 
@@ -99,7 +99,7 @@ def _bands(
     if points is not None:
         raise click.UsageError("--points are marked over curves; --band draws none.")
     read = read_response(file)
-    column = column_of(read, dof)
+    column = banded_column(read, dof)
     curves = [curve for curve in read.curves if np.isfinite(curve.amplitude[:, column]).any()]
     bands = bands_of(curves, read.drawn, column, band, wide(curves))
     return draw_bands(read, column, bands, band, log)

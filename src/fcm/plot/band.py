@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.place import name_at_side
@@ -24,11 +25,9 @@ _FAINT = 0.28
 _DECADE = 10.0  # medians that span more are drawn on a logarithmic axis
 
 
-def column_of(response: DrawnResponse, dof: str | None) -> int:
+def banded_column(response: DrawnResponse, dof: str | None) -> int:
     """The degree of freedom whose bands can be drawn, the first by default; errors say why there are none."""
-    if dof is not None and dof not in response.dofs:
-        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(response.dofs)}")
-    column = 0 if dof is None else response.dofs.index(dof)
+    column = column_of(response.dofs, dof)
     if not response.drawn:
         raise PlotError("nothing was drawn at random in this sweep, so that it has no bands")
     if response.frequency_unit == LEVEL:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_values
 
@@ -45,9 +46,7 @@ def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> Dr
     """Read the motion that ``fcm respond -o`` has written; PlotError if the file has none."""
     with opened(path, "the file of a scene with a schedule", _NEEDED) as data:
         dofs = [str(name) for name in np.atleast_1d(data["dof"][:])]
-        if dof is not None and dof not in dofs:
-            raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(dofs)}")
-        column = 0 if dof is None else dofs.index(dof)
+        column = column_of(dofs, dof)
         boundaries, edges = _edges(data, axis)
         swept = swept_values(data.variables)
         motions = tuple(

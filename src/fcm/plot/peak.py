@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_values
@@ -58,7 +59,7 @@ def read_peaks(path: Path) -> Peaks:
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
     """The figure of one degree of freedom against one swept quantity, by default the first of each."""
-    column, key = _column(peaks, dof), _key(peaks, against)
+    column, key = column_of(peaks.dofs, dof), _key(peaks, against)
     known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
     if not known.any():
         raise PlotError("the file holds no complete curve")
@@ -73,12 +74,6 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
             _name_lines(figure, upper, peaks, key, lines)
         _mark_least(upper, lower, peaks, key, column, known)
     return figure
-
-
-def _column(peaks: Peaks, dof: str | None) -> int:
-    if dof is not None and dof not in peaks.dofs:
-        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(peaks.dofs)}")
-    return 0 if dof is None else peaks.dofs.index(dof)
 
 
 def _key(peaks: Peaks, against: str | None) -> str:

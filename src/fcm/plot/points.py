@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
 from fcm.plot.read import DrawnCurve, DrawnResponse, opened, read_response
@@ -57,9 +58,7 @@ def draw_points(
         If the points are of other degrees of freedom, or of other curves.
     """
     theirs = points.response
-    if dof not in theirs.dofs:
-        raise PlotError(f"the points have no degree of freedom {dof!r}; they have {', '.join(theirs.dofs)}")
-    column, factor = theirs.dofs.index(dof), _factor(theirs.frequency_unit, unit)
+    column, factor = column_of(theirs.dofs, dof, "the points have"), _factor(theirs.frequency_unit, unit)
     several = len(curves) > 1
     for curve, sweep in zip(theirs.curves, points.sweeps, strict=True):
         number = _match(curve, curves)

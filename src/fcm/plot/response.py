@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.dof import column_of
 from fcm.plot.error_panel import (
     ALPHA,
     FADED,
@@ -50,7 +51,7 @@ def draw_response(
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves.
     """
-    column = _column(response, dof)
+    column = column_of(response.dofs, dof)
     curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
     if not curves:
         raise PlotError("the file holds no point of any curve")
@@ -91,14 +92,6 @@ def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
     figure = new_figure(height=HEIGHT)
     axes, below = figure.subplots(2, sharex=True, height_ratios=SHARES)
     return figure, axes, below
-
-
-def _column(response: DrawnResponse, dof: str | None) -> int:
-    if dof is None:
-        return 0
-    if dof not in response.dofs:
-        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(response.dofs)}")
-    return response.dofs.index(dof)
 
 
 def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_values
 from fcm.plot.style import WIDTH, house_style, new_figure
@@ -64,11 +65,9 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
 
 def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int = 0) -> Figure:
     """The figure of one peak: bars of its height, and of its frequency."""
-    if dof is not None and dof not in drawn.dofs:
-        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(drawn.dofs)}")
+    column = column_of(drawn.dofs, dof)
     if curve >= len(drawn.parameters):
         raise PlotError(f"no curve {curve}; the file has the curves 0 to {len(drawn.parameters) - 1}")
-    column = 0 if dof is None else drawn.dofs.index(dof)
     height, frequency = drawn.height[curve, column], drawn.frequency[curve, column]
     shown = _greatest(height, frequency)
     if shown.size == 0:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, symbols, with_unit
 from fcm.plot.read import FloatArray, floats
@@ -106,8 +107,7 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
 
 
 def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
-    if dof is not None and dof not in drawn.dofs:
-        raise PlotError(f"no degree of freedom {dof!r}; the file has {', '.join(drawn.dofs)}")
+    dof = None if dof is None else drawn.dofs[column_of(drawn.dofs, dof)]
     peaks = [one for one in drawn.tracks if one.what.startswith("peak of ")] or list(drawn.tracks)
     wanted = [one for one in peaks if dof is None or one.what == f"peak of {dof}"] or peaks
     with house_style():

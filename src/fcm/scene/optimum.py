@@ -12,6 +12,7 @@ from fcm.scene.draft import Draft, Number, number_in
 from fcm.scene.errors import kind, quoted, shown
 from fcm.scene.keys import names
 from fcm.scene.model import Aim, Optimum
+from fcm.scene.names import Names
 from fcm.scene.rules import as_float
 from fcm.scene.section import Section
 
@@ -75,12 +76,12 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
             section.wrong(
                 "minimise", f"must be peak.NAME or greatest.NAME of a degree of freedom, is {quoted(word)}"
             )
-        elif reported and dof not in reported:
+        elif reported and not (named := Names(reported).find(dof)):
             section.wrong(
                 "minimise", f"there is no degree of freedom {quoted(dof)} in the results", dof, reported
             )
         else:
-            found.append(Aim(dof, what == "greatest"))
+            found.append(Aim(named if reported else dof, what == "greatest"))
     return found
 
 

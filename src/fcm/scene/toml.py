@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import re
+import select
 import tomllib
+import warnings
 from pathlib import Path
 from typing import Any
 
 from fcm.scene.errors import SceneError
 
+PATIENCE = 2.0  # [s] without a byte from a pipe before that is said
 LARGEST_FILE = 10_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
 DEEPEST_KEY = 16  # parts of a dotted key: the parser takes the square of their number in time and memory
 
@@ -33,6 +37,16 @@ def read_toml(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(source, ["has a number or a date that cannot be read"]) from None
 
 
+def _from_pipe(path: Path, source: str) -> bytes:
+    """What is written to a pipe; that nothing is, which may be so for ever, is said."""
+    with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as pipe:
+        if not select.select([pipe], [], [], PATIENCE)[0]:
+            warnings.warn(f"{source} is a pipe: waiting until something is written to it", stacklevel=2)
+            select.select([pipe], [], [])
+        os.set_blocking(pipe.fileno(), True)
+        return pipe.read(LARGEST_FILE + 1)
+
+
 def _text(path: Path, source: str) -> str:
     """The text of a file."""
     try:
@@ -40,9 +54,10 @@ def _text(path: Path, source: str) -> str:
             raise SceneError(source, ["is a folder; name the TOML file in it"])
         if not (path.is_file() or path.is_fifo()):
             raise SceneError(source, ["is a device, not a file"])
-        if path.stat().st_size > LARGEST_FILE:
+        pipe = _from_pipe(path, source) if path.is_fifo() else None
+        if max(len(pipe or b""), path.stat().st_size) > LARGEST_FILE:
             raise SceneError(source, ["is too large; keep its modes in a file of their own"])
-        return path.read_bytes().decode("utf-8-sig")
+        return (path.read_bytes() if pipe is None else pipe).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise SceneError(source, ["is not UTF-8 text, so it is not a TOML file"]) from None
     except OSError as error:
