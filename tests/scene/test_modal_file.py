@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from fcm.scene import scene_from_dict
+from fcm.scene import SceneError, scene_from_dict
 
 HERE = Path(__file__).parent
 MODES = {
@@ -245,3 +245,28 @@ def test_shapes_scaled_to_one_without_their_masses(tmp_path):
     assert scene_of(tmp_path, "m.npz", mass=[0.3, 0.4]).notes == ()
     np.savez(tmp_path / "m.npz", **modes)
     assert scene_of(tmp_path, "m.npz").notes == ()
+
+
+def test_all_faults_of_a_file_are_said_at_once(tmp_path):
+    faulty = MODES | {"zeta": MODES["damping"], "omega": MODES["frequency"], "Mass": MODES["mass"]}
+    faulty["shapes"] = MODES["shapes"] + 0.1j
+    del faulty["mass"]
+    np.savez(tmp_path / "m.npz", **faulty)
+    with pytest.raises(SceneError) as caught:
+        scene_of(tmp_path, "m.npz", title=3)
+    for words in (
+        'has "damping" and "zeta"; keep one',
+        "has frequency and angular_frequency; keep one",
+        'has "Mass", which may be the modal mass',
+        "shapes must hold real numbers",
+        "modal.title: unknown key",
+    ):
+        assert words in str(caught.value)
+
+
+def test_lengths_are_said_beside_other_faults(tmp_path):
+    np.savez(tmp_path / "m.npz", **MODES | {"zeta": 0.1, "frequency": np.array([1.0, 2.0, 3.0])})
+    with pytest.raises(SceneError) as caught:
+        scene_of(tmp_path, "m.npz")
+    for key in ("mass", "damping", "shapes"):
+        assert f"its {key} is of 2 modes, its frequency of 3" in str(caught.value)

@@ -196,7 +196,7 @@ def test_what_is_missing_and_what_is_there_twice():
 def test_all_mistakes_at_once():
     top = {"force": [{"dof": "4x", "amplitude": "x"}]}
     message = refused(top=top, modes=-1, damping=-1, stiffness=[[1, 2], [3, 4]])
-    assert message.startswith("test.toml: 6 mistakes")
+    assert message.startswith("test.toml: 7 mistakes")
     assert 'unknown degree of freedom "4x"; structure.dofs are "1x", "2x", "3x"' in refused(top=top)
 
 
@@ -208,6 +208,17 @@ def test_matrices_of_no_structure_are_said_beside_other_mistakes(structure, top)
     said = refused(top=top, mass=[1.0, -2.0, 0.5], **structure)
     assert "structure: the mass has 1 negative eigenvalue" in said
     assert said.count("\n") >= 2
+
+
+def test_both_matrices_are_said_not_to_be_those_of_a_structure():
+    said = refused(mass=[1.0, -2.0, 0.5], stiffness=(-K).tolist())
+    assert "the mass has 1 negative eigenvalue" in said and "the stiffness has 3 negative" in said
+
+
+def test_names_are_looked_for_where_their_number_does_not_fit_the_matrix():
+    said = refused(top={"force": [{"dof": "9x", "amplitude": 1.0}]}, dofs=["1x", "2x"])
+    assert "structure.dofs: names 2 rows, but the stiffness has 3" in said
+    assert 'unknown degree of freedom "9x"' in said
 
 
 def test_matrices_of_no_ring_are_said_beside_other_mistakes():

@@ -191,3 +191,9 @@ def changed(text, old, new):
 )  # fmt: skip
 def test_files_without_modes_say_what_they_hold(tmp_path, text, words):
     assert words in refused(tmp_path, text)
+
+
+def test_every_damaged_mode_is_said(tmp_path):
+    twice = TRANSLATION.replace("1.82904e+00", "1.82x04e+00", 1).replace("1.50162e-01", "1.5x162e-01", 1)
+    said = refused(tmp_path, twice)
+    assert said.count("is damaged") == 2 and "m.uff" in said

@@ -14,7 +14,11 @@ LARGEST = 1_000_000_000  # bytes of a file beside a scene, unpacked: what fits i
 
 
 class DataFileError(ValueError):
-    """A file of modes, matrices or names that cannot be read."""
+    """A file of modes, matrices or names that cannot be read: why, in a sentence for each reason."""
+
+    def __init__(self, *faults: str) -> None:
+        self.faults = faults
+        super().__init__("; ".join(faults))
 
 
 @dataclass(frozen=True)

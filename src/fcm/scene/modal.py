@@ -79,7 +79,8 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
     try:
         found = read_modal_file(name, files, waves)
     except DataFileError as error:
-        section.wrong("file", str(error))
+        for fault in error.faults:
+            section.wrong("file", fault)
         _check_inline(section)
         return None, []
     notes = found.pop("notes")

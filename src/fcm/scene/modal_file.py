@@ -47,13 +47,15 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         else:
             found, others = read_uff(path), []
         notes = found.pop("notes", [])
-        found = _by_keys(found, others, name, notes)
+        faults: list[str] = []
+        found = _by_keys(found, others, name, notes, faults)
         if ending == ".mat":
             found = {key: _without_matrix(key, value) for key, value in found.items()}
         kinds = {"shapes": "iufc" if waves else "iuf"}
-        return {key: _plain(key, value, kinds.get(key, "iuf")) for key, value in found.items()} | {
-            "notes": notes
-        }
+        found = {key: _plain(key, value, kinds.get(key, "iuf"), faults) for key, value in found.items()}
+        if faults:
+            raise DataFileError(*faults, *_lengths(found))
+        return found | {"notes": notes}
 
 
 def note_of_scale(name: str, shapes: Any) -> list[str]:
@@ -69,13 +71,15 @@ def note_of_scale(name: str, shapes: Any) -> list[str]:
     return [text] if name.lower().endswith((".uff", ".unv")) else []
 
 
-def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: list[str]) -> dict[str, Any]:
+def _by_keys(
+    found: dict[str, Any], others: Iterable[str], name: str, notes: list[str], faults: list[str]
+) -> dict[str, Any]:
     """The arrays by the keys of a scene, those under another name too, which is said."""
     arrays = {}
     for key, aliases in KEYS.items():
         names = [one for one in (key, *aliases) if one in found]
         if len(names) > 1:
-            raise DataFileError(f"{quoted(name)} has {quoted(names[0])} and {quoted(names[1])}; keep one")
+            faults.append(f"{quoted(name)} has {' and '.join(map(quoted, names))}; keep one")
         if names:
             arrays[key] = found[names[0]]
         if names and names[0] != key:
@@ -83,12 +87,12 @@ def _by_keys(found: dict[str, Any], others: Iterable[str], name: str, notes: lis
     unknown = [one for one in others if one not in WANTED and _may_be_mass(one)]
     if unknown and "mass" not in arrays:
         may_be = f"{quoted(name)} has {quoted(unknown[0])}, which may be the modal mass"
-        raise DataFileError(f"{may_be}: name it mass, or leave it out")
+        faults.append(f"{may_be}: name it mass, or leave it out")
     unused = [one for one in others if one not in WANTED and not one.startswith("__")]
     if unused:
         notes.append(f"modal: {choices(unused)} of {name} {'is' if len(unused) == 1 else 'are'} not used")
     if "frequency" in arrays and "angular_frequency" in arrays:
-        raise DataFileError(f"{quoted(name)} has frequency and angular_frequency; keep one")
+        faults.append(f"{quoted(name)} has frequency and angular_frequency; keep one")
     return arrays
 
 
@@ -104,13 +108,27 @@ def _without_matrix(key: str, array: Any) -> Any:
     return flat[0] if flat.size == 1 and key in ("mass", "damping") else flat
 
 
-def _plain(key: str, value: Any, kinds: str) -> Any:
+def _lengths(found: dict[str, Any]) -> list[str]:
+    """Arrays that do not go with the frequencies, of a file that has other faults."""
+    frequency = next((found[key] for key in ("frequency", "angular_frequency") if key in found), None)
+    if frequency is None:
+        return []
+    modes = np.size(frequency)
+    per_mode = {key: np.size(found[key]) for key in ("mass", "damping") if np.ndim(found.get(key, 0.0))}
+    if np.ndim(found.get("shapes", 0.0)) == 2:
+        per_mode["shapes"] = len(found["shapes"])
+    said = [f"its {key} is of {count} modes" for key, count in per_mode.items() if count != modes]
+    return [f"{one}, its frequency of {modes}" for one in said]
+
+
+def _plain(key: str, value: Any, kinds: str, faults: list[str]) -> Any:
     """An array of numbers as it is; a single number as a float; names as a list of strings."""
     if key == "dofs":
         return [str(name) for name in np.ravel(np.asarray(value))]
     array = np.asarray(value)
     if array.dtype.kind not in kinds:
-        raise DataFileError(f"{key} must hold real numbers, is {kind(value)} of {array.dtype}")
+        faults.append(f"{key} must hold real numbers, is {kind(value)} of {array.dtype}")
+        return array
     if array.dtype.kind == "c":
         return array.astype(np.complex128)
     return float(array) if array.ndim == 0 else array.astype(np.float64)

@@ -160,7 +160,6 @@ def _row_names(section: Section, files: Files, rows: int | None) -> Names | None
     names = checked_names(section, value)
     if names is not None and rows is not None and len(names) != rows:
         section.wrong("dofs", f"names {len(names)} rows, but the stiffness has {rows}")
-        return None
     return None if names is None else RowNames(names)
 
 

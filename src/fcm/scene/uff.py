@@ -17,6 +17,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from fcm.scene.errors import quoted
+from fcm.scene.files import DataFileError
 from fcm.scene.uff_contents import contents, units
 
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
@@ -58,14 +60,17 @@ def read_uff(path: Path) -> dict[str, Any]:
     blocks = [(kind, block) for kind, block in datasets if _is_normal_mode(kind, block)]
     if not blocks:
         raise ValueError(f"it has no normal mode; {contents(datasets)}")
-    modes = [_intact(kind, block, number) for number, (kind, block) in enumerate(blocks, 1)]
+    faults: list[str] = []
+    modes = [_intact(kind, block, number, faults) for number, (kind, block) in enumerate(blocks, 1)]
     dofs = list(dict.fromkeys(dof for mode in modes for dof in mode.values))
     found: dict[str, Any] = {
         "dofs": dofs,
         "angular_frequency": 2 * pi * np.array([mode.hertz for mode in modes]),
-        "shapes": np.array([_real(mode, dofs, number) for number, mode in enumerate(modes, 1)]),
+        "shapes": np.array([_real(mode, dofs, number, faults) for number, mode in enumerate(modes, 1)]),
         "notes": units(datasets),
     }
+    if faults:
+        raise DataFileError(*(f"{quoted(path.name)} cannot be read: {fault}" for fault in faults))
     given = {"mass": [mode.mass for mode in modes], "damping": [mode.damping for mode in modes]}
     return found | {key: np.array(values) for key, values in given.items() if any(values)}
 
@@ -97,11 +102,12 @@ def _is_normal_mode(kind: str, block: Sequence[str]) -> bool:
     return analysis == NORMAL_MODE and result in MOTIONS and data in REAL + COMPLEX
 
 
-def _intact(kind: str, block: Sequence[str], number: int) -> _Mode:
+def _intact(kind: str, block: Sequence[str], number: int, faults: list[str]) -> _Mode:
     try:
         return _mode(_LAYOUTS[kind], block)
     except (IndexError, ValueError) as error:
-        raise ValueError(f"its normal mode {number} is damaged: {error}") from None
+        faults.append(f"its normal mode {number} is damaged: {error}")
+        return _Mode(0.0, 0.0, 0.0, {})
 
 
 def _mode(layout: _Layout, block: Sequence[str]) -> _Mode:
@@ -140,13 +146,13 @@ def _values(lines: Sequence[str], per_node: int, pairs: bool) -> dict[str, compl
     return values
 
 
-def _real(mode: _Mode, dofs: list[str], number: int) -> list[float]:
+def _real(mode: _Mode, dofs: list[str], number: int, faults: list[str]) -> list[float]:
     """The shape as real numbers; a complex one of which all values have one phase is turned to be real."""
     shape = np.array([mode.values.get(dof, 0.0) for dof in dofs])
     if shape.imag.any():
         turned = shape * np.exp(-0.5j * np.angle((shape * shape).sum()))
         if np.linalg.norm(turned.imag) > COLLINEAR * np.linalg.norm(turned):
-            raise ValueError(f"its normal mode {number} is complex; a real one is needed")
+            faults.append(f"its normal mode {number} is complex; a real one is needed")
         shape = turned
     return shape.real.tolist()  # type: ignore[no-any-return]
 

@@ -72,13 +72,22 @@ def system_of(K: Matrix, M: Matrix) -> System:
     if not np.isfinite(shift):
         raise StructureError("the mass is too small beside the stiffness to calculate with")
     ground = scipy.sparse.diags_array(np.full(heavy.size, NEGATIVE * heavy.max()))
-    for what, matrix in (("mass", M + ground), ("stiffness", K - shift * M)):
-        if (count := _negative(_factor(matrix, f"the {what} is singular"))) not in (0, None):
-            found = "1 negative eigenvalue" if count == 1 else f"{count} negative eigenvalues"
-            raise StructureError(f"the {what} has {found}, that of a structure has none")
+    both = (("mass", M + ground), ("stiffness", K - shift * M))
+    if faults := [fault for what, matrix in both if (fault := _fault(what, matrix))]:
+        raise StructureError("; ".join(faults))
     return System(
         K, M, shift, _factor(K - shift * M, "the stiffness is singular where there is no mass").solve
     )
+
+
+def _fault(what: str, matrix: Matrix) -> str:
+    """Why a matrix is not that of a structure; empty where it may be."""
+    try:
+        count = _negative(_factor(matrix, f"the {what} is singular"))
+    except StructureError as error:
+        return str(error)
+    found = "1 negative eigenvalue" if count == 1 else f"{count} negative eigenvalues"
+    return f"the {what} has {found}, that of a structure has none" if count else ""
 
 
 def nearer(system: System, shift: float) -> System:
