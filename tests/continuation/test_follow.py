@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from fcm.continuation import Mark, Problem, Status, all_branches, follow
 from fcm.continuation.front import Front
@@ -525,6 +526,108 @@ def test_a_curve_goes_on_from_any_stage_to_the_same_points():
         assert again.status is whole.status
         np.testing.assert_array_equal(again.z, whole.z)
         np.testing.assert_array_equal(again.mark, whole.mark)
+
+
+class Many(Problem):
+    """p = x^3 - x + 2 - slight sum_k max(x - x_k, 0)^(3/2) of the first of many equal unknowns.
+
+    Each x_k is a margin; 2 - (x + 0.2)^2 is reported.
+    """
+
+    def __init__(self, unknowns, slight):
+        self.corners = np.linspace(-1.0, 1.0, 20)
+        Problem.__init__(self, unknowns, 20, 1)
+        self.slight, self.group = slight, 1
+        self.matrix = np.asarray(self.jacobian)
+        self.matrix[:, 0] = -1.0
+        self.matrix[:, :-1] += np.eye(unknowns)
+        self.matrix[0, -1] = -1.0
+
+    def curve(self, x):
+        beyond = np.maximum(x - self.corners, 0.0)
+        value = x**3 - x + 2.0 - self.slight * (beyond**1.5).sum()
+        return value, 3.0 * x * x - 1.0 - 1.5 * self.slight * (beyond**0.5).sum()
+
+    def evaluate(self, z):
+        z = np.asarray(z)
+        value, self.matrix[0, 0] = self.curve(z[0])
+        self.residual[:] = np.append(value - z[-1], z[1:-1] - z[0])
+        return 0
+
+    def measure(self, z):
+        self.scale[:] = np.append(np.full(self.unknowns, np.sqrt(self.unknowns)), 2.0)
+        return 0
+
+    def bound(self, z):
+        self.margin[:] = z[0] - self.corners
+        return 0
+
+    def report(self, z, direction):
+        self.output[0] = 2.0 - (z[0] + 0.2) ** 2
+        self.growth[0] = -2.0 * (z[0] + 0.2) * direction[0]
+        return 0
+
+
+@pytest.mark.parametrize("step", (0.2, 0.05, 0.02))
+def test_slight_corners_of_many_unknowns_are_stepped_over(step):
+    """Folds and the peak are where they are nonetheless, and the work is that of a smooth curve."""
+    path, plain = (
+        follow(Many(120, slight), np.append(np.full(120, -1.32), 1.02), (1.02, 3.0), True, step)
+        for slight in (1e-3, 0.0)
+    )
+    assert path.status is Status.COMPLETE
+    of = Many(120, 1e-3)
+    exact = [brentq(lambda x: of.curve(x)[1], a, b, xtol=1e-14) for a, b in ((-1.0, 0.0), (0.0, 1.0))]
+    folds = path.where(Mark.FOLD)
+    assert path.parameter[folds] == pytest.approx([of.curve(x)[0] for x in exact], abs=1e-10)
+    assert path.z[folds, 0] == pytest.approx(exact, abs=1e-5)
+    peaks = path.where(Mark.PEAK)
+    assert path.z[peaks, 0] == pytest.approx([-0.2], abs=1e-5)
+    assert [of.curve(z[0])[0] - z[-1] for z in path.z] == pytest.approx(np.zeros(len(path.z)), abs=1e-9)
+    assert path.evaluations < 1.5 * plain.evaluations
+
+
+class Widened(Problem):
+    """A problem of two unknowns with a hundred more, which are zero."""
+
+    def __init__(self, inner):
+        Problem.__init__(self, 102, inner.margins, 1)
+        self.inner, self.margin = inner, inner.margin
+        self.matrix = np.asarray(self.jacobian)
+        self.matrix[:, :-1] = np.eye(102)
+
+    def evaluate(self, z):
+        z = np.asarray(z)
+        self.inner.evaluate(z[[0, 1, -1]])
+        self.residual[:] = np.append(self.inner.residual, z[2:-1])
+        self.matrix[np.ix_([0, 1], [0, 1, -1])] = self.inner.jacobian
+        return 0
+
+    def measure(self, z):
+        self.scale[:] = np.append(np.ones(102), 2.0)
+        return 0
+
+    def bound(self, z):
+        self.inner.bound(z)
+        return 0
+
+    def report(self, z, direction):
+        self.output[0], self.growth[0] = abs(z[0]), direction[0] * np.sign(z[0])
+        return 0
+
+
+@pytest.mark.parametrize("step", (0.2, 0.05))
+@pytest.mark.parametrize("back", [0.5, 20.0])
+def test_a_corner_at_which_a_curve_of_many_unknowns_turns_back_is_landed_on(step, back):
+    low = min(1.0, 2.0 - back - 0.5)
+    z = np.append(np.zeros(102), low)
+    z[:2] = low
+    path = follow(Widened(zigzag(back)), z, (low, 6.0), True, step)
+    assert path.status is Status.COMPLETE
+    folds = path.where(Mark.FOLD)
+    assert path.where(Mark.CORNER).tolist() == folds.tolist()
+    assert path.z[folds, 0] == pytest.approx([2.0, 3.0], abs=1e-8)
+    assert path.parameter[folds] == pytest.approx([2.0, 2.0 - back], abs=1e-8 * back)
 
 
 def test_a_margin_is_the_same_only_within_its_group():

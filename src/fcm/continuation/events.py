@@ -50,12 +50,28 @@ def seen(front: Front, look: Look, mark: int) -> Found:
 
 
 def first_margin(front: Front) -> float:
-    """Where within the step a margin changes sign first; LOST if the curve is not found there."""
-    first = front.step
-    for k in range(front.problem.margins):
-        if front.here.margin[k] * front.here.margin_at(k, front.there) < 0.0:
+    """Where within the step a margin changes sign first; LOST if the curve is not found there.
+
+    Of many that change theirs most have not yet done so where another does: their roots are not looked for.
+    """
+    last, first = front.there, front.step
+    for k in _changing(front):
+        if front.here.margin[k] * front.here.margin_at(k, last) < 0.0:
             first = min(first, root_within(front, Sought(MARGIN, k)))
+            if first == LOST:
+                break
+            last = front.between
     return first
+
+
+def _changing(front: Front) -> list[int]:
+    """Margins that change sign within the step, those first that seem to be the first."""
+    places = {}
+    for k in range(front.problem.margins):
+        before, after = front.here.margin[k], front.here.margin_at(k, front.there)
+        if before * after < 0.0:
+            places[k] = before / (before - after)
+    return sorted(places, key=lambda k: places[k])
 
 
 @cython.cfunc
@@ -92,8 +108,8 @@ def turns(here: Place, there: Place, k: cython.Py_ssize_t, greatest: cython.doub
 def may_exceed(front: Front, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
     """Whether a peak of an output within the step may be the greatest so far, by the slopes at its ends.
 
-    Each look is dear where a problem is soft; on a curve with many loops most peaks are lower than an
-    earlier one.
+    Each look is dear where a problem is soft or has many unknowns; on a curve with many loops most peaks are
+    lower than an earlier one.
     """
     here: Place = front.here
     there: Place = front.there
@@ -130,7 +146,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     here: Place = front.here
     there: Place = front.there
     events = []
-    looks = Looks(front) if front.problem.soft else None
+    looks = Looks(front) if front.problem.soft or front.problem.dear else None
     if here.tangent[n] * there.tangent[n] < 0.0:
         events += located(front, FOLD, 0, limit, Mark.FOLD, looks)
     fold = events[0] if events else None

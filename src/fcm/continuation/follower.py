@@ -141,6 +141,8 @@ class Follower:
         if self.soft is not None:
             return self.soft.advance(self, step)
         step = self.narrow.up_to(front, step)
+        if self.problem.dear and self.over(step):
+            return self.smooth()
         while step > SHORTEST:
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
@@ -165,6 +167,16 @@ class Follower:
                 return self.smooth()
             step = 0.25 * min(step, reach)
         return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def over(self, step: cython.double) -> cython.bint:
+        """Whether a step goes on past all margins as if there were none: where they are many, most corners
+        are slight."""
+        front: Front = self.front
+        if not front.go(step) or not good(front) or self.narrow.across(front, step) > 0.0:
+            return False
+        return detour(front, self.passage.most) == 0.0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

@@ -1,4 +1,4 @@
-"""Roots of functions along a step of a soft problem, whose places are dear: folds and peaks.
+"""Roots of functions along a step of a problem whose places are dear: folds and peaks.
 
 A fold or a peak is the extreme of a value of which the slope is known too, so the cubic through both ends of
 the interval that holds it tells where it is, far better than the slopes alone. Where the curve has a corner

@@ -8,6 +8,7 @@ cdef class Problem:
     cdef public int group
     cdef public bint coarse
     cdef public bint soft
+    cdef public bint dear
     cdef public double boundless
     cdef public double[::1] residual
     cdef public double[:, ::1] jacobian

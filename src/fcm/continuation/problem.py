@@ -11,6 +11,7 @@ import cython
 import numpy as np
 
 BOUNDLESS = cython.declare(cython.double, 1e9)  # `boundless` where a problem says nothing else
+DEAR = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
 
@@ -27,6 +28,8 @@ class Problem:
     group: margins of so many in a row belong together; one is never the same as one of another group.
     boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
+    dear: whether there are so many unknowns that every place counts: slight corners are stepped over, peaks
+    and folds sought between all places of a step that are known.
     soft: whether the margins are labels: the problem is smooth while they stay, and may be where they change.
     """
 
@@ -35,7 +38,7 @@ class Problem:
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
         self.coarse, self.soft, self.boundless = False, False, BOUNDLESS
-        self.group = margins
+        self.group, self.dear = margins, unknowns >= DEAR
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

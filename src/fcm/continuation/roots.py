@@ -75,7 +75,10 @@ def root(
     for count in range(LOOKS):
         rise = value_here - value_last
         at = here - value_here * (here - last) / rise if rise != 0.0 else low
-        if fabs(at - here) <= fine or high - low <= fine:
+        way: cython.double = fabs(at - here)
+        # of a corner's place the next way is not taken: it would be shorter by as much, at least
+        enough: cython.bint = sought.kind == MARGIN and way * way <= fine * fabs(here - last)
+        if way <= fine or high - low <= fine or enough:
             return min(max(at, low), high)
         if count % 3 == 2:
             at = at if high - low <= 0.5 * width else low
