@@ -9,7 +9,7 @@ import numpy as np
 
 import fcm
 from fcm.continuation import follow
-from fcm.harmonic.corrector import Corrector
+from fcm.harmonic.lifted import Lifted
 from fcm.motion import SimulationError, State
 
 SCENES = Path(__file__).parent / "scenes"
@@ -62,7 +62,7 @@ class Truth:
 
     def __init__(self, system, many=MANY):
         self.system, self.many = system, system.with_harmonics(many)
-        self.corrector = Corrector(system, again=False, enough=1e-9)
+        self.lifted = Lifted(self.many.balance(), list(system.harmonics), list(many), 1e-9)
 
     def at(self, z, direction):
         """The motion of many harmonics at the frequency of z, on the curve next to it; None if there is none.
@@ -72,8 +72,7 @@ class Truth:
         near = self.beside(z, direction)
         if near is None:
             return None
-        (lifted,) = self.corrector.known.values()
-        newton = lifted.newton
+        newton = self.lifted.newton
         tangent = np.array(newton.tangent)
         if near[-1] == z[-1]:
             return near
@@ -88,10 +87,7 @@ class Truth:
 
     def beside(self, z, direction):
         """The motion of many harmonics next to z, normal to the curve; None if there is none."""
-        if np.isnan(self.corrector.displaced(z[None], direction[None], self.many.harmonics, None)).any():
-            return None
-        (lifted,) = self.corrector.known.values()
-        return np.array(lifted.newton.z)
+        return np.array(self.lifted.newton.z) if self.lifted.beside(z, direction) else None
 
     def amplitude(self, z):
         """Half the peak-to-peak displacements of a motion of many harmonics."""

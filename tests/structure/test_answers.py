@@ -21,8 +21,8 @@ def test_shares_are_those_of_the_equations_of_motion():
     omega, size = RNG.uniform(0.5, 2.0, POINTS), RNG.uniform(0.1, 1.0, (POINTS, DOFS))
     out = np.full((POINTS, HARMONICS), -1.0)
     answers = Answers(natural, damping, turned.T @ on_ports, turned.T @ shown)
-    answers.shares(np.array([2.0, 3.0, 6.0]), omega, force, size, out)
     for i in range(POINTS):
+        answers.shares(np.array([2, 3, 6]), omega[i], force[i], size[i], out[i])
         for h in (2, 3, 6):
             w = h * omega[i]
             pushed = on_ports @ (force[i, h - 1, :, 0] + 1j * force[i, h - 1, :, 1])
@@ -34,8 +34,8 @@ def test_shares_are_those_of_the_equations_of_motion():
 
 def test_what_does_not_move_has_no_share_and_resonance_no_infinite_one():
     answers = Answers(np.array([2.0]), np.zeros(1), np.ones((1, 1)), np.ones((1, 2)))
-    out = np.zeros((1, 2))
-    answers.shares(np.array([2.0]), np.ones(1), np.ones((1, 2, 1, 2)), np.array([[0.0, 1.0]]), out)
-    assert out[0, 0] == 0.0 and np.isfinite(out[0, 1]) and out[0, 1] > 1e6
-    answers.shares(np.array([2.0]), np.ones(1), np.ones((1, 2, 1, 2)), np.zeros((1, 2)), out)
+    out, force = np.zeros(2), np.ones((2, 1, 2))
+    answers.shares(np.array([2]), 1.0, force, np.array([0.0, 1.0]), out)
+    assert out[0] == 0.0 and np.isfinite(out[1]) and out[1] > 1e6
+    answers.shares(np.array([2]), 1.0, force, np.zeros(2), out)
     assert (out == 0.0).all()

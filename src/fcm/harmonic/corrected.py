@@ -8,7 +8,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.filled import Filled, places, steepness
-from fcm.harmonic.further import LEAST_AMPLITUDE, Further
+from fcm.harmonic.further import LEAST_AMPLITUDE
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -39,7 +39,7 @@ class Corrected:
         self.path, self.amplitude, self.linear = path, amplitude, _with_ends(path, linear)
         self.unit = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
-        self.further, self.corrector = Further(system), Corrector(system)
+        self.corrector = Corrector(system)
         count, dofs = amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
@@ -115,15 +115,14 @@ class Corrected:
 
     def shares(self, places: Indices, size: FloatArray) -> FloatArray:
         """Greatest share (harmonic,), at some points, of sizes (dof,)."""
-        z, sizes = self.path.z[places], np.tile(size, (len(places), 1))
-        most: FloatArray = self.further.shares(z, self.further.forces(z), sizes).max(axis=0)
+        sizes = np.tile(size, (len(places), 1))
+        most: FloatArray = self.corrector.further.shares(self.path.z[places], sizes).max(axis=0)
         return most
 
     def sets(self, places: Indices) -> tuple[int, ...]:
         """The harmonics of a corrected curve beside all of some places."""
-        z = self.path.z[places]
-        share = self.further.shares(z, self.further.forces(z), self.amplitude[places])
-        return self.corrector.sets(share.max(axis=0)[None])[0]
+        share = self.corrector.further.shares(self.path.z[places], self.amplitude[places])
+        return self.corrector.enough_of(share.max(axis=0))
 
     def bridge(self, place: int) -> None:
         """Where the corrected curve is missed, as at a corner that has moved: the mean of those beside it."""
@@ -172,21 +171,8 @@ class Corrected:
     def find(self, places: Indices, best: bool = False) -> None:
         """The displacements of some points, which are then known; with the best harmonics of each, or with
         those that are nearly as good and there already."""
-        places = places[~self.known[places]]
-        if not places.size:
-            return
-        z, amplitude = self.path.z[places], self.amplitude[places]
-        share = self.further.shares(z, self.further.forces(z), amplitude)
-        sets = [self.corrector.best(one) for one in share] if best else self.corrector.sets(share)
-        now = np.column_stack((self.path.parameter[places], amplitude))
-        unit = np.column_stack((now[:, 0], self.unit[places]))
-        for more in dict.fromkeys(sets):
-            of = np.array([one == more for one in sets])
-            at = places[of]
-            found = self.corrector.displaced(z[of], self.path.direction[at], more, amplitude[of])
-            if found is not None:
-                self.change[at] = (found - now[of]) / unit[of]
-        self.known[places] = True
+        own = self.path.z, self.path.direction, self.amplitude, self.unit
+        self.corrector.move(places, *own, self.change, self.known.view(np.uint8), best)
 
 
 def _groups(tops: Indices, together: int) -> list[Indices]:

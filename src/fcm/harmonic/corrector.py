@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+import cython
 import numpy as np
-import numpy.typing as npt
+from cython.cimports.libc.math import fabs
 
-from fcm.harmonic.further import Further, highest
+from fcm.harmonic.further import Further
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
-BoolArray = npt.NDArray[np.bool_]
-
 FURTHER = 8  # harmonics beyond those of the balance: those that would do most
 FEWEST = 3  # where there are so many contacts that those would be more than
 UNKNOWNS = 240  # unknowns
-LEAST = 0.01  # of what the first of them would do; what does less is not taken
+LEAST = cython.declare(cython.double, 0.01)  # of what the first of them would do; less is not taken
 COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
-LARGE = 0.05  # a change of an amplitude beyond which the corrected point is corrected once more
+ENOUGH_COVERED = cython.declare(cython.double, COVERED**2)
+LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from which it is corrected once more
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
 SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
+NAN = cython.declare(cython.double, float("nan"))
 
 
+@cython.cclass
 class Corrector:
     """Balances of a scene with more harmonics than those of a system.
 
@@ -34,51 +36,115 @@ class Corrector:
         self.system, self.again, self.enough = system, again, enough
         contacts = max(len(system.scene.contacts), 1)
         self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
+        self.further = Further(system)
         self.known: dict[tuple[int, ...], Lifted] = {}
-        self.covers = np.zeros((0, highest(system)))  # (set, harmonic): which harmonics each known set has
-        self.second: dict[tuple[int, ...], tuple[Further, Corrector]] = {}
+        self.lifts: list[Lifted] = []  # the same,
+        self.sets: list[tuple[int, ...]] = []  # their harmonics,
+        self.covers = np.zeros((FURTHER, self.further.highest), dtype=np.uint8)  # and which these are
+        self.second: dict[tuple[int, ...], Corrector] = {}
+        # the greatest squares of what harmonics would do, and where they are
+        self.top, self.place, self.among = np.zeros(self.count), np.zeros(self.count, dtype=np.intp), 0
+        self.found = np.zeros(1 + system.linear.dofs.shape[1])
 
-    def displaced(
-        self, z: FloatArray, direction: FloatArray, more: tuple[int, ...], amplitude: FloatArray
-    ) -> FloatArray | None:
-        """Frequency and amplitudes (point, 1 + dof) of the corrected curve in the planes normal to the curve
-        at points z (point, unknown + 1).
+    def move(
+        self,
+        points: cython.Py_ssize_t[::1],
+        z: cython.double[:, ::1],
+        direction: cython.double[:, ::1],
+        amplitude: cython.double[:, ::1],
+        unit: cython.double[:, ::1],
+        change: cython.double[:, ::1],
+        known: cython.uchar[::1],
+        best: cython.bint,
+    ) -> None:
+        """Relative displacements (point, 1 + dof), of frequency and amplitudes, of some points that are not
+        known; then they are.
 
-        direction is that of the curve there, amplitude (point, dof) what it has there, more the harmonics of
-        the corrected curve. None if they are those of the curve; NaN if the corrected curve is not found, or
-        too far to be believed.
+        That is to the corrected curve in the planes normal to the curve at z (point, unknown + 1) with its
+        direction there; amplitudes are relative to their unit (point, dof). Of each point the harmonics are
+        those that would do most there, the best, or a set that is there already and covers nearly as much.
+        Nothing changes where that are those of the curve; NaN where the corrected curve is not found, or too
+        far to be believed.
         """
-        if more == self.system.harmonics:
-            return None
-        lifted = self.lifted(more)
-        found = np.empty((len(z), len(lifted.found)))
-        there = np.zeros((2, len(z), len(lifted.newton.z)))
-        lifted.all(z, direction, found, there)
-        if self.again:
-            far = np.abs(found[:, 1:] - amplitude).max(axis=1) > LARGE * amplitude.max(axis=1)
-            for i in np.flatnonzero(far).tolist():
-                found[i] = self.twice(more, there[0, i], there[1, i], found[i])
-        return found
+        n: cython.Py_ssize_t = z.shape[1] - 1
+        p: cython.Py_ssize_t
+        d: cython.Py_ssize_t
+        for p in range(points.shape[0]):
+            i: cython.Py_ssize_t = points[p]
+            if known[i]:
+                continue
+            known[i] = 1
+            self.further.at(z[i], amplitude[i])
+            k: cython.Py_ssize_t = self.choose(best)
+            if k >= 0:
+                self.put(k, z[i], direction[i], amplitude[i])
+                change[i, 0] = (self.found[0] - z[i, n]) / z[i, n]
+                for d in range(amplitude.shape[1]):
+                    change[i, 1 + d] = (self.found[1 + d] - amplitude[i, d]) / unit[i, d]
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def put(
+        self,
+        k: cython.Py_ssize_t,
+        z: cython.double[::1],
+        direction: cython.double[::1],
+        amplitude: cython.double[::1],
+    ) -> cython.bint:
+        """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there."""
+        lifted: Lifted = self.lifts[k]
+        d: cython.Py_ssize_t
+        if not lifted.beside(z, direction):
+            self.found[:] = NAN
+            return False
+        self.found[:] = lifted.found
+        most: cython.double = 0.0
+        off: cython.double = 0.0
+        for d in range(amplitude.shape[0]):
+            most = max(most, amplitude[d])
+            off = max(off, fabs(self.found[1 + d] - amplitude[d]))
+        if self.again and off > LARGE * most:
+            self.twice(k)
+        return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def twice(self, k: cython.Py_ssize_t) -> cython.int:
+        """The point just found corrected."""
+        lifted: Lifted = self.lifts[k]
+        corrector: Corrector = self.of(self.sets[k])
+        z = np.array(lifted.newton.z)
+        direction = np.asarray(lifted.newton.tangent) * lifted.newton.scale
+        corrector.further.at(z, self.found[1:])
+        j: cython.Py_ssize_t = corrector.choose(False)
+        if j >= 0:
+            corrector.put(j, z, direction, self.found[1:])
+            self.found[:] = corrector.found
+        return 0
 
     def lifted(self, more: tuple[int, ...]) -> Lifted:
         """The balance of more harmonics."""
         if more not in self.known:
-            balance = self.system.with_harmonics(more).balance()
-            self.known[more] = Lifted(balance, list(self.system.harmonics), list(more), self.enough)
-            covers = np.zeros((1, self.covers.shape[1]))
-            covers[0, np.array(more) - 1] = 1.0
-            self.covers = np.concatenate((self.covers, covers))
+            system = self.system
+            made = Lifted(
+                system.with_harmonics(more).balance(), list(system.harmonics), list(more), self.enough
+            )
+            self.known[more] = made
+            self.lifts.append(made)
+            self.sets.append(more)
+            covers = np.asarray(self.covers)
+            if len(self.sets) > len(covers):
+                covers = np.concatenate((covers, np.zeros_like(covers)))
+            covers[len(self.sets) - 1, np.array(more) - 1] = 1
+            self.covers = covers
         return self.known[more]
 
-    def twice(
-        self, more: tuple[int, ...], z: FloatArray, direction: FloatArray, found: FloatArray
-    ) -> FloatArray:
-        """A corrected point corrected."""
-        further, corrector = self.of(more)
-        share = further.shares(z[None], further.forces(z[None]), found[None, 1:])
-        more = corrector.sets(share)[0]
-        again = corrector.displaced(z[None], direction[None], more, found[None, 1:])
-        return found if again is None else again[0]
+    def of(self, harmonics: tuple[int, ...]) -> Corrector:
+        """Corrects points of a balance of some harmonics."""
+        if harmonics not in self.second:
+            system = self.system.with_harmonics(harmonics)
+            self.second[harmonics] = Corrector(system, again=False, enough=self.enough)
+        return self.second[harmonics]
 
     def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
         """Amplitudes (dof,) of a point displaced again and again, each time with the harmonics that would do
@@ -86,8 +152,9 @@ class Corrector:
         """
         harmonics, now = self.system.harmonics, amplitude
         for _ in range(ROUNDS):
-            further, corrector = self.of(harmonics)
-            more = corrector.best(further.shares(z[None], further.forces(z[None]), now[None])[0])
+            corrector = self.of(harmonics)
+            corrector.further.at(z, now)
+            more = corrector.most()
             if more == harmonics:
                 break
             lifted = corrector.lifted(more)
@@ -99,43 +166,72 @@ class Corrector:
                 break
         return now
 
-    def of(self, harmonics: tuple[int, ...]) -> tuple[Further, Corrector]:
-        """What further harmonics would do to points of a balance of some, and corrects these."""
-        if harmonics not in self.second:
-            system = self.system.with_harmonics(harmonics)
-            self.second[harmonics] = Further(system), Corrector(system, again=False, enough=self.enough)
-        return self.second[harmonics]
-
-    def sets(self, share: FloatArray) -> list[tuple[int, ...]]:
-        """The harmonics of the system and those that would do most, for shares (point, harmonic).
-
-        A set that is there already is taken where it covers nearly as much.
-        """
-        square = share * share
-        most = -np.sort(-square, axis=1)[:, : self.count]
-        enough = COVERED**2 * np.where(most > LEAST**2 * most[:, :1], most, 0.0).sum(axis=1)
-        chosen, left = [self.system.harmonics] * len(share), np.ones(len(share), dtype=np.bool_)
-        covered = square @ self.covers.T >= enough[:, None]
-        for more, of in zip(self.known, covered.T, strict=True):
-            self._take(more, of, chosen, left)
-        while left.any():
-            first = int(left.argmax())
-            more = self.best(share[first])
-            of = square[:, np.array(more) - 1].sum(axis=1) >= enough
-            of[first] = True
-            self._take(more, of, chosen, left)
-        return chosen
-
-    def _take(
-        self, more: tuple[int, ...], of: BoolArray, chosen: list[tuple[int, ...]], left: BoolArray
-    ) -> None:
-        """A set for points of which nothing is chosen yet."""
-        for i in np.flatnonzero(of & left).tolist():
-            chosen[i] = more
-        left &= ~of
-
-    def best(self, share: FloatArray) -> tuple[int, ...]:
+    def best(self, share: cython.double[::1]) -> tuple[int, ...]:
         """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point."""
-        order = np.argsort(-share)[: self.count]
-        order = order[share[order] > LEAST * share[order[0]]]
-        return tuple(sorted({*self.system.harmonics, *(int(k) + 1 for k in order)}))
+        self.further.share[:] = share
+        return self.most()
+
+    def enough_of(self, share: cython.double[::1]) -> tuple[int, ...]:
+        """The same, or a set that is there already and covers nearly as much."""
+        self.further.share[:] = share
+        k = self.choose(False)
+        harmonics: tuple[int, ...] = self.sets[k] if k >= 0 else self.system.harmonics
+        return harmonics
+
+    def most(self) -> tuple[int, ...]:
+        """The best for the point that `further` was at last."""
+        self.rank()
+        more = [1 + int(self.place[k]) for k in range(self.among)]
+        return tuple(sorted({*self.system.harmonics, *more}))
+
+    @cython.cfunc
+    @cython.exceptval(-2, check=False)
+    def choose(self, best: cython.bint) -> cython.Py_ssize_t:
+        """The number of the set for the point that `further` was at last; -1 where nothing is left out."""
+        self.rank()
+        k: cython.Py_ssize_t = -1 if best else self.covering()
+        if k >= 0 or self.among == 0:
+            return k
+        more = self.most()
+        self.lifted(more)
+        return self.sets.index(more)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def covering(self) -> cython.Py_ssize_t:
+        """The first set that covers nearly as much as the best, -1 if there is none."""
+        share: cython.double[::1] = self.further.share
+        wanted: cython.double = 0.0
+        k: cython.Py_ssize_t
+        h: cython.Py_ssize_t
+        for k in range(self.among):
+            wanted += self.top[k]
+        for k in range(len(self.sets)):
+            covered: cython.double = 0.0
+            for h in range(share.shape[0]):
+                if self.covers[k, h]:
+                    covered += share[h] * share[h]
+            if covered >= ENOUGH_COVERED * wanted:
+                return k
+        return -1
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def rank(self) -> cython.void:
+        """The harmonics that would do most, and the squares of what they would do, the greatest first."""
+        share: cython.double[::1] = self.further.share
+        h: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        self.among = 0
+        for h in range(share.shape[0]):
+            square: cython.double = share[h] * share[h]
+            if self.among == self.count and not square > self.top[self.count - 1]:
+                continue
+            j = min(self.among, self.count - 1)
+            while j > 0 and self.top[j - 1] < square:
+                self.top[j], self.place[j] = self.top[j - 1], self.place[j - 1]
+                j -= 1
+            self.top[j], self.place[j] = square, h
+            self.among = min(self.among + 1, self.count)
+        while self.among and not self.top[self.among - 1] > LEAST * LEAST * self.top[0]:
+            self.among -= 1

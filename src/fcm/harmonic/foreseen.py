@@ -177,7 +177,7 @@ def _place(path: Path, amplitude: FloatArray, i: int, counts: npt.NDArray[np.boo
 def _share(system: System, places: Sequence[Place], height: FloatArray, known: tuple[int, ...]) -> FloatArray:
     """What each harmonic (harmonic,) but the known ones has at most at some places, of heights (dof,)."""
     further, z = Further(system), np.array([place.z for place in places])
-    share = further.shares(z, further.forces(z), np.tile(height, (len(z), 1)), known)
+    share = further.shares(z, np.tile(height, (len(z), 1)), known)
     most: FloatArray = share[:, :HIGHEST].max(axis=0)
     return most
 

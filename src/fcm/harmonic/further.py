@@ -10,17 +10,21 @@ so that it is the structure as much as the contact that decides which harmonics 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
+import cython
 import numpy as np
 import numpy.typing as npt
 
-from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.workspace import periodic_contact
-from fcm.harmonic.points import forces_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.structure.answers import Answers
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import MIXED
+else:
+    from fcm.contact.periodic.motion import MIXED
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
@@ -33,71 +37,91 @@ def highest(system: System) -> int:
     return max(HIGHEST, int(AHEAD * max(system.harmonics)))
 
 
+@cython.cclass
 class Further:
     """The harmonics of the exact forces of motions of a system's balance."""
 
     def __init__(self, system: System) -> None:
-        self.system = system
-        self.highest = highest(system)
+        contacts, linear = system.scene.contacts, system.linear
+        self.system, self.highest = system, highest(system)
+        self.contacts, self.width = len(contacts), 2 + 4 * len(system.harmonics)
         self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
-        others = np.ones(self.highest, dtype=np.bool_)
-        others[np.array(system.harmonics) - 1] = False
-        self.others = np.flatnonzero(others)
-        self.orders = 1.0 + self.others.astype(np.float64)
-        linear, products = system.linear, system.linear.natural.size * system.linear.ports.shape[1]
-        few = system.scene.ring is None and products <= FEW
+        self.laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]).reshape(-1, 4)
+        few = system.scene.ring is None and linear.ports.size <= FEW
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.answers = Answers(*own) if few else None
+        self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
+        self.force = np.zeros((self.highest, 2 * self.contacts, 2))
+        self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
 
-    def forces(self, z: FloatArray) -> npt.NDArray[np.complex128]:
-        """Of motions (point, unknown + 1): (point, harmonic, port)."""
-        out = np.zeros((len(z), self.highest, 2 * len(self.system.scene.contacts)), dtype=np.complex128)
-        for j, (made, _) in enumerate(self._each(self.kernel, z)):
-            pairs = made[:, 2:].view(np.complex128)
-            out[:, :, 2 * j : 2 * j + 2] = pairs.reshape(len(z), self.highest, 2)
-        return out
-
-    def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
-        """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
-        kernel = periodic_contact(self.system.harmonics, (1,))
-        linear = np.ones(len(z), dtype=np.bool_)
-        for _, one in self._each(kernel, z):
-            linear &= one > 0.0
-        return linear
-
-    def _each(self, kernel: PeriodicContact, z: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """Forces (point, equation) of each contact, and 1 where they are linear, else 0."""
-        z, width = np.ascontiguousarray(z), 2 + 4 * len(self.system.harmonics)
-        for j, c in enumerate(self.system.scene.contacts):
-            made, linear = np.empty((len(z), kernel.equations)), np.ones(len(z))
-            forces_of(kernel, z, j * width, np.array([c.mu, c.k_u, c.k_v, c.n_0]), made, linear)
-            yield made, linear
+    def _without(self, harmonics: Sequence[int]) -> npt.NDArray[np.intp]:
+        """The other harmonics."""
+        return np.setdiff1d(np.arange(1, self.highest + 1), harmonics)
 
     def shares(
-        self,
-        z: FloatArray,
-        force: npt.NDArray[np.complex128],
-        amplitude: FloatArray,
-        known: tuple[int, ...] | None = None,
+        self, z: FloatArray, amplitude: FloatArray, known: tuple[int, ...] | None = None
     ) -> FloatArray:
         """Share of the amplitude (point, dof) that each harmonic left out would have: (point, harmonic).
 
-        The greatest of all degrees of freedom; zero for known harmonics, those of the balance unless others
-        are given: then, for harmonics of the balance, what they have. force as by `forces`.
+        Of motions z (point, unknown + 1) the greatest of all degrees of freedom; zero for known harmonics,
+        those of the balance unless others are given: then, for harmonics of the balance, what they have.
         """
-        others, orders = self.others, self.orders
+        found, own = np.zeros((len(z), self.highest)), self.others
         if known is not None:
-            others = np.setdiff1d(np.arange(self.highest), np.array(known) - 1)
-            orders = 1.0 + others.astype(np.float64)
-        size = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
-        share = np.zeros((len(z), self.highest))
-        if self.answers is not None:
-            parts = force.view(np.float64).reshape(*force.shape, 2)
-            self.answers.shares(orders, np.ascontiguousarray(z[:, -1]), parts, size, share)
-            return share
-        answer = np.abs(self.system.linear.answers(orders, z[:, -1], force[:, others]))
-        share[:, others] = (answer / np.where(size > 0.0, size, np.inf)[:, None, :]).max(axis=2)
-        return share
+            self.others = self._without(known)
+        for i in range(len(z)):
+            self.at(z[i], amplitude[i])
+            found[i] = self.share
+        self.others = own
+        self.share[:] = 0.0
+        return found
+
+    def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
+        linear = np.ones(len(z), dtype=np.bool_)
+        for i in range(len(z)):
+            for c in range(self.contacts):
+                linear[i] &= self.made(z[i], c) != MIXED
+        return linear
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def made(self, z: cython.double[::1], c: cython.Py_ssize_t) -> cython.int:
+        """What a contact does, whose forces the kernel then has."""
+        law: cython.double[::1] = self.laws[c]
+        return self.kernel.evaluate(z, c * self.width, law[0], law[1], law[2], law[3], 0.0, False)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def at(self, z: cython.double[::1], amplitude: cython.double[::1]) -> cython.int:
+        """Fill share (harmonic,), as one row of `shares`."""
+        c: cython.Py_ssize_t
+        h: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        most: cython.double = 0.0
+        for c in range(self.contacts):
+            self.made(z, c)
+            for h in range(self.highest):
+                for k in range(4):
+                    self.force[h, 2 * c + k // 2, k % 2] = self.kernel.forces[2 + 4 * h + k]
+        for k in range(self.size.shape[0]):
+            most = max(most, amplitude[k])
+        for k in range(self.size.shape[0]):
+            self.size[k] = max(amplitude[k], self.least * most)
+        if self.answers is None:
+            return self.of_many(z[self.contacts * self.width])
+        self.answers.shares(self.others, z[self.contacts * self.width], self.force, self.size, self.share)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def of_many(self, omega: cython.double) -> cython.int:
+        """Of many modes, by BLAS, or of a ring."""
+        others, size = np.asarray(self.others), np.asarray(self.size)
+        force = np.asarray(self.force).view(np.complex128)[others - 1, :, 0][None]
+        answer = np.abs(self.system.linear.answers(others.astype(np.float64), np.array([omega]), force))[0]
+        np.asarray(self.share)[others - 1] = (answer / np.where(size > 0.0, size, np.inf)).max(axis=1)
+        return 0
 
 
 def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:

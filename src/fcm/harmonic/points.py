@@ -9,9 +9,6 @@ from fcm.contact.periodic.forces import PeriodicContact
 from fcm.contact.periodic.measures import Measures
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.law import Law
-from fcm.scene.model import FloatArray
-
-MIXED = cython.declare(cython.int, 2)  # `PeriodicContact.kind` of a contact that slips or separates
 
 
 @cython.cclass
@@ -60,27 +57,6 @@ class Points:
         return self
 
 
-def forces_of(
-    kernel: PeriodicContact,
-    x: cython.double[:, ::1],
-    first: cython.Py_ssize_t,
-    contact: cython.double[::1],
-    out: cython.double[:, ::1],
-    linear: FloatArray,
-) -> None:
-    """Forces (point, equation) of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first]; linear
-    (point,) is 0 where it slips or separates, else as before."""
-    i: cython.Py_ssize_t
-    k: cython.Py_ssize_t
-    kept: cython.double[::1] = linear
-    for i in range(x.shape[0]):
-        kernel.evaluate(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0, False)
-        if kernel.kind == MIXED:
-            kept[i] = 0.0
-        for k in range(out.shape[1]):
-            out[i, k] = kernel.forces[k]
-
-
 def states_of(
     kernel: PeriodicContact,
     x: cython.double[:, ::1],
@@ -88,7 +64,8 @@ def states_of(
     contact: cython.double[::1],
     out: cython.int[:, ::1],
 ) -> None:
-    """States of the cycles of the same, (point, piece); beyond the last as before."""
+    """States of the cycles of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first], (point, piece);
+    beyond the last as before."""
     i: cython.Py_ssize_t
     p: cython.int
     for i in range(x.shape[0]):

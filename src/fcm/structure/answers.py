@@ -14,13 +14,6 @@ LEAST_DAMPING = cython.declare(cython.double, 1e-9)  # as of a `Receptance`
 class Answers:
     """Modes of mass 1 with shapes on the ports (mode, port) and on the degrees of freedom (mode, dof)."""
 
-    ports: cython.double[:, ::1]
-    dofs: cython.double[:, ::1]
-    natural: cython.double[::1]
-    rate: cython.double[::1]
-    q_re: cython.double[::1]
-    q_im: cython.double[::1]
-
     def __init__(
         self,
         natural: npt.NDArray[np.float64],
@@ -32,27 +25,26 @@ class Answers:
         self.ports, self.dofs = np.ascontiguousarray(ports), np.ascontiguousarray(dofs)
         self.q_re, self.q_im = np.zeros((2, len(natural)))
 
+    @cython.ccall
+    @cython.exceptval(check=False)
     def shares(
         self,
-        orders: cython.double[::1],
-        omega: cython.double[::1],
-        force: cython.double[:, :, :, ::1],
-        size: cython.double[:, ::1],
-        out: cython.double[:, ::1],
-    ) -> None:
-        """Greatest amplitude over the size of a degree of freedom, of some harmonics: (point, harmonic).
+        harmonics: cython.Py_ssize_t[::1],
+        omega: cython.double,
+        force: cython.double[:, :, ::1],
+        size: cython.double[::1],
+        out: cython.double[::1],
+    ) -> cython.void:
+        """Greatest amplitude over the size of a degree of freedom, of some harmonics: (harmonic,).
 
-        force (point, harmonic, port, 2): real and imaginary parts; size (point, dof), where 0 does not count;
-        harmonic 1 is the first of both.
+        force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 does not count; harmonic 1
+        is the first of both.
         """
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        h: cython.Py_ssize_t
-        for i in range(omega.shape[0]):
-            for j in range(orders.shape[0]):
-                h = cython.cast(cython.Py_ssize_t, orders[j]) - 1
-                self.move(orders[j] * omega[i], force[i, h])
-                out[i, h] = self.greatest(size[i])
+        k: cython.Py_ssize_t
+        for k in range(harmonics.shape[0]):
+            h: cython.Py_ssize_t = harmonics[k]
+            self.move(h * omega, force[h - 1])
+            out[h - 1] = self.greatest(size)
 
     @cython.cfunc
     @cython.exceptval(check=False)

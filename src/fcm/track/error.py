@@ -108,7 +108,7 @@ def _more(found: _Found) -> tuple[int, ...]:
     problem = found.way.tracked(Condition(Kind.FOLD))
     problem.measure(z)
     amplitude = problem.along(z)[1]
-    return Corrector(system).best(further.shares(y, further.forces(y), amplitude[None])[0])
+    return Corrector(system).best(further.shares(y, amplitude[None])[0])
 
 
 def _landed(

@@ -1,0 +1,12 @@
+cdef class Answers:
+    cdef double[:, ::1] ports
+    cdef double[:, ::1] dofs
+    cdef double[::1] natural
+    cdef double[::1] rate
+    cdef double[::1] q_re
+    cdef double[::1] q_im
+    cpdef void shares(
+        self, Py_ssize_t[::1] harmonics, double omega, double[:, :, ::1] force, double[::1] size, double[::1] out
+    ) noexcept
+    cdef void move(self, double w, double[:, ::1] force) noexcept
+    cdef double greatest(self, double[::1] size) noexcept
