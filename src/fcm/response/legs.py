@@ -15,6 +15,7 @@ from fcm.scene.model import FloatArray
 
 OFTEN = 0.5  # [s] between two savings of a curve that is being followed
 SHARE = 0.05  # of the time, that saving may take
+SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Legs:
         self.end = None if limit is None else time.process_time() + limit
         self.finished: list[Path] = []
         self._last: Stage | None = None
-        self._seen, self._took = time.monotonic(), 0.0
+        self._seen, self._took, self._ask = time.monotonic(), 0.0, 0.0
         self._saved: dict[int, Leg] = {}
         for leg in report.saved:
             if isinstance(leg, Leg):
@@ -87,8 +88,10 @@ class Legs:
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
         self.report(covered, f"{stage.kept.number} points")
-        if self.end is not None and time.process_time() > self.end:
-            raise TimeOver
+        if self.end is not None and time.monotonic() > self._ask:
+            if time.process_time() > self.end:
+                raise TimeOver
+            self._ask = time.monotonic() + SELDOM
 
     def keep(self) -> None:
         """Save the curve that is being followed as far as it is there."""
