@@ -17,6 +17,7 @@ class Rows:
         self.count, self.dense = rows.shape[0], np.ascontiguousarray(rows.T)
         self.entry, self.column = rows[places], places[1].copy()
         self.first = np.searchsorted(places[0], np.arange(self.count + 1))
+        self.used = np.unique(places[1])
 
     @cython.cfunc
     @cython.nogil
@@ -34,3 +35,26 @@ class Rows:
         for i in range(first + 2 * half, self.first[r + 1]):
             total += self.entry[i] * y[k, self.column[i]]
         return total + other
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def all(
+        self,
+        y: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        out: cython.double[:, ::1],
+        b: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Of all rows with row k of y, into row b of out."""
+        p: cython.Py_ssize_t
+        r: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        x: cython.double
+        for r in range(self.count):
+            out[b, r] = 0.0
+        for p in range(self.used.shape[0]):
+            i = self.used[p]
+            x = y[k, i]
+            for r in range(self.count):
+                out[b, r] += self.dense[i, r] * x
