@@ -8,6 +8,7 @@ cdef class Derivative(Along):
     cdef double[:, ::1] _rates
     cdef void _stand(self, Segments segments) noexcept nogil
     cdef Py_ssize_t _go(self, Segments segments, Py_ssize_t last, double position) noexcept nogil
+    cdef Py_ssize_t _reach(self, Segments segments, Py_ssize_t last, double position) noexcept nogil
     cdef void _arrive(self, Segments segments, Py_ssize_t slot) noexcept nogil
     cdef void _across(self, Segments segments, Py_ssize_t i, Py_ssize_t old, Py_ssize_t new) noexcept nogil
     cdef void _put_friction(self, double[:, ::1] z, Py_ssize_t k, Segments segments, Py_ssize_t i, bint every) noexcept nogil

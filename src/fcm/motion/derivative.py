@@ -32,15 +32,14 @@ _NEGATIVE = cython.declare(cython.int, 3)
 
 @cython.cclass
 class Derivative(Along):
-    """Of a motion by x = (q, q', f) at its start, or along directions of x, and by the frequency.
+    """Of a motion by x = (q, q', f) at its start, and by the frequency.
 
-    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x, or along
-    direction k; the row after them that by the frequency, at a fixed time; the last row is the state vector
-    itself; `rate` is A y there.
+    Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
+    them that by the frequency, at a fixed time; the last row is the state vector itself; `rate` is A y there.
     """
 
-    def __init__(self, flows: Flows, directions: int = 0) -> None:
-        Along.__init__(self, flows, directions or 2 * flows.modes + flows.contacts)
+    def __init__(self, flows: Flows, unknowns: int = 0) -> None:
+        Along.__init__(self, flows, unknowns or 2 * flows.modes + flows.contacts)
         self.at, self.position = 0, 0.0
         self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 
@@ -57,22 +56,6 @@ class Derivative(Along):
         for k in range(m):
             for j in range(self.flows.contacts):
                 self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
-        self._stand(segments)
-
-    def begins_along(self, segments: Segments, directions: cython.double[:, ::1]) -> None:
-        """Put the derivative along directions (direction, unknown) at the start of the segments."""
-        k: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        i: cython.Py_ssize_t
-        m: cython.Py_ssize_t = self.flows.modes
-        n: cython.Py_ssize_t = 2 * m + self.flows.contacts
-        self.columns[:] = 0.0
-        for k in range(self.unknowns):
-            for i in range(n):
-                self.columns[k, i] = directions[k, i]
-            for j in range(self.flows.contacts):
-                for i in range(m):
-                    self.columns[k, n + j] += self.flows.k_v[j] * self.flows.normal[j, i] * directions[k, i]
         self._stand(segments)
 
     @cython.cfunc
@@ -128,8 +111,26 @@ class Derivative(Along):
     @cython.exceptval(check=False)
     def _go(self, segments: Segments, last: cython.Py_ssize_t, position: cython.double) -> cython.Py_ssize_t:
         slot: cython.Py_ssize_t
-        new: cython.Py_ssize_t
         i: cython.Py_ssize_t
+        missing: cython.Py_ssize_t = self._reach(segments, last, position)
+        if missing >= 0:
+            return missing
+        slot = self.flows.find(segments.states, last)
+        self._arrive(segments, slot)
+        self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0)
+        for i in range(self.flows.size):
+            self.rate[i] = self._rates[0, i]
+        return -1
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _reach(
+        self, segments: Segments, last: cython.Py_ssize_t, position: cython.double
+    ) -> cython.Py_ssize_t:
+        """On to a position in a segment, of the state vector only the forces' angle."""
+        slot: cython.Py_ssize_t
+        new: cython.Py_ssize_t
         while True:
             slot = self.flows.find(segments.states, self.at)
             if slot < 0:
@@ -138,10 +139,6 @@ class Derivative(Along):
             if self.at == last:
                 self.follow(slot, position - self.position)
                 self.position = position
-                self._arrive(segments, slot)
-                self.flows.derive(slot, self.columns, self.unknowns + 1, self._rates, 0)
-                for i in range(self.flows.size):
-                    self.rate[i] = self._rates[0, i]
                 return -1
             new = self.flows.find(segments.states, self.at + 1)
             if new < 0:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from fcm.motion.combination import Codes, made
 from fcm.motion.derivative import Derivative
+from fcm.motion.directional import Directional
 from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
@@ -95,7 +96,7 @@ class System:
         self.tuned()
         return self._derivative
 
-    def derivative_along(self) -> Derivative:
+    def derivative_along(self) -> Directional:
         """The derivative along one direction; there is one for all frequencies."""
         self.tuned()
         return self._along
@@ -135,7 +136,7 @@ class System:
         )
 
 
-_Kernels = tuple[Flows, March, Derivative, Derivative]
+_Kernels = tuple[Flows, March, Derivative, Directional]
 
 
 class _Latest(local):
@@ -162,7 +163,7 @@ def _kernels_of(scene: Scene, flows: Callable[[], Flows]) -> _Kernels:
     kernels = _LATEST.kernels
     if kernels is None or _LATEST.of() is not scene:
         made = flows()
-        kernels = made, March(made), Derivative(made), Derivative(made, 1)
+        kernels = made, March(made), Derivative(made), Directional(made)
         _LATEST.keep(scene, kernels)
     return kernels
 

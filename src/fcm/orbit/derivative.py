@@ -45,7 +45,7 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
 def along(
     system: System, segments: Segments, places: Sequence[Extreme], way: FloatArray, rate: float
 ) -> FloatArray:
-    """The derivative of the state vector along a way of x and the frequency, at places: (place, d).
+    """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).
 
     Parameters
     ----------
@@ -54,13 +54,11 @@ def along(
     rate : float
         Change of the frequency.
     """
-    kernel = system.derivative_along()
-    kernel.begins_along(segments, way[None])
-    out = np.empty((len(places), system.size))
-    for k in sorted(range(len(places)), key=lambda k: places[k][1:]):
-        _, segment, position = places[k]
-        while (missing := kernel.go(segments, segment, position)) >= 0:
-            system.make(np.asarray(segments.states)[missing])
-        columns = np.asarray(kernel.columns)
-        out[k] = columns[0] + rate * columns[1]
+    kernel, at = system.derivative_along(), np.array([place[1:] for place in places]).reshape(-1, 2)
+    kernel.begins_along(segments, way, rate)
+    order = np.lexsort(at.T[::-1])
+    sought, (found, out) = at[order], np.empty((2, len(places), system.modes))
+    while (missing := kernel.at_places(segments, sought, found)) >= 0:
+        system.make(np.asarray(segments.states)[missing])
+    out[order] = found
     return out

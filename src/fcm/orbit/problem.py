@@ -8,7 +8,6 @@ import numpy as np
 
 from fcm.continuation.problem import Problem
 from fcm.motion.errors import SimulationError
-from fcm.motion.measure import Extreme
 from fcm.motion.state import State
 from fcm.orbit.derivative import along
 from fcm.orbit.shooting import Shooting, Shot
@@ -144,16 +143,11 @@ class OrbitProblem(Problem):
         moves = amplitude > STILL * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)
         way[self.free] = np.asarray(direction)[:-1]
-        rates = self._rates_at(shot, [*least, *greatest], way, float(direction[-1]))
+        rates = along(shot.system, shot.segments, [*least, *greatest], way, float(direction[-1]))
         half = len(least)
         change = np.array([0.5 * (rates[half + d] - rates[d]) @ shapes[:, d] for d in range(half)])
         output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change.reshape(half), 0.0)
         return 0
-
-    @staticmethod
-    def _rates_at(shot: Shot, places: list[Extreme], way: FloatArray, rate: float) -> FloatArray:
-        """The derivative of the modal displacements along a way at places: (place, mode)."""
-        return along(shot.system, shot.segments, places, way, rate)[:, shot.system.q]
 
 
 def _size(shot: Shot | None) -> int:
