@@ -27,19 +27,33 @@ class Measure:
     least: FloatArray  # (dof,)
 
 
-def measure(cycle: Cycle, known: Extremes | None = None) -> Measure:
+def measure(cycle: Cycle, known: Displaced | None = None) -> Measure:
     """Measure the displacements over a cycle, of which the extremes may be known.
 
     The integrals are exact to rounding; each extreme is a root of the velocity.
     """
     system, shapes = cycle.system, cycle.system.scene.modal.shapes
-    least, greatest = known or displaced(system, cycle.segments)
+    least, greatest, _ = known or displaced(system, cycle.segments)
     system.run(system.integrals, cycle.segments)
     mean, sine, cosine = (np.asarray(system.integrals.sums) @ shapes) / cycle.duration
     # x = a sin(theta + phase): its mean with sin(theta) + i cos(theta) is a exp(i phase) / 2
-    wave = 2.0 * (sine + 1j * cosine)
-    high, low = (np.array([one.value for one in ends]) for ends in (greatest, least))
-    return Measure(0.5 * (high - low), np.abs(wave), np.angle(wave), mean, high, low)
+    size, phase = 2.0 * np.hypot(sine, cosine), np.arctan2(cosine, sine)
+    return Measure(0.5 * (greatest - least), size, phase, mean, greatest, least)
+
+
+class Displaced(NamedTuple):
+    """The least and the greatest displacement of each degree of freedom, and where they are."""
+
+    least: FloatArray  # (dof,)
+    greatest: FloatArray  # (dof,)
+    places: FloatArray  # (2 dof, 2) segment, and position in steps: of all the least, then of the greatest
+
+
+def displaced(system: System, segments: Segments) -> Displaced:
+    """The least and the greatest displacement of each degree of freedom."""
+    scan = system.displaced
+    system.run(scan, segments)
+    return Displaced(np.array(scan.least), np.array(scan.greatest), np.array(scan.place))
 
 
 class Extreme(NamedTuple):
@@ -53,21 +67,15 @@ class Extreme(NamedTuple):
 Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of several rows
 
 
-def displaced(system: System, segments: Segments) -> Extremes:
-    """The least and the greatest displacement of each degree of freedom."""
-    return _extremes(system, segments, system.displaced)
-
-
 def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
     """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
-    return _extremes(system, segments, Scan(system.flows, Rows(rows)))
+    return extremes_by(Scan(system.flows, Rows(rows)), system, segments)
 
 
-def _extremes(system: System, segments: Segments, found: Scan) -> Extremes:
-    system.run(found, segments)
-    values = zip(np.asarray(found.least).tolist(), np.asarray(found.greatest).tolist(), strict=True)
-    least, greatest = list[Extreme](), list[Extreme]()
-    for (low, high), place in zip(values, np.asarray(found.place).tolist(), strict=True):
-        greatest.append(Extreme(high, int(place[0]), place[1]))
-        least.append(Extreme(low, int(place[2]), place[3]))
-    return least, greatest
+def extremes_by(scan: Scan, system: System, segments: Segments) -> Extremes:
+    """The same of the rows of a scan."""
+    system.run(scan, segments)
+    values = [*np.asarray(scan.least).tolist(), *np.asarray(scan.greatest).tolist()]
+    places = np.asarray(scan.place).tolist()
+    found = [Extreme(value, int(at[0]), at[1]) for value, at in zip(values, places, strict=True)]
+    return found[: len(found) // 2], found[len(found) // 2 :]

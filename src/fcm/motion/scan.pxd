@@ -17,3 +17,4 @@ cdef class Scan(Walk):
     cdef void _extremes(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
     cdef void _turn(self, Py_ssize_t r, Py_ssize_t k, double low, double high) noexcept nogil
     cdef void _note(self, Py_ssize_t r, double x, double here) noexcept nogil
+    cdef void _put(self, Py_ssize_t k, double x) noexcept nogil

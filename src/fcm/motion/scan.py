@@ -36,14 +36,14 @@ _SPAN = cython.declare(cython.int, 128)
 class Scan(Walk):
     """`greatest` and `least` (row,), the extremes of rows @ y.
 
-    `place` (row, 4) is where they are: segment and position of the greatest, and of the least.
+    `place` (2 rows, 2) is where they are: segment and position of all the least, then of the greatest.
     """
 
     def __init__(self, flows: Flows, rows: Rows) -> None:
         Walk.__init__(self, flows)
         self._rows = rows
         self.greatest, self.least = np.zeros(rows.count), np.zeros(rows.count)
-        self.place, self._powers = np.zeros((rows.count, 4)), np.zeros(ORDER + 1)
+        self.place, self._powers = np.zeros((2 * rows.count, 2)), np.zeros(ORDER + 1)
         self._there, self._terms = np.zeros((3, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._path = self.ahead if self.span else np.zeros((SPAN + 1, flows.size))
         self._values = np.zeros((3, SPAN + 1, rows.count))
@@ -211,7 +211,14 @@ class Scan(Walk):
         """Take a value, x steps from the first of those that are looked at, if it is an extreme so far."""
         if here > self.greatest[r]:
             self.greatest[r] = here
-            self.place[r, 0], self.place[r, 1] = self.at, self._first + x
+            self._put(self._rows.count + r, x)
         if here < self.least[r]:
             self.least[r] = here
-            self.place[r, 2], self.place[r, 3] = self.at, self._first + x
+            self._put(r, x)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _put(self, k: cython.Py_ssize_t, x: cython.double) -> cython.void:
+        """Take x for a place."""
+        self.place[k, 0], self.place[k, 1] = self.at, self._first + x

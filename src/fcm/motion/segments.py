@@ -84,7 +84,12 @@ class Segments:
 
     def held(self, j: int) -> float:
         """A lower bound of the exits of contact j over all segments."""
-        return float(np.asarray(self.slack)[: self.count, j].min())
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t = j
+        least: cython.double = self.slack[0, i]
+        for k in range(1, self.count):
+            least = min(least, self.slack[k, i])
+        return float(least)
 
     def seen(self) -> list[int]:
         """For each contact the sum of 2**code of the states that it has been in."""

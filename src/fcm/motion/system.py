@@ -57,11 +57,12 @@ class System:
         self.static: FloatArray = modal.shapes @ loads.static  # modal
         self.stretch, self.pull, pressed = held_as_springs(scene)
         self.steady = self.static + pressed
-        displacements = np.zeros((modal.shapes.shape[1], self.size - 2))
-        displacements[:, self.q] = modal.shapes.T
-        rows = Rows(displacements)  # of the degrees of freedom
-        self.flows, self._march, self._derivative, self._along = _kernels_of(scene, self._flows)
-        self.displaced, self.integrals = Scan(self.flows, rows), Integrals(self.flows)
+        self.sticking = np.zeros((c, self.unknowns))  # k_u w of the contacts, by x = (q, q', f)
+        self.sticking[:, self.q], self.sticking[:, self.f] = self.k_u[:, None] * self.tangential, -np.eye(c)
+        self.rough = [has_friction(contact) for contact in scene.contacts]
+        kernels = _kernels_of(scene, self._kernels)
+        self.flows, self._march, self._derivative, self._along = kernels[:4]
+        self.displaced, self.limits, self.integrals = kernels[4:]
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -120,6 +121,23 @@ class System:
         """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
         return self.preload + y[self.n]
 
+    def _kernels(self) -> _Kernels:
+        flows, wide = self._flows(), self.size - 2
+        displacements = np.zeros((self.scene.modal.shapes.shape[1], wide))
+        displacements[:, self.q] = self.scene.modal.shapes.T
+        moves, limits = Scan(flows, Rows(displacements)), Scan(flows, Rows(self.limit_rows))
+        return flows, March(flows), Derivative(flows), Directional(flows), moves, limits, Integrals(flows)
+
+    @property
+    def limit_rows(self) -> FloatArray:
+        """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
+        c, each = len(self.contacts), np.arange(len(self.contacts))
+        rows = np.zeros((c, 2, self.size - 2))
+        for i, sign in enumerate((-1.0, 1.0)):
+            rows[each, i, self.f.start + each] = sign
+            rows[each, i, self.n.start + each], rows[:, i, -1] = self.mu, self.mu * self.preload
+        return rows.reshape(2 * c, self.size - 2)
+
     def _flows(self) -> Flows:
         modal, c = self.scene.modal, self.contacts
         law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
@@ -136,7 +154,7 @@ class System:
         )
 
 
-_Kernels = tuple[Flows, March, Derivative, Directional]
+_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Integrals]
 
 
 class _Latest(local):
@@ -158,12 +176,11 @@ class _Latest(local):
 _LATEST = _Latest()
 
 
-def _kernels_of(scene: Scene, flows: Callable[[], Flows]) -> _Kernels:
+def _kernels_of(scene: Scene, made: Callable[[], _Kernels]) -> _Kernels:
     """Those of a scene, the same as long as it is the one that is asked for: flows are dear to make."""
     kernels = _LATEST.kernels
     if kernels is None or _LATEST.of() is not scene:
-        made = flows()
-        kernels = made, March(made), Derivative(made), Directional(made)
+        kernels = made()
         _LATEST.keep(scene, kernels)
     return kernels
 

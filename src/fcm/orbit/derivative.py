@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.measure import Extreme
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
 from fcm.scene.model import FloatArray
@@ -42,22 +40,21 @@ def period_derivative(system: System, segments: Segments, duration: float) -> tu
     return by_state, by_frequency
 
 
-def along(
-    system: System, segments: Segments, places: Sequence[Extreme], way: FloatArray, rate: float
-) -> FloatArray:
+def along(system: System, segments: Segments, places: FloatArray, way: FloatArray, rate: float) -> FloatArray:
     """The derivative of the modal displacements along a way of x and the frequency, at places: (place, mode).
 
     Parameters
     ----------
+    places : (place, 2)
+        Segments, and positions in them in steps.
     way : (unknown,)
         Change of x = (q, q', f) at the start of the segments.
     rate : float
         Change of the frequency.
     """
-    kernel, at = system.derivative_along(), np.array([place[1:] for place in places]).reshape(-1, 2)
+    kernel, order = system.derivative_along(), np.lexsort(places.T[::-1])
     kernel.begins_along(segments, way, rate)
-    order = np.lexsort(at.T[::-1])
-    sought, (found, out) = at[order], np.empty((2, len(places), system.modes))
+    sought, (found, out) = places[order], np.empty((2, order.size, system.modes))
     while (missing := kernel.at_places(segments, sought, found)) >= 0:
         system.make(np.asarray(segments.states)[missing])
     out[order] = found

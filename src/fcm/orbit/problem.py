@@ -138,15 +138,14 @@ class OrbitProblem(Problem):
         if shot is None:
             return 0
         shapes = self.scene.modal.shapes
-        least, greatest = shot.extremes
-        amplitude = np.array([0.5 * (b.value - a.value) for a, b in zip(least, greatest, strict=True)])
+        least, greatest, places = shot.extremes
+        amplitude = 0.5 * (greatest - least)
         moves = amplitude > STILL * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)
         way[self.free] = np.asarray(direction)[:-1]
-        rates = along(shot.system, shot.segments, [*least, *greatest], way, float(direction[-1]))
-        half = len(least)
-        change = np.array([0.5 * (rates[half + d] - rates[d]) @ shapes[:, d] for d in range(half)])
-        output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change.reshape(half), 0.0)
+        rates = along(shot.system, shot.segments, places, way, float(direction[-1]))
+        change = 0.5 * ((rates[least.size :] - rates[: least.size]) * shapes.T).sum(axis=1)
+        output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change, 0.0)
         return 0
 
 

@@ -12,11 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.motion.measure import Extreme, extremes
+from fcm.motion.measure import Extreme, extremes_by
 from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
-from fcm.motion.system import System, has_friction
+from fcm.motion.system import System
 from fcm.orbit.derivative import derivative_at
 from fcm.scene.model import Contact, FloatArray, Scene
 
@@ -58,8 +58,8 @@ def always_stuck(system: System, segments: Segments) -> list[int]:
     """The contacts that stick all through the segments."""
     return [
         j
-        for j, (contact, seen) in enumerate(zip(system.contacts, segments.seen(), strict=True))
-        if seen == 1 << STICK and has_friction(contact)
+        for j, (rough, seen) in enumerate(zip(system.rough, segments.seen(), strict=True))
+        if seen == 1 << STICK and rough
     ]
 
 
@@ -69,14 +69,14 @@ def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choi
     if not stuck:
         return []
     y = np.asarray(segments.y)[0]
-    gaps = {j: _gap(system, y, j, float(wanted[j])) for j in stuck}
-    far = [j for j, gap in gaps.items() if abs(gap) > _known_room(system, segments, y, j)]
+    gaps = (system.sticking @ y[: system.unknowns] - system.k_u * wanted).tolist()
+    far = [j for j in stuck if abs(gaps[j]) > _known_room(system, segments, y, j)]
     room = rooms(system, segments, far) if far else {}
     return [
-        _choice(system, segments, j, gap, *room[j])
+        _choice(system, segments, j, gaps[j], *room[j])
         if j in room
-        else Choice(j, gap, _row(system, j), 0.0, False)
-        for j, gap in gaps.items()
+        else Choice(j, gaps[j], system.sticking[j], 0.0, False)
+        for j in stuck
     ]
 
 
@@ -84,17 +84,6 @@ def _known_room(system: System, segments: Segments, y: FloatArray, j: int) -> fl
     """Gaps up to this need no search: within a bound of the limits, or of no size."""
     margin = _margin(system, y, j)
     return max(ROUNDING * margin, segments.held(j) - margin)
-
-
-def _row(system: System, j: int) -> FloatArray:
-    """The derivative by x of what is to be added to the friction force."""
-    row = np.zeros(system.unknowns)
-    row[system.q], row[system.f.start + j] = system.k_u[j] * system.tangential[j], -1.0
-    return row
-
-
-def _gap(system: System, y: FloatArray, j: int, wanted: float) -> float:
-    return float(_row(system, j) @ y[: system.unknowns]) - float(system.k_u[j]) * wanted
 
 
 def _choice(system: System, segments: Segments, j: int, gap: float, above: Extreme, below: Extreme) -> Choice:
@@ -107,7 +96,7 @@ def _choice(system: System, segments: Segments, j: int, gap: float, above: Extre
     ahead, behind = (above, below) if gap > 0.0 else (below, above)
     room, other = ahead.value, behind.value
     if abs(gap) <= room - margin:
-        return Choice(j, gap, _row(system, j), 0.0, False)
+        return Choice(j, gap, system.sticking[j], 0.0, False)
     there, rate = _room_derivative(system, segments, j, sign, ahead)
     if room + other > 2.0 * margin:
         return Choice(j, sign * (room - margin), sign * there, sign * rate, True)
@@ -130,27 +119,18 @@ def overshoots(system: System, segments: Segments) -> list[tuple[int, float]]:
     None of these is periodic: the slip takes the force to its limit, where the contact sticks.
     """
     found = []
-    for j, (contact, seen) in enumerate(zip(system.contacts, segments.seen(), strict=True)):
+    for j, (rough, seen) in enumerate(zip(system.rough, segments.seen(), strict=True)):
         ways = seen & (1 << POSITIVE | 1 << NEGATIVE)
-        if has_friction(contact) and not seen & 1 << OPEN and ways in (1 << POSITIVE, 1 << NEGATIVE):
+        if rough and not seen & 1 << OPEN and ways in (1 << POSITIVE, 1 << NEGATIVE):
             sign = 1.0 if ways == 1 << POSITIVE else -1.0
             found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
     return found
 
 
-def _limit(system: System, j: int, sign: float) -> FloatArray:
-    """The row of mu n - sign f."""
-    contact, row = system.contacts[j], np.zeros(system.size - 2)
-    row[system.f.start + j], row[system.n.start + j] = -sign, contact.mu
-    row[-1] = contact.mu * contact.n_0
-    return row
-
-
 def rooms(system: System, segments: Segments, contacts: list[int]) -> dict[int, tuple[Extreme, Extreme]]:
     """Of each contact the least of mu n - f and of mu n + f over the segments."""
-    rows = [_limit(system, j, sign) for j in contacts for sign in (1.0, -1.0)]
-    found, _ = extremes(system, segments, np.array(rows))
-    return {j: (found[2 * i], found[2 * i + 1]) for i, j in enumerate(contacts)}
+    found, _ = extremes_by(system.limits, system, segments)
+    return {j: (found[2 * j], found[2 * j + 1]) for j in contacts}
 
 
 def _room_derivative(
@@ -158,5 +138,5 @@ def _room_derivative(
 ) -> tuple[FloatArray, float]:
     """The derivatives of the least of mu n - sign f by x and by the frequency."""
     columns = derivative_at(system, segments, place.segment, place.position).columns
-    rates = columns[:-1, :-2] @ _limit(system, j, sign)
+    rates = columns[:-1, :-2] @ system.limit_rows[2 * j + (sign < 0.0)]
     return rates[:-1], float(rates[-1])

@@ -7,14 +7,17 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.motion.cycle import Cycle
-from fcm.motion.measure import Extremes, displaced
+from fcm.motion.measure import Displaced, displaced
 from fcm.motion.run import march_from
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import period_derivative
 from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting
 from fcm.scene.model import FloatArray, Scene
+
+SMALL = 16  # rows of a matrix, of which LAPACK finds the eigenvalues later
 
 
 class Shot:
@@ -103,7 +106,7 @@ class Shot:
         return rate
 
     @cached_property
-    def extremes(self) -> Extremes:
+    def extremes(self) -> Displaced:
         """The least and the greatest displacement of each degree of freedom."""
         return displaced(self.system, self.segments)
 
@@ -114,19 +117,29 @@ class Shot:
         With w = u - f / k_u for its f the others are those of the rest.
         """
         system, stuck = self.system, always_stuck(self.system, self.segments)
-        places, by_state = system.f.start + np.array(stuck, dtype=int), self.derivative.copy()
-        by_state[:, system.q] += by_state[:, places] @ (system.k_u[stuck, None] * system.tangential[stuck])
-        rest = np.delete(np.arange(self.x.size), places)
-        scale = self.scale[rest]
-        matrix = by_state[np.ix_(rest, rest)] * scale / scale[:, None]
-        return np.linalg.eigvals(matrix).astype(np.complex128)
+        by_state, scale = self.derivative, self.scale
+        if stuck:
+            places, by_state = system.f.start + np.array(stuck), by_state.copy()
+            by_state[:, system.q] += by_state[:, places] @ (
+                system.k_u[stuck, None] * system.tangential[stuck]
+            )
+            rest = np.delete(np.arange(self.x.size), places)
+            by_state, scale = by_state[np.ix_(rest, rest)], scale[rest]
+        return _eigenvalues(by_state * (scale / scale[:, None]))
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
         """Floquet's, the greatest first; 1 for each contact that always sticks."""
-        ones = np.ones(self.x.size - self.others.size, dtype=np.complex128)
-        values = np.concatenate((self.others, ones))
+        values = self.others
+        if values.size < self.x.size:
+            values = np.append(values, np.ones(self.x.size - values.size))
         return values[np.argsort(-np.abs(values), kind="stable")]
+
+
+def _eigenvalues(matrix: FloatArray) -> npt.NDArray[np.complex128]:
+    """Of a small matrix without the way to LAPACK, which takes longer than they do."""
+    found = Eigenvalues(len(matrix)).of(matrix) if len(matrix) <= SMALL else None
+    return np.linalg.eigvals(matrix).astype(np.complex128) if found is None else np.array(found)
 
 
 class Shooting:
