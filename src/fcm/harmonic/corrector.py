@@ -167,8 +167,10 @@ class Corrector:
         return now
 
     def best(self, share: cython.double[::1]) -> tuple[int, ...]:
-        """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point."""
-        self.further.share[:] = share
+        """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point;
+        those beyond the last given are not taken."""
+        self.further.share[:] = 0.0
+        self.further.share[: share.shape[0]] = share
         return self.most()
 
     def enough_of(self, share: cython.double[::1]) -> tuple[int, ...]:

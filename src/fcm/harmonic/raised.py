@@ -49,7 +49,7 @@ def errors_at_levels(
     bent = np.flatnonzero(~further.linear(z))
     if not bent.size:
         return error
-    share = further.shares(z[bent], further.forces(z[bent]), amplitude[bent]).max(axis=0)
+    share = further.shares(z[bent], amplitude[bent]).max(axis=0)
     more = Corrector(system).best(share)
     if more == system.harmonics:
         return error
