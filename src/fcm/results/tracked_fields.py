@@ -62,8 +62,8 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
     if tracking.what != "optimum":
         out |= _errors(tracking)
     for key in curves[0].parameters:
-        values = np.array([curve.parameters[key] for curve in curves])
-        out[f"track_{key}"] = (("track",), values, {"long_name": f"{key} of the curve"})
+        swept = np.array([curve.parameters[key] for curve in curves])
+        out[f"track_{key}"] = (("track",), swept, {"long_name": f"{key} of the curve"})
     return out
 
 
