@@ -8,9 +8,9 @@ from scipy.optimize import brentq
 from fcm.continuation.secants import Secants
 
 
-def looked(f, low, high, within, zero=1e-10):
+def looked(f, low, high, within, zero=1e-10, may_jump=True):
     """The sides, and at how many places the function was looked at until it was known."""
-    sides, count = Secants(low, high, f(low), f(high)), 0
+    sides, count = Secants(low, high, f(low), f(high), may_jump), 0
     while sides.width > within and count < 200:
         at = sides.at
         assert sides.low <= at <= sides.high
@@ -26,8 +26,9 @@ def looked(f, low, high, within, zero=1e-10):
     "f",
     [lambda t: math.exp(t) - 1.5, lambda t: 0.2 - math.sin(t), lambda t: t - 0.4 + max(0.0, 4.0 * (t - 0.5))],
 )
-def test_the_zero_of_a_smooth_function(f):
-    at, count = looked(f, 0.0, 1.0, 1e-12)
+@pytest.mark.parametrize("may_jump", [False, True])
+def test_the_zero_of_a_function_without_jumps(f, may_jump):
+    at, count = looked(f, 0.0, 1.0, 1e-12, may_jump=may_jump)
     assert at == pytest.approx(brentq(f, 0.0, 1.0), abs=1e-9)
     assert count <= 12
 

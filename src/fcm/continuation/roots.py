@@ -4,9 +4,9 @@ parameter less a value. Each is found on the curve itself; see `looks` for where
 from __future__ import annotations
 
 import cython
-from cython.cimports.libc.math import fabs
 
 from fcm.continuation.place import Place
+from fcm.continuation.secants import Secants
 from fcm.continuation.step import Step
 
 LOOKS = cython.declare(cython.int, 40)  # places looked at to find a root
@@ -56,45 +56,24 @@ def root(
 ) -> cython.double:
     """Length at which a function changes sign between two lengths, before and after which it is known.
 
-    By the secant through the last two places; or halfway between those that enclose the root, where that
-    leads out of them, or three looks have not halved their distance. Where the curve cannot be found, that
-    length is the root; but of a margin LOST: what is there may be another part of a curve that goes back in
-    the corner.
+    Where the curve cannot be found, that length is the root; but of a margin LOST: what is there may be
+    another part of a curve that goes back in the corner.
     """
     at: cython.double
     now: cython.double
-    rise: cython.double
     count: cython.int
-    width: cython.double = high - low
-    last: cython.double = low
-    value_last: cython.double = before
-    here: cython.double = high
-    value_here: cython.double = after
-    fine: cython.double = FINE * step.step
     turning: cython.bint = sought.kind == FOLD or sought.kind == PEAK
-    for count in range(LOOKS):
-        rise = value_here - value_last
-        at = here - value_here * (here - last) / rise if rise != 0.0 else low
-        way: cython.double = fabs(at - here)
-        # of a corner's place the next way is not taken: it would be shorter by as much, at least
-        enough: cython.bint = sought.kind == MARGIN and way * way <= fine * fabs(here - last)
-        if way <= fine or high - low <= fine or enough:
-            return min(max(at, low), high)
-        if count % 3 == 2:
-            at = at if high - low <= 0.5 * width else low
-            width = high - low
-        if not low < at < high:
-            at = 0.5 * (low + high)
+    sides = Secants(low, high, before, after)
+    for count in range(LOOKS):  # noqa: B007
+        if sides.known(FINE * step.step, after_next=sought.kind == MARGIN):
+            return min(max(sides.secant, sides.low), sides.high)
+        at = sides.at
         if not step.put(at, sought.kind == MARGIN, False):
-            return high if turning else LOST
+            return sides.high if turning else LOST
         if turning and not step.sharpen(False, sought.kind == PEAK):
-            return high
+            return sides.high
         now = value(step, step.between, sought)
         if now == 0.0:
             return at
-        last, value_last, here, value_here = here, value_here, at, now
-        if now * before > 0.0:
-            low = at
-        else:
-            high = at
-    return high
+        sides.saw(at, now)
+    return sides.high

@@ -193,7 +193,7 @@ class _Along:
         curve = self.looked.curve(first)
         before, after = (max(self.looked.verdicts[t].growth, ENOUGH) for t in (a, b))
         kind = self.looked.verdicts[a if before > 0.0 else b].kind
-        sides = Secants(a - first, b - first, before, after)
+        sides = Secants(a - first, b - first, before, after, may_jump=True)
         for _ in range(LOOKS):
             at = sides.at
             if sides.width < FINE or not curve.put(at):
