@@ -23,12 +23,12 @@ CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
 	$(wildcard $(foreach part,scene table structure continuation harmonic results reduction run response,src/fcm/$(part)/*.py))
 SIMULATION := $(SOLVER) $(wildcard src/fcm/motion/*.py src/fcm/orbit/*.py)
-LOOK       := $(ALL) src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
-LOOPS      := $(CONTACT) $(LOOK) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
-SURFACES   := $(CONTACT) $(LOOK) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py
-NORMAL     := $(CONTACT) $(LOOK) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
-CURVES     := $(LOOK) $(addprefix src/fcm/plot/,place.py points.py response.py error_panel.py) src/fcm/cli/plot.py
-HISTORIES  := $(LOOK) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
+DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/cli/drawing.py
+LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
+SURFACES   := $(CONTACT) $(DRAWING) $(addprefix src/fcm/plot/,plane.py regions.py surface.py) src/fcm/cli/coefficients.py
+NORMAL     := $(CONTACT) $(DRAWING) src/fcm/plot/normal.py src/fcm/cli/coefficients.py
+CURVES     := $(DRAWING) $(addprefix src/fcm/plot/,place.py points.py response.py error_panel.py) src/fcm/cli/plot.py
+HISTORIES  := $(DRAWING) $(wildcard src/fcm/plot/history*.py) src/fcm/cli/history.py
 FIGURES    := $(foreach number,5 6 8 10 11 12 13 14 15,$(PAPER)/figure$(number).png)
 
 COMPARED   := yang1998-n5 two-contacts yang1998

@@ -18,8 +18,8 @@ from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curves import tracks
-from fcm.track.seeds import moved
 from fcm.track.spot import Way
+from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 

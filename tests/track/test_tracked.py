@@ -232,7 +232,7 @@ def test_the_onset_of_slip_is_where_stiff_contacts_reach_the_limit(scene):
     assert highest == pytest.approx(-best.fun, rel=1e-8)
 
 
-def test_separation_that_comes_and_goes_between_the_seeds_is_met_by_the_peak(scene):
+def test_separation_that_comes_and_goes_between_the_starts_is_met_by_the_peak(scene):
     tracking = track(scene, "separation", PRELOAD, (-20.0, 100.0), harmonics=1).tracking
     (curve,) = tracking.curves
     top = curve.number.max()

@@ -33,7 +33,7 @@ class Boundaries(CoefficientLaw):
     ) -> None:
         """See `CoefficientLaw`."""
         i: cython.Py_ssize_t
-        if self.limits.place(n0_bar, b_bar, phi) == UNKNOWN:
+        if self.limits.behaviour(n0_bar, b_bar, phi) == UNKNOWN:
             self.unknown(gradient, out, at)
             return
         out[at] = self.limits.n0 + self.limits.b

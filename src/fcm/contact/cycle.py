@@ -61,7 +61,7 @@ class Cycle(SlipLimits):
 
     def find(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
         """What a contact does; where it is SLIPPING, its cycle has been gone through."""
-        behaviour: cython.int = self.place(n0_bar, b_bar, phi)
+        behaviour: cython.int = self.behaviour(n0_bar, b_bar, phi)
         if behaviour == SLIPPING:
             self._pass()
         return behaviour

@@ -24,14 +24,14 @@ OPEN = cython.declare(cython.int, 2)  # below n0 = -b
 
 @cython.cclass
 class SlipLimits:
-    """`place` takes the arguments of a contact and says what it does.
+    """`behaviour` takes the arguments of a contact and says what it does.
 
     n0 and b are the preload and the amplitude of the load as they are calculated with; ell_1 and ell_2 the
     amplitudes of the limits, lower_P the greatest of the lower one, at theta_P, upper_N the least of the
     upper one, at theta_N.
     """
 
-    def place(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
+    def behaviour(self, n0_bar: float, b_bar: float, phi: float) -> cython.int:
         """What a contact does. An infinite n0_bar is as any very large one."""
         if isnan(n0_bar) or not isfinite(b_bar) or not isfinite(phi):
             return UNKNOWN

@@ -123,7 +123,7 @@ class Front(Step):
         new: cython.double[::1] = self.problem.scale
         if self.problem.soft:
             self.prediction.learn(self.here, place, scale, new, length)
-        unit: cython.double = self.prediction.turn(self.here, place, scale, new, length)
+        unit: cython.double = self.prediction.rescale(self.here, place, scale, new, length)
         self.newton.scale[:] = self.problem.scale
         self.here.like(place, unit)
         self.past = 0.0

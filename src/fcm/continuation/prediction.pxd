@@ -11,7 +11,7 @@ cdef class Prediction:
     cdef double[::1] way
     cpdef void straighten(self) noexcept
     cdef void put(self, Place here, double[::1] scale, double step, double[::1] guess) noexcept
-    cdef double turn(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
+    cdef double rescale(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
     cdef void learn(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
     cdef void curve(self, Place here, Place place, double[::1] scale, double[::1] new) noexcept
 

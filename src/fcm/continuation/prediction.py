@@ -54,7 +54,7 @@ class Prediction:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def turn(
+    def rescale(
         self,
         here: Place,
         place: Place,

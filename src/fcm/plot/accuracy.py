@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLUMN, HEIGHT = 3.35, 5.0  # [inch]: 85 mm, the column of a journal
-LOOK = {  # of each method: marker and colour (Okabe and Ito's, safe for the colour-blind)
+STYLES = {  # of each method: marker and colour (Okabe and Ito's, safe for the colour-blind)
     "exact": ("D", "#000000"),
     "closed form": ("^", "#009e73"),
     "default table": ("o", "#0072b2"),
@@ -120,7 +120,7 @@ def draw_accuracy(accuracy: Accuracy) -> Figure:
 
 def _draw_panel(axes: Axes, panel: Panel) -> None:
     for (method, corrected), marks in panel.lines.items():
-        marker, colour = LOOK.get(method, OTHER)
+        marker, colour = STYLES.get(method, OTHER)
         label = method if corrected else f"{method}, as it is"
         x, y = [mark.seconds for mark in marks], [mark.error for mark in marks]
         label += "" if all(mark.complete for mark in marks) else ", not complete"

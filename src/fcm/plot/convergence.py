@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 5.5, 4.6  # [inch]
-LOOKS = (  # marker and colour of each scene (Okabe and Ito's, safe for the colour-blind)
+STYLES = (  # marker and colour of each scene (Okabe and Ito's, safe for the colour-blind)
     ("o", "#0072b2"),
     ("s", "#d55e00"),
     ("^", "#009e73"),
@@ -54,11 +54,11 @@ def draw_convergence(lines: Sequence[Line]) -> Figure:
     with house_style():
         figure = new_figure(WIDTH, HEIGHT)
         axes = figure.subplots()
-        for line, (marker, colour) in zip(lines, LOOKS[: len(lines)], strict=True):
+        for line, (marker, colour) in zip(lines, STYLES[: len(lines)], strict=True):
             _draw_line(axes, line, marker, colour)
         slowest = max(range(len(lines)), key=lambda k: lines[k].balanced[-1].milliseconds)
         _number(
-            axes, lines[slowest], LOOKS[slowest][1]
+            axes, lines[slowest], STYLES[slowest][1]
         )  # of one line, at the edge: of all they would overlap
         _draw_keys(axes)
         axes.set(xscale="log", yscale="log")

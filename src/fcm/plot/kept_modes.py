@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 6.2, 3.4  # [inch]
 PANELS = ("height", "frequency")
-LOOKS = (("with flexibility", "o", "#0072b2"), ("without", "s", "#d55e00"))
+STYLES = (("with flexibility", "o", "#0072b2"), ("without", "s", "#d55e00"))
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def draw_kept_modes(rows: Sequence[Kept]) -> Figure:
 def _draw_panel(axes: Axes, rows: Sequence[Kept], number: int) -> None:
     modes = [one.modes for one in rows]
     for (label, marker, colour), errors in zip(
-        LOOKS, ([one.with_flexibility for one in rows], [one.without for one in rows]), strict=True
+        STYLES, ([one.with_flexibility for one in rows], [one.without for one in rows]), strict=True
     ):
         axes.plot(modes, [pair[number] for pair in errors], marker=marker, color=colour, label=label)
     axes.plot(modes, [one.bound[number] for one in rows], linestyle=":", color="0.4", label="bound")

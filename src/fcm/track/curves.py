@@ -15,12 +15,12 @@ from fcm.scene.model import FloatArray
 from fcm.track.curve import Track, whole
 from fcm.track.follow import land
 from fcm.track.known import passed
-from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Way
+from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
-SEEDS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
+STARTS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
 MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
 
 T = TypeVar("T")
@@ -51,16 +51,16 @@ def tracks(
     line: Line,
     span: tuple[float, float],
     conditions: list[Condition],
-    seeds: tuple[float, ...] = (),
+    starts: tuple[float, ...] = (),
     progress: Progress | None = None,
     once: Once = at_once,
 ) -> Tracks:
-    """The curves of conditions, from ordinary curves at some values of s, and at more seeds.
+    """The curves of conditions, from ordinary curves at some values of s, and at more of them.
 
     An onset that comes and goes between two such values is first met by the highest peak. Interrupted, it
     returns the curves that are finished. once takes each costly step.
     """
-    values = sorted({*np.linspace(*span, SEEDS).tolist(), *seeds})
+    values = sorted({*np.linspace(*span, STARTS).tolist(), *starts})
     way = Way(system, line, span, tuple(values[1:-1]), system.scene.max_step)
     made, stopped = _Made(way, once), False
     try:

@@ -25,8 +25,8 @@ from fcm.scene.model import FloatArray
 from fcm.track.envelope import EQUAL, Height, Least, Target
 from fcm.track.follow import follow, land
 from fcm.track.lowest import Search
-from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Ending, Spot, Way
+from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 

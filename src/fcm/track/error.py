@@ -17,8 +17,8 @@ from fcm.harmonic.further import Further
 from fcm.track.curve import Track, is_top
 from fcm.track.follow import follow, land
 from fcm.track.lowest import lifted
-from fcm.track.seeds import moved
 from fcm.track.spot import Ending, Spot, Way
+from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
 
 BEFORE = 3  # points before a turn from which the turn with more harmonics is sought

@@ -20,8 +20,8 @@ from fcm.track.curve import Track, whole
 from fcm.track.envelope import Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.follow import land
 from fcm.track.known import passed
-from fcm.track.seeds import moved, special_points
 from fcm.track.spot import Spot, Way
+from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
