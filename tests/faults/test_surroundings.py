@@ -19,7 +19,7 @@ from ..oscillator import oscillator
 from ..program import ended, python
 from .conftest import ONE
 
-# 8
+# What would not end
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_many_points_are_announced(program):
     assert "at least" not in done.err
 
 
-# 9
+# Two outputs in one file
 
 
 @pytest.mark.parametrize("other", ["./x.csv", "link.csv"])
@@ -66,7 +66,7 @@ def test_two_outputs_in_one_file_are_refused(program, other):
     assert not (program.folder / "x.csv").exists()
 
 
-# 11 and 12
+# What creeps away; frequencies in hertz
 
 ADRIFT = """
 [modal]
@@ -133,7 +133,7 @@ def test_every_frequency_of_15_digits_survives():
     np.testing.assert_allclose(in_unit(odd, "Hz"), odd / UNIT["Hz"], rtol=1e-15)
 
 
-# 13
+# Streams that are closed, a backend of the environment, files without anything in them
 
 
 @pytest.mark.parametrize("closed", [[2], [1, 2], [0, 1, 2]])
@@ -166,7 +166,7 @@ def test_a_file_without_degrees_of_freedom_is_refused(program):
         assert done.returncode == 2 and "a.nc" in done.err and "defect" not in done.err
 
 
-# 14
+# Small disks, small files, little memory
 
 UNSHARED = ("unshare", "-rm")
 SMALL = shutil.which("unshare") and ended(*UNSHARED, "mount", "-t", "tmpfs", "none", "/mnt").code == 0
@@ -228,7 +228,7 @@ def test_little_memory_is_called_so(program, megabytes):
     assert program.files == ["one.toml", "sweep.toml"]
 
 
-# 15
+# Signals from the first import to after the end
 
 EARLY = """
 import os, signal, sys, threading
@@ -333,6 +333,9 @@ def test_what_is_told_to_ignore_a_signal_ignores_it(program):
 
 
 NAUGHTY = "\x1b]0;owned\x07\x1b[31m\u202e"
+
+
+# Names that command a terminal, or are no text
 
 
 def test_names_do_not_command_the_terminal(program):

@@ -1,4 +1,4 @@
-"""What a sweep has finished: whose it is, where it is, and when it may go (numbers 1 to 6)."""
+"""What a sweep has finished: whose it is, where it is, and when it may go."""
 
 import importlib
 import os
@@ -45,7 +45,7 @@ def interrupted(program, *args, before=SLOW):
     return end(run, signal.SIGINT)
 
 
-# 1
+# Whose it is: of what scene, options and program
 
 
 def test_another_scene_takes_nothing_and_loses_nothing(program):
@@ -141,7 +141,7 @@ def test_a_fingerprint_is_of_what_decides_the_curves():
     assert fingerprint(groups.anonymous([scene])) == fingerprint(groups.anonymous([moved]))
 
 
-# 2
+# An end while the result is written, or none
 
 
 def test_killed_while_it_writes_nothing_is_computed_again(program):
@@ -187,7 +187,7 @@ def test_a_name_too_long_is_refused_before_anything_is_computed(program, length)
     assert all(file in (name, "one.toml", "sweep.toml") for file in program.files)
 
 
-# 3
+# It stays until there is something better
 
 
 def test_killed_just_after_the_start_what_was_kept_is_still_there(program):
@@ -242,7 +242,7 @@ def test_records_are_appended_and_damage_is_passed_over(tmp_path):
     assert found() == [0, 1, 7]
 
 
-# 4
+# Files that are not its own, forged, or cannot be written
 
 
 @pytest.mark.parametrize("kind", ["link", "dangling", "folder", "fifo"])
@@ -314,7 +314,7 @@ checkpoint._write = full
     assert program.files == ["a.nc", "one.toml", "sweep.toml"]
 
 
-# 5; the rest of it is test_kill
+# Workers that are left alone; for kills see `test_kill`
 
 
 def test_workers_end_with_their_parent_in_the_middle_of_a_batch(program):
@@ -345,7 +345,7 @@ def test_ctrl_c_while_workers_start_shows_no_traceback(program):
         program.until(lambda run=run: not session(run.pid), 2.0)
 
 
-# 6
+# What may be removed, and what must be kept, of each kind of run
 
 
 def test_partial_files_of_the_dead_are_removed_and_of_the_living_not(program):
