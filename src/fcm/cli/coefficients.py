@@ -15,9 +15,9 @@ from fcm.cli.messages import Messages, pass_messages
 if TYPE_CHECKING:
     from fcm.contact.surface import Plane
 
-MOST_PANELS = 8
+MOST_PANELS = 8  # that can be read in one picture
 FARTHEST = 1e6  # of a range that is drawn; beyond, nothing changes that could be seen
-NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401
+NORMAL_RANGE, NORMAL_POINTS = (-2.0, 2.0), 401  # from open to closed, as figure 12
 LONGEST_NAME = 50  # characters
 SPACE_STEPS = (100, 40)  # of a surface in space; finer ones can not be seen
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fcm.response import Response
     from fcm.scene.model import Scene
 
-MOST_FREQUENCIES = 100_000
+MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 OF_NO_USE = {  # with --method exact, and why
     "table": "it needs no coefficients",

@@ -18,7 +18,7 @@ from fcm.table import open_table
 from fcm.table.shipped import DEFAULT
 
 STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
-STEPS_EXACT = (2.0, 1.0)
+STEPS_EXACT = (2.0, 1.0)  # of the exact motion, whose points are exact with any
 FINEST, FINEST_EXACT = 1.0 / 16.0, 0.25  # of the references
 FLOOR = {CLOSED_FORM: 1e-9, EXACT: 1e-8}  # to which points are solved and peaks located, relative
 Progress = Callable[[float, str], None]

@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-REPEATS = 2
+REPEATS = 2  # of which the faster counts
 TIMEOUT = 60.0  # [s]
 _IMPORTS = {"exact": "import fcm.scene, fcm.response.exact"}
 _PROGRAM = """

@@ -13,7 +13,7 @@ from cython.cimports.libc.math import cos, hypot, isfinite, isnan, sin
 
 LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms would overflow
 FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
-SHRINK = cython.declare(cython.double, 2.0**-32)
+SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
 
 # what a contact does over a cycle
 UNKNOWN = cython.declare(cython.int, -1)  # an argument is no number

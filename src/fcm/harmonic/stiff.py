@@ -30,7 +30,7 @@ from fcm.structure.ring import RingLinear, Wave
 from fcm.structure.travelling import TravellingReceptance
 
 STIFF = 1e4  # k |G| of a contact from which digits are counted
-EPS = 2.2e-16
+EPS = 2.2e-16  # of float64
 ROUNDINGS = 4.0  # that come together in a sum
 DEPENDENT = 1e10  # condition number of G from which its inverse is no good
 

@@ -22,7 +22,7 @@ from fcm.motion.state import State
 from fcm.motion.system import LETTERS, System
 from fcm.scene.model import FloatArray, Phase, Scene
 
-NOT_REACHED = -1
+NOT_REACHED = -1  # state of a contact at an instant that was not simulated
 SETTLED = 1e-3  # relative change of the amplitudes that is still to come
 MOST_TRANSITIONS = 1_000_000  # kept with their times; all are counted
 INTERRUPTED = "interrupted"

@@ -35,7 +35,7 @@ ASTRAY = 0.6  # distance from what the direction foretells, relative to the way,
 CLOSE = 0.05  # is another branch; but never within this distance
 SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
 BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
-MOST_NAMED = 5
+MOST_NAMED = 5  # frequencies in a sentence
 JUMP = 0.01  # relative change of an amplitude that is one
 
 

@@ -27,7 +27,7 @@ except ImportError:  # a system without them: two runs on one output are then no
 
 TITLE = b"fcm unfinished 2, process "
 LENGTH = 64  # bytes before the first record
-MOST_ASIDE = 1000
+MOST_ASIDE = 1000  # files moved aside for one output; then it is refused
 
 _STATE = -1  # and less are the numbers of records with states of batch 0 and more
 

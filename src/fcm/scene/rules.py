@@ -17,7 +17,7 @@ from fcm.scene.model import FloatArray, Scene
 IndexArray = npt.NDArray[np.intp]
 
 LARGEST = 1e100  # magnitudes beyond this overflow when three of them are multiplied
-MOST_HARMONICS = 50
+MOST_HARMONICS = 50  # the greatest harmonic that can be asked for
 SMALLEST = 1e-100  # of those that are divided by
 
 

@@ -29,7 +29,7 @@ BOX = 3.0  # |n0_bar| and b_bar are at most this on a rectilinear grid; phi is i
 SHARES = (0.25, 0.35, 0.5, 0.7, 1.0)  # of the nodes of the default table, along each axis
 POINTS = 200_000  # sampled; about half of them lie in the box
 GROUP = 10  # points of the small look-up that is timed, as a solver makes it
-REPEATS = 5
+REPEATS = 5  # of a timed look-up, of which the least counts
 
 Coefficients = Callable[[FloatArray, FloatArray, FloatArray], Any]
 Progress = Callable[[float, str], None]

@@ -39,7 +39,7 @@ FAINT = cython.declare(
 )  # motion that is smaller than its mean by that counts as nothing
 # Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
 FIRST_NODE = cython.declare(cython.double, 0.1171)
-NODES_PER_HARMONIC = cython.declare(cython.int, 4)
+NODES_PER_HARMONIC = cython.declare(cython.int, 4)  # at first: where that proves nothing it is halved
 
 
 @cython.cclass
