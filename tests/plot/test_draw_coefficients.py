@@ -107,12 +107,14 @@ def test_each_name_is_in_its_region():
 
 
 def test_a_plane_without_anything_to_see_is_drawn():
+    """All of it sticks, with k_u a of force in phase and none in quadrature."""
     for phi in (0.0, 1.0):
-        draw_contours(
-            [surface("F_c", Plane(phi, (50.0, 60.0), (0.0, 1.0)))],
-            [regions(Plane(phi, (50.0, 60.0), (0.0, 1.0)))],
-        )
-        draw_surfaces([surface("F_b", Plane(phi, (50.0, 60.0), (0.0, 1.0)), SMALL)])
+        plane = Plane(phi, (50.0, 60.0), (0.0, 1.0))
+        (axes,) = panels(draw_contours([surface("F_c", plane)], [regions(plane)]))
+        assert [text.get_text() for text in axes.texts] == ["E"]
+        (axes,) = panels(draw_surfaces([surface("F_s", plane, SMALL)]))
+        low, high = axes.get_zlim()
+        assert low < high and low - 1e-9 <= 1.0 <= high + 1e-9
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

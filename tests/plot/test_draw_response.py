@@ -156,7 +156,11 @@ def test_what_cannot_be_drawn_is_said():
 
 
 def test_a_curve_of_one_point_is_drawn():
-    draw_response(response(DrawnCurve({"contact.a.n_0": 1.0}, FREQUENCY[:1], np.ones((1, 2)))))
+    figure = draw_response(response(DrawnCurve({"contact.a.n_0": 1.0}, FREQUENCY[:1], np.ones((1, 2)))))
+    shown = [
+        line.get_xydata().tolist() for line in figure.axes[0].lines if line.get_marker() not in ("None", "")
+    ]
+    assert [[FREQUENCY[0], 1.0]] in shown
 
 
 @pytest.mark.parametrize("ending", [".png", ".svg", ".pdf"])
