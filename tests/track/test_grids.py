@@ -15,13 +15,14 @@ from fcm.response.optimum import optimise
 from fcm.response.tracked_work import conditions_of
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curves import tracks
 from fcm.track.spot import Way
 from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
+
+from ..harmonic.scenes import gap5
 
 PRELOAD, STIFFNESS = "contact.shroud.n_0", "contact.shroud.k_u"
 EXACT = 1e-9  # relative; the last point of both is that of Newton's method
@@ -111,15 +112,7 @@ def test_a_bound_at_which_the_gap_closes_is_a_bound(scene):
 
 def test_an_isolated_branch_is_between_the_turns_that_are_told():
     """That no ordinary run with these harmonics reaches: it is followed from a fold of the track."""
-    modal = {
-        "dofs": ["u", "v"],
-        "frequency": [1.0, 3.7],
-        "damping": 0.01,
-        "shapes": [[0.3, 0.95], [0.95, -0.3]],
-    }
-    contact = {"name": "c", "tangential": "u", "normal": "v", "mu": 0.05, "k_u": 0.5, "k_v": 3.0, "gap": 5.0}
-    data = {"modal": modal, "contact": [contact], "force": [{"dof": "v", "amplitude": 1.0}]}
-    scene = scene_from_dict(data | {"response": {"frequency": [0.7, 1.5]}})
+    scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
     way = Way(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
     curves = tracks(way.system, way.line, way.span, [Condition(Kind.FOLD)], (value,)).curves
