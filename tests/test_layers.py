@@ -68,6 +68,14 @@ def test_numerics_import_numpy_and_scipy_alone(package):
     assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"}
 
 
+def test_processes_are_started_by_one_helper():
+    """And by the programs that measure, which are no tests."""
+    tests = [path for path in (ROOT / "tests").rglob("*.py") if "benchmarks" not in path.parts]
+    starts = re.compile(r"subprocess\.(run|Popen|call|check_\w+)|os\.(system|popen|spawn\w+)")
+    found = {path.name for path in tests if starts.search(path.read_text(encoding="utf-8"))}
+    assert len(tests) > 100 and found == {"program.py"}
+
+
 def test_nothing_else_lies_at_the_top():
     """What was left there by a measurement once was taken for a part of the project."""
     there = {path.name for path in ROOT.iterdir() if not path.name.startswith(".")}
