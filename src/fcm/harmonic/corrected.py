@@ -18,8 +18,8 @@ OFF = 0.2  # of a displacement, by which it may be off where it is interpolated
 NOTHING = 3e-5  # a displacement, relative, that is too small to be looked at more closely
 STEEP = 100.0  # relative change of an amplitude over that of the frequency, up to which both count
 UNSETTLED = 5e-4  # a displacement at a top, relative, that is worth to be settled
-TOGETHER = 8  # points, within which tops of degrees of freedom lie together,
-NEXT = 1  # and within which they are settled together: elsewhere another harmonic may do most
+TOGETHER = 8  # points, within which tops of degrees of freedom lie together
+ALONE = 0  # the same where to settle them is cheap: each has other harmonics that do most
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
 
 Indices = npt.NDArray[np.intp]
@@ -59,7 +59,7 @@ class Corrected:
         count = len(self.known)
         turns = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
-        for group in _groups(np.unique(tops), TOGETHER):
+        for group in _groups(np.unique(tops)):
             self.find_group(group)
         lost = self.lost()
         places = places[~lost[places]]
@@ -100,16 +100,17 @@ class Corrected:
 
         Those found are each as good as the harmonics that it was found with, so that the greatest of some is
         high by chance. Of places that lie together the middle one speaks for all. Small displacements stay as
-        they were found; nan where settling leads nowhere.
+        they were found, and so do those that settling leads away from.
         """
         d, amplitude = np.arange(len(places)), found.copy()
-        for group in _groups(np.unique(places), NEXT):
+        for group in _within(np.unique(places), ALONE if self.corrector.cheap else TOGETHER):
             i = int(group[len(group) // 2])
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
             there, now = np.isin(places, group), self.amplitude[i]
             factor = self.corrector.settled(self.path.z[i], self.path.direction[i], now)
             factor /= np.where(now > 0.0, now, 1.0)
+            there &= np.isfinite(factor)
             amplitude[there] = (self.amplitude[places, d] * factor)[there]
         return amplitude
 
@@ -175,9 +176,19 @@ class Corrected:
         self.corrector.move(places, *own, self.change, self.known.view(np.uint8), best)
 
 
-def _groups(tops: Indices, together: int) -> list[Indices]:
+def _groups(tops: Indices) -> list[Indices]:
     """Those that lie together."""
-    return np.split(tops, np.flatnonzero(np.diff(tops) > together) + 1)
+    return np.split(tops, np.flatnonzero(np.diff(tops) > TOGETHER) + 1)
+
+
+def _within(places: Indices, reach: int) -> list[Indices]:
+    """Groups of which each lies within a number of points."""
+    groups = []
+    while places.size:
+        near = places <= places[0] + reach
+        groups.append(places[near])
+        places = places[~near]
+    return groups
 
 
 def _with_ends(path: Path, linear: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:

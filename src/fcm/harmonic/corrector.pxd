@@ -5,6 +5,7 @@ cdef class Corrector:
     cdef readonly object system
     cdef readonly Further further
     cdef readonly int count
+    cdef readonly bint cheap
     cdef readonly dict known
     cdef bint again
     cdef double enough

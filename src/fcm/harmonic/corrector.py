@@ -37,6 +37,8 @@ class Corrector:
         contacts = max(len(system.scene.contacts), 1)
         self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
         self.further = Further(system)
+        # whether a point takes no more than a few milliseconds
+        self.cheap = 4 * contacts * (len(system.harmonics) + self.count) <= UNKNOWNS
         self.known: dict[tuple[int, ...], Lifted] = {}
         self.lifts: list[Lifted] = []  # the same,
         self.sets: list[tuple[int, ...]] = []  # their harmonics,
