@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from fcm.orbit import periodic
 from fcm.response import trace
-from fcm.scene import Contact, Modal
+from fcm.scene import Contact, Modal, scene_from_dict
 
 from ..motion.cases import yang
 
@@ -65,3 +65,41 @@ def test_a_narrow_peak_of_the_third_harmonic():
     around = peaks[0].frequency + np.linspace(-2e-4, 2e-4, 9)
     exact = [periodic(scene, omega).measure.amplitude[2] for omega in around]
     assert peaks[0].amplitude == pytest.approx(max(exact), rel=0.03)
+
+
+def around(scene):
+    """A ring of such sectors, held by nothing but themselves, of which u and v are seen.
+
+    Only the waves that travel with the forces meet the last mode.
+    """
+    modal, (contact,), diameters = scene.modal, scene.contacts, 4
+    other = np.append(modal.frequency[:-1], 7.0)
+    law = {key: getattr(contact, key) for key in ("mu", "k_u", "k_v", "n_0")}
+    data = {
+        "cyclic": {"sectors": 6, "engine_order": 1},
+        "modal": {
+            "dofs": ["u", "v"],
+            "nodal_diameter": np.repeat(np.arange(diameters), other.size).tolist(),
+            "frequency": np.concatenate((other, modal.frequency, other, other)).tolist(),
+            "damping": modal.damping.tolist() * diameters,
+            "shapes": modal.shapes[:, :2].tolist() * diameters,
+        },
+        "contact": [{"name": contact.name, "tangential": "u", "normal": "v", **law}],
+        "force": [{"dof": dof, "amplitude": 1.0} for dof in ("u", "v")],
+        "response": {"frequency": list(scene.frequency_range)},
+    }
+    return scene_from_dict(data)
+
+
+@pytest.mark.parametrize("step", [0.2, 0.1])
+def test_a_narrow_peak_of_a_ring(step):
+    alone = with_mode(-60.0, 1.31, 1e-5, 0.005)
+    (curve,) = trace(replace(around(alone), max_step=step), harmonics=3).curves
+    top = minimize_scalar(
+        lambda d: -linear(alone, 1.31 + 1e-5 * d),
+        bounds=(-3.0, 3.0),
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
+    assert curve.peaks["u"].amplitude == pytest.approx(-top.fun, rel=1e-8)
+    assert curve.peaks["u"].frequency == pytest.approx(1.31 + 1e-5 * top.x, rel=1e-8)

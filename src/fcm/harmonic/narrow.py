@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+from fcm.structure.linear import Linear
 from fcm.structure.ring import RingLinear
 
 MOST = 200  # places; of more the widest, and so those of the lowest harmonics, as each costs a point
@@ -17,16 +19,21 @@ MOST = 200  # places; of more the widest, and so those of the lowest harmonics, 
 
 def narrow(system: System) -> list[tuple[float, float]]:
     """Frequencies within the range, with the width of the peak, both [rad/s]."""
-    linear, (low, high) = system.linear, system.scene.frequency_range
-    if isinstance(linear, RingLinear):  # whose harmonics meet other modes each
-        return []
-    damping, orders = linear.damping[np.argsort(linear.natural)], np.array(system.harmonics, dtype=np.float64)
+    low, high = system.scene.frequency_range
     found: dict[float, float] = {}
     for stuck in (False, True):
-        natural = np.sort(linear.stiffened(system.springs(stuck)))
-        for place, width in zip(
-            (natural / orders[:, None]).ravel(), (damping * natural / orders[:, None]).ravel(), strict=True
-        ):
-            if low < place < high and width > 0.0:
-                found.setdefault(float(place), float(width))
+        springs = system.springs(stuck)
+        for order in system.harmonics:
+            natural, damping = _met(system.linear, order, springs)
+            for place, width in zip(natural / order, damping * natural / order, strict=True):
+                if low < place < high and width > 0.0:
+                    found.setdefault(float(place), float(width))
     return sorted(found.items(), key=lambda one: -one[1])[:MOST]
+
+
+def _met(linear: Linear, order: int, springs: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Natural frequencies that a harmonic meets, with springs, in order; and the damping of the modes."""
+    if isinstance(linear, RingLinear):  # whose harmonics meet other modes each
+        wave = linear.wave(order)
+        return np.sort(wave.stiffened(springs)), wave.damping[np.argsort(wave.natural)]
+    return np.sort(linear.stiffened(springs)), linear.damping[np.argsort(linear.natural)]

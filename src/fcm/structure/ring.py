@@ -27,6 +27,10 @@ class Wave:
     ports: ComplexArray  # (mode, port)
     dofs: ComplexArray  # (mode, dof)
 
+    def stiffened(self, springs: FloatArray) -> FloatArray:
+        """Natural frequencies with springs (port,) along the ports."""
+        return with_springs(self.natural, self.ports, springs)
+
 
 @dataclass(frozen=True)
 class RingLinear(Linear):
@@ -77,5 +81,4 @@ class RingLinear(Linear):
 
     def stiffened(self, springs: FloatArray) -> FloatArray:
         """As `Linear.stiffened`, of the modes that the excitation meets."""
-        wave = self.wave(1)
-        return with_springs(wave.natural, wave.ports, springs)
+        return self.wave(1).stiffened(springs)
