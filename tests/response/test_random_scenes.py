@@ -1,12 +1,16 @@
 """A sample of the study of random scenes."""
 
+import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fcm.continuation import Status
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.orbit.start import solution_at
+from fcm.response import trace
 
 from .random_scenes import AGREE, outcome, random_scene
 
@@ -17,6 +21,25 @@ def test_complete_and_the_same_for_every_step(seed):
     result = outcome(seed)
     assert result.complete, result.reasons
     assert result.disagreement < AGREE
+
+
+def test_where_nothing_damps_it_is_said_what_would_do():
+    """In phase with the forces a contact slides without work, and the curve turns on the spot, to a resonance
+    that has no limit; with a little damping it leads there, and past it to where the exact motion is.
+    """
+    scene = random_scene(151)
+    (curve,) = trace(scene).curves
+    said = re.search(r"nothing damps the structure.*: try a damping ratio of (\S+)$", curve.reason)
+    assert not curve.complete and said
+    damping = np.full(scene.modal.frequency.size, float(said[1]))
+    damped = replace(scene, modal=replace(scene.modal, damping=damping))
+    (whole,) = trace(damped).curves
+    assert whole.complete
+    resonance = curve.frequency[np.nanargmax(curve.amplitude[:, 0])]
+    assert whole.peaks["d0"].frequency == pytest.approx(resonance, rel=1e-3)
+    exact = solution_at(damped, 1.3)
+    at = np.abs(whole.frequency - 1.3).argmin()
+    assert exact.stable and whole.amplitude[at, 0] == pytest.approx(exact.measure.amplitude[0], rel=0.03)
 
 
 def test_a_curve_goes_on_where_another_extreme_of_a_limit_holds_a_slider():

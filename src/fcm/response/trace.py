@@ -29,6 +29,7 @@ from fcm.units import in_unit
 
 METHODS = ("table", "closed-form")
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
+UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 BEYOND = 0.2  # estimated error, beyond which a solution is not called stable
 ACCURACY = 1e-2  # of peaks and folds, where nothing else is said
 Rows = npt.NDArray[np.intp]
@@ -226,12 +227,20 @@ def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bo
     if status is Status.COMPLETE:
         return "", nowhere
     broken = next((path for path in branches.paths if path.status is status), None)
-    rigid = bool((system.linear.natural == 0.0).any())
-    why = "" if status is not Status.STALLED else FLOATING if rigid else too_stiff(system)
+    why = _would_do(system, status)
     if broken is None:
         return f"{status.value}{why}", nowhere
     end = float(in_unit(broken.parameter[-1], scene.frequency_unit))
     return f"stopped at {end:.8g} {scene.frequency_unit}: {status.value}{why}", nowhere
+
+
+def _would_do(system: System, status: Status) -> str:
+    """What would help where a curve has stalled, if that is known."""
+    if status is not Status.STALLED:
+        return ""
+    if not system.linear.natural.all():
+        return FLOATING
+    return too_stiff(system) or ("" if system.linear.damping.any() else UNDAMPED)
 
 
 def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
