@@ -23,7 +23,7 @@ from fcm.harmonic.system import System
 from fcm.orbit.start import solution_at
 from fcm.response import trace
 
-SAID = r"the k_u of contact (\w+) is .*: try (\S+), some 0.001 from a rigid contact"
+SAID = r"the k_u of contact (\w+) is .*: try (\S+), nearly rigid; half of that tells how nearly"
 FRICTION = 0.5  # over the amplitude of the force
 
 

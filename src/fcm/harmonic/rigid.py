@@ -2,8 +2,9 @@
 
 A contact's force is its stiffness times a difference of displacements, of which one rounding stays. Beside
 the force that the structure bears this is k |G| roundings, and where the force changes from stick to slip no
-curve is followed through more than some 1e-9 of it. Long before, the contact is as good as rigid: what its
-spring adds falls with the root of the stiffness at the latest, as where a mass is turned round by it.
+curve is followed through more than some 1e-9 of it. Long before, the contact is nearly rigid: what its
+spring adds falls with the root of the stiffness at the latest, as where a mass is turned round by it. How
+nearly is the structure's to say, where a resonance or a bounce makes much of that.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
-ENOUGH = 1e6  # k |G|, at which a contact is rigid but for
-OFF = 1e-3  # of the response, the root of its inverse
+ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth
 
 
 def too_stiff(system: System) -> str:
@@ -32,7 +32,7 @@ def too_stiff(system: System) -> str:
     instead = ENOUGH / receptance[worst]
     return (
         f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
-        f"that rounding decides when it slips or opens: try {instead:.0e}, some {OFF:g} from a rigid contact"
+        f"that rounding decides when it slips or opens: try {instead:.0e}, nearly rigid; half of that tells how nearly"
     )
 
 
