@@ -32,7 +32,8 @@ def too_stiff(system: System) -> str:
     instead = ENOUGH / receptance[worst]
     return (
         f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
-        f"that rounding decides when it slips or opens: try {instead:.0e}, nearly rigid; half of that tells how nearly"
+        f"that rounding decides when it slips or opens: try {instead:.0e}, nearly rigid; "
+        "half of that tells how nearly"
     )
 
 
