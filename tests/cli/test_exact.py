@@ -134,6 +134,17 @@ def test_points_that_are_one_of_many_or_do_not_repeat_are_named(fcm, tmp_path):
     least, greatest = curve["peak_range"]["v"]
     assert least < 1.36 and greatest > 2.90 and curve["not_unique"] == 2
     assert "points that are not unique: 2" in run.err and "[start] friction chooses" in run.err
+    assert "may_not_be_unique" not in curve
+
+
+@pytest.mark.parametrize("method", [(), ("--method", "exact")])
+def test_curves_say_at_how_many_points_the_motion_may_be_one_of_many(fcm, method):
+    """Contact B never slips below 1.5 rad/s or so, and A, without friction, closes and opens."""
+    run = fcm("respond", SCENES / "not_unique.toml", "--json", *method)
+    (curve,) = json.loads(run.out)["curves"]
+    assert 0 < curve["may_not_be_unique"] < curve["points"]
+    assert f"while another changes its state: {curve['may_not_be_unique']}" in run.err
+    assert f"{'' if method else '--method exact '}--at F tells how far they range" in run.err
 
 
 def test_a_time_limit_ends_a_run_as_ctrl_c_does(fcm, scene):

@@ -180,6 +180,18 @@ def branches_unsure(summary: Mapping[str, Any]) -> str:
     )
 
 
+def maybe_not_unique(summary: Mapping[str, Any]) -> str:
+    """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
+    count = sum(curve.get("may_not_be_unique", 0) for curve in summary["curves"])
+    if not count:
+        return ""
+    how = "--at" if summary["method"] == "exact" else "--method exact --at"
+    return (
+        f"points at which a contact never slips while another changes its state: {count}; its residual "
+        f"friction decides which of many motions that is: {how} F tells how far they range"
+    )
+
+
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early; empty if none."""
     curves = summary["curves"]

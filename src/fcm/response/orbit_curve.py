@@ -18,6 +18,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
+from fcm.response.loose import loose
 from fcm.response.visit import Visitor
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Peak
@@ -80,6 +81,8 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
     families = _families(scene, points, amplitude, everywhere)
+    regime = _regimes(points, len(scene.contacts))
+    told = everywhere | np.isfinite(families[1]).any(axis=1)
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
         empty,
@@ -88,7 +91,7 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
         fundamental=_rows(points, "fundamental", empty),
         phase=_rows(points, "phase", empty),
         mean=_rows(points, "mean", empty),
-        regime=_regimes(points, len(scene.contacts)),
+        regime=regime,
         loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
         cycle=np.full((len(points), *empty.cycle.shape[1:]), np.nan),
         stable=np.array([np.nan if p is None else float(p.stable) for p in points]),
@@ -96,6 +99,7 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
         error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
+        loose=int((loose(scene.contacts, regime) & ~told).sum()),
         peaks={d: _peak(amplitude[:, i], frequency) for i, d in enumerate(empty.peaks)},
         orbits=Orbits(
             _numbers(points, "residual"),

@@ -21,6 +21,7 @@ from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
+from fcm.response.loose import loose
 from fcm.results.result import Curve, Peak
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
@@ -135,6 +136,7 @@ def _curve(found: Accurate) -> Curve:
     points, rounding = with_digits(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
     rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
+    words = states(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = _incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -149,7 +151,7 @@ def _curve(found: Accurate) -> Curve:
         fundamental=pick(np.abs(X[:, first]), rows),
         phase=pick(np.angle(X[:, first]), rows),
         mean=pick(points.mean, rows),
-        regime=pick(states(system, points.z), rows),
+        regime=pick(words, rows),
         loop=pick(loops(system, points.z), rows),
         cycle=pick(cycles(system, points.z), rows),
         stable=pick(stable, rows),
@@ -164,6 +166,7 @@ def _curve(found: Accurate) -> Curve:
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
+        loose=int(loose(scene.contacts, words).sum()),
         unsure=[one.omega for one in found.traced.looked if not one.complete],
     )
 

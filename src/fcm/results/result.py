@@ -68,6 +68,9 @@ class Curve:
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
+    loose: int = (
+        0  # points at which a contact never slips and another does, where it is not told what that means
+    )
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
     mode: NonlinearMode | None = None
     sensitivity: Sensitivities | None = None  # of the peaks
@@ -123,6 +126,7 @@ class Curve:
             **({"harmonics": list(self.harmonics)} if self.harmonics else {}),
             **({"short_of_accuracy": self.short_of} if self.short_of else {}),
             **({"branches_unsure_at": in_unit(self.unsure, unit).tolist()} if self.unsure else {}),
+            **({"may_not_be_unique": self.loose} if self.loose else {}),
             "peak": {d: self._peak(peak, gist, unit) for d, peak in self.peaks.items()},
             "folds": in_unit(self.folds, unit).tolist(),
             **({} if self.sensitivity is None else {"sensitivity": self._of_numbers(self.sensitivity, unit)}),
