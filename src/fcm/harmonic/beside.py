@@ -6,14 +6,14 @@ lead elsewhere with more. A peak at which the structure can stay is then looked 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.multipliers import Multipliers, multipliers_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -28,8 +28,8 @@ def beside(
     """Stable solutions (unknown + 1,) with more harmonics beside the tops of paths of a system.
 
     A top is the highest point of a path, for each degree of freedom, of those that the determinant allows to
-    be stable; amplitudes are (point, dof) of each path. Where none is found beside a top, one is looked for
-    beside points around it.
+    be stable; amplitudes are (point, dof) of each path. Where none is found beside a top, or none that is
+    stable, one is looked for beside points around it.
     """
     finer = system.with_harmonics(more)
     lifted = Lifted(finer.balance(), list(system.harmonics), list(more), ENOUGH)
@@ -38,9 +38,8 @@ def beside(
     for path, amplitude in zip(paths, amplitudes, strict=True):
         even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
         for top in _tops(path, even, amplitude):
-            z = _around(lifted, path, even, top)
-            if z is not None and of.verdict(z).stable == 1.0:
-                found.append(z)
+            z = _stable(of, _around(lifted, path, even, top))
+            found += [] if z is None else [z]
     return found
 
 
@@ -57,11 +56,28 @@ def _tops(path: Path, even: npt.NDArray[np.bool_], amplitude: FloatArray) -> lis
     return [int(top) for top in tops[apart]]
 
 
-def _around(lifted: Lifted, path: Path, even: npt.NDArray[np.bool_], top: int) -> FloatArray | None:
-    """The solution beside a top, or else beside the first point around it that has one."""
+def _stable(of: Multipliers, around: Iterator[tuple[int, FloatArray]]) -> FloatArray | None:
+    """The first that is stable of solutions with their distances from a top; each time twice as far away.
+
+    Near a fold, where a branch is highest, it may not be.
+    """
+    judged = 0
+    for away, z in around:
+        if judged and judged < away < 2 * judged:
+            continue
+        if of.verdict(z).stable == 1.0:
+            return z
+        judged = max(away, 1)
+    return None
+
+
+def _around(
+    lifted: Lifted, path: Path, even: npt.NDArray[np.bool_], top: int
+) -> Iterator[tuple[int, FloatArray]]:
+    """The solutions beside a top and beside the points around it, the nearest first, each with how many
+    points away that is."""
     newton = lifted.newton
     for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
         same = 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all()
         if same and lifted.beside(path.z[i], path.direction[i]) and newton.correct(1.0):
-            return np.array(newton.z)
-    return None
+            yield abs(i - top), np.array(newton.z)

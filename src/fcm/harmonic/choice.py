@@ -95,8 +95,7 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
         if found.seconds_with(more) > PATIENCE:
             further = more
             break
-        shown = [one.amplitude for one in found.shown]
-        near = beside(found.system, found.traced.branches.paths, shown, more)
+        near = _near(found, more)
         then = outlined(system.with_harmonics(more), progress, found.traced.looked, near)
         if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
             break
@@ -114,10 +113,23 @@ def given(system: System, progress: Progress | None = None) -> Accurate:
     fewer = system.harmonics[: max(count // 2, few) if count > few else count // 2]
     if not fewer or not system.scene.contacts:
         return estimated(system, np.inf, progress)
-    before = outlined(system.with_harmonics(fewer))
-    shown = [one.amplitude for one in before.shown]
-    near = beside(before.system, before.traced.branches.paths, shown, system.harmonics)
+    before = _built_up(system.with_harmonics(fewer))
+    near = _near(before, system.harmonics)
     return judged(outlined(system, progress, before.traced.looked, near), np.inf)
+
+
+def _built_up(system: System) -> Outline:
+    """A response that shows what is beside it with more harmonics; if it has many, it begins from a few."""
+    fewer = system.harmonics[: few_of(system)]
+    if fewer == system.harmonics:
+        return outlined(system)
+    return outlined(system, near=_near(outlined(system.with_harmonics(fewer)), system.harmonics))
+
+
+def _near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:
+    """Solutions with more harmonics beside the stable peaks of a response."""
+    shown = [one.amplitude for one in before.shown]
+    return beside(before.system, before.traced.branches.paths, shown, harmonics)
 
 
 def judged(outline: Outline, accuracy: float) -> Accurate:
