@@ -34,7 +34,8 @@ def test_a_closed_branch_is_not_lost_with_more_harmonics():
 @pytest.mark.parametrize("highest", [6, 7, 12])
 def test_an_isolated_branch_is_not_lost_with_more_harmonics_where_its_peak_is_unstable(highest):
     """At 1.05324 rad/s a march of the contact law, by the method of Runge and Kutta, settles at
-    (0.4170, 0.1473) from 6 of 14 random states. Five harmonics have this branch at the end of the range; it is closed.
+    (0.4170, 0.1473) from 6 of 14 random states. Five harmonics have this branch at the end
+    of the range; it is closed.
     """
     scene = load_scene(Path(__file__).parent / "scenes/loose_isola.toml").each_curve()[0]
     found = given(System(replace(scene, frequency_range=(0.977, 1.5)), up_to(highest)))

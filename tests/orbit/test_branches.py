@@ -60,6 +60,21 @@ def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
     assert rest.amplitude[1] < 0.5 * last.amplitude[1]
 
 
+def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range():
+    """From 1.0035 to 1.0845 rad/s. At 1.05324 a march of the contact law, by the method of Runge and Kutta,
+    comes to (0.4170, 0.1473) from 6 of 14 random states; the balance has the branch at 0.977, too.
+    """
+    scene = fcm.load_scene(Path(__file__).parents[1] / "harmonic/scenes/loose_isola.toml")
+    curve = curve_of(replace(scene, frequency_range=(0.977, 1.15)))
+    assert curve.complete and sorted(round(fold, 3) for fold in curve.folds) == [1.003, 1.084]
+    off = curve.frequency - 1.05324
+    there = [
+        curve.amplitude[i] - off[i] / (off[i + 1] - off[i]) * (curve.amplitude[i + 1] - curve.amplitude[i])
+        for i in np.flatnonzero((off[:-1] * off[1:] < 0.0) & (curve.stable[:-1] == 1.0))
+    ]
+    assert max(one[0] for one in there) == pytest.approx(0.4170, rel=1e-2)
+
+
 def lightly_damped(seed):
     scene = random_scene(seed)
     damping = np.full(scene.modal.mass.size, 1e-4)

@@ -36,24 +36,32 @@ def beside(
     of = multipliers_of(finer, system.scene.frequency_range[1])
     found = []
     for path, amplitude in zip(paths, amplitudes, strict=True):
-        even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
-        for top in _tops(path, even, amplitude):
+        for top, even in tops(path, amplitude):
             z = _stable(of, _around(lifted, path, even, top))
             found += [] if z is None else [z]
     return found
 
 
-def _tops(path: Path, even: npt.NDArray[np.bool_], amplitude: FloatArray) -> list[int]:
+def tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
     """Where degrees of freedom are highest, of points inside the range with an even number of real
-    multipliers above 1.
+    multipliers above 1; and which points (point,) have that.
     """
+    even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
     inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
     places = np.flatnonzero(even & inside)
     if not places.size:
-        return []
-    tops = np.unique(places[amplitude[places].argmax(axis=0)])
-    apart = np.append(True, np.diff(tops) > TOGETHER)
-    return [int(top) for top in tops[apart]]
+        return
+    highest = np.unique(places[amplitude[places].argmax(axis=0)])
+    apart = np.append(True, np.diff(highest) > TOGETHER)
+    for top in highest[apart].tolist():
+        yield top, even
+
+
+def around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
+    """A top and the points around it that no fold is between, the nearest first."""
+    for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
+        if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
+            yield i
 
 
 def _stable(of: Multipliers, around: Iterator[tuple[int, FloatArray]]) -> FloatArray | None:
@@ -77,7 +85,6 @@ def _around(
     """The solutions beside a top and beside the points around it, the nearest first, each with how many
     points away that is."""
     newton = lifted.newton
-    for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
-        same = 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all()
-        if same and lifted.beside(path.z[i], path.direction[i]) and newton.correct(1.0):
+    for i in around(even, top):
+        if lifted.beside(path.z[i], path.direction[i]) and newton.correct(1.0):
             yield abs(i - top), np.array(newton.z)

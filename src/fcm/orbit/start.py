@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 
 import numpy as np
 
 from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
+from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
+from fcm.orbit.apart import Place, states_along
 from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
 from fcm.orbit.periodic import Orbit, periodic, shoot
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
+TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
 ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
@@ -24,14 +28,16 @@ DISTINCT = 1e-6  # solutions further apart than this, relative to their size, ar
 def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
     """Points z from which all branches are followed, and of ends of the range why one was not found there.
 
-    At both ends, and at the resonances inside, near every solution of the balance; where that leads to no
+    At both ends, and at the resonances inside, near every solution of the balance, and where that has more
+    than the motion, also beside the tops of its branches; where that leads to no
     stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
     the first solution of the balance of one harmonic that leads to a motion, anywhere in the range.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
-    inside = inner_resonances(scene)
+    inside, apart = inner_resonances(scene), False
     for omega in (*scene.frequency_range, *inside):
-        orbits = list(near_balance(scene, omega))
+        guesses, before = balanced_states(scene, omega), len(found)
+        orbits = list(_shot(scene, omega, guesses))
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
                 orbits += _from_rest(scene, omega, bool(orbits))
@@ -42,7 +48,36 @@ def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
                 _add(problem, found, first_point(problem, orbit))
             except SimulationError as error:
                 missed[omega] = str(error)
+        apart = apart or len(found) - before < len(guesses)
+    if apart and found:
+        found += _beside_tops(problem, found)
     return found or _anywhere(problem), {omega: missed[omega] for omega in missed if omega not in inside}
+
+
+def _beside_tops(problem: OrbitProblem, known: list[FloatArray]) -> list[FloatArray]:
+    """Points beside the tops of the balance's branches, where it has more solutions than there are motions:
+    a branch on which it leads away from an end of the range may be closed.
+    """
+    found = list(known)
+    for places in states_along(problem.scene):
+        there = [z for place in places[:TRIED] for z in _points(problem, place)]
+        if there:  # some may lead to a lower branch
+            _add(problem, found, max(there, key=lambda z: _height(problem, z)))
+    return found[len(known) :]
+
+
+def _height(problem: OrbitProblem, z: FloatArray) -> float:
+    """The greatest amplitude of any degree of freedom."""
+    shot = problem.shot(z)
+    return 0.0 if shot is None else float(measure(shot.cycle).amplitude.max())
+
+
+def _points(problem: OrbitProblem, place: Place) -> Iterator[FloatArray]:
+    """The motion near a guess."""
+    omega, guess = place
+    for orbit in _shot(problem.scene, omega, [guess]):
+        with suppress(SimulationError):
+            yield first_point(problem, orbit)
 
 
 def _anywhere(problem: OrbitProblem) -> list[FloatArray]:
