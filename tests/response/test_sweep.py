@@ -112,6 +112,23 @@ def test_an_interrupted_sweep_is_continued(scene, small_groups, tmp_path, monkey
     assert not keep.exists()
 
 
+@pytest.mark.parametrize("slow", [False, True])
+def test_what_is_finished_of_a_group_is_not_traced_again(scene, small_groups, tmp_path, monkeypatch, slow):
+    """Be it saved when the interruption comes, or before, as the curves take long."""
+    monkeypatch.setattr(groups, "SLOW", 0.0 if slow else np.inf)
+    reference = trace(scene, "closed-form")
+    keep = tmp_path / "a.nc.unfinished"
+    with monkeypatch.context() as patch:
+        interrupt_after(patch, 5)
+        part = trace(scene, "closed-form", keep=keep)
+    assert part.interrupted and [c.reason for c in part.curves] == [""] * 5 + [NOT_BEGUN]
+    with monkeypatch.context() as patch:
+        calls = interrupt_after(patch, 99)
+        resumed = trace(scene, "closed-form", keep=keep, resume=True)
+    assert len(calls) == 1
+    same(resumed, reference)
+
+
 def test_another_scene_does_not_take_what_was_kept(scene, small_groups, tmp_path, monkeypatch):
     keep = tmp_path / "a.nc.unfinished"
     with monkeypatch.context() as patch:

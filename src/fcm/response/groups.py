@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -15,10 +16,13 @@ from fcm.results.jumps import Jump
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits
 from fcm.results.result import DEFECT, Curve, Peak
-from fcm.run import Lost, Report
+from fcm.run import Interrupted, Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
+SLOW = (
+    1.0  # [s] after which finished curves are saved before their group is: no more is lost to an interruption
+)
 KINDS = (Curve, Gist, Orbits, Jump, Peak, NonlinearMode, Resonance)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
@@ -35,13 +39,33 @@ class Work:
     samples: int = 0  # points that are kept all the same
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
-        curves = []
+        curves = _known(group, report.saved)
+        begin, saved = time.monotonic(), len(curves)
         forget()
-        for number, scene in enumerate(group):
-            report(number / len(group), "")
-            curve = traced_curve(scene, self.wanted)
+        for number, scene in list(enumerate(group))[len(curves) :]:
+            if time.monotonic() - begin > SLOW:
+                saved, begin = _save(curves, saved, report), time.monotonic()
+            try:
+                report(number / len(group), "")
+                curve = traced_curve(scene, self.wanted)
+            except KeyboardInterrupt:
+                _save(curves, saved, report)
+                raise Interrupted(curves) from None
             curves.append(without_points(curve, self.samples) if self.peaks_only else curve)
         return curves
+
+
+def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:
+    """The first curves of a group that are finished already."""
+    fitting = [_fits(scene, curve) for scene, curve in zip(group, saved, strict=False)]
+    return list(saved[: fitting.index(False) if False in fitting else len(fitting)])
+
+
+def _save(curves: Sequence[Curve], saved: int, report: Report) -> int:
+    """Save the curves of a group that are not saved; how many there are then."""
+    for curve in curves[saved:]:
+        report.save(curve)
+    return len(curves)
 
 
 def anonymous(scenes: Group) -> list[Scene]:

@@ -21,7 +21,7 @@ from fcm.run.progress import part
 from fcm.scene.model import Scene
 from fcm.table import Table
 
-BATCH = 10  # curves; what an interruption costs at most, for a batch is finished as a whole
+BATCH = 10  # curves, which are finished or interrupted together
 HIGHEST_EXPECTED = 9  # harmonic, where an accuracy decides
 FIRST = 0.9  # share of the bar at which the curves are traced; then they are checked
 
