@@ -210,6 +210,18 @@ def test_matrices_of_no_structure_are_said_beside_other_mistakes(structure, top)
     assert said.count("\n") >= 2
 
 
+def test_numbers_alone_are_rows_and_no_motions_of_nodes(tmp_path):
+    """Row 31 is no motion of node 3 along x, be it named, paired or moved by the base."""
+    said = refused(top={"force": [{"dof": "3x", "amplitude": 1.0}]}, dofs=["11", "21", "31"])
+    assert 'unknown degree of freedom "3x"' in said
+    said = refused(top={"base": {"acceleration": 1.0, "direction": "x"}}, dofs=["11", "21", "31"])
+    assert 'no degree of freedom is named as a node and "x"' in said
+    (tmp_path / "rows.txt").write_text("1 1\n1 2\n2 1\n")
+    force = [{"dof": "1:2", "amplitude": 1.0}]
+    scene = scene_from_dict(data({"force": force}, dofs="rows.txt"), "test.toml", tmp_path)
+    assert scene.modal.dofs == ("1:1", "1:2", "2:1")
+
+
 def test_both_matrices_are_said_not_to_be_those_of_a_structure():
     said = refused(mass=[1.0, -2.0, 0.5], stiffness=(-K).tolist())
     assert "the mass has 1 negative eigenvalue" in said and "the stiffness has 3 negative" in said

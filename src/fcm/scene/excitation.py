@@ -11,7 +11,7 @@ from fcm.scene.errors import kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray, Force, Load
-from fcm.scene.names import Names, at_node
+from fcm.scene.names import Names, motion_of
 from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
@@ -74,7 +74,7 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
     """Of a motion by 1 along one axis."""
     if dofs is None:
         return None
-    moved = [at_node(name).endswith(axis) and not at_node(name).endswith(f"r{axis}") for name in dofs]
+    moved = [motion_of(name).endswith(axis) and not motion_of(name).endswith(f"r{axis}") for name in dofs]
     if not any(moved):
         what = f"no degree of freedom is named as a node and {quoted(axis)}; give a table of weights"
         section.wrong("direction", what)

@@ -22,7 +22,7 @@ class Names(tuple[str, ...]):
 
     @cached_property
     def _at_nodes(self) -> dict[str, str]:
-        return {at_node(name): name for name in self if at_node(name)}
+        return {motion_of(name): name for name in self if motion_of(name)}
 
     @cached_property
     def place(self) -> dict[str, int]:
@@ -34,6 +34,8 @@ class Names(tuple[str, ...]):
 
         >>> Names(("40x", "tip")).find("40:1"), Names(("40x", "tip")).find("tip")
         ('40x', 'tip')
+        >>> Names(("11", "tip")).find("1x")  # "11" may be the eleventh row
+        ''
         """
         return name if name in self.place else self._at_nodes.get(at_node(name), "")
 
@@ -42,6 +44,11 @@ class RowNames(Names):
     """The names of the rows of matrices."""
 
     key = "structure.dofs"
+
+
+def motion_of(name: str) -> str:
+    """As `at_node`, of a name that a structure's file gives: a number alone is that of a row."""
+    return "" if name.isdecimal() else at_node(name)
 
 
 def at_node(name: str) -> str:

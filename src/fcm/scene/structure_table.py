@@ -166,11 +166,11 @@ def _row_names(section: Section, files: Files, rows: int | None) -> Names | None
 def names_of(text: str) -> list[str]:
     """Names, one on each line; a node and a direction beside each other are one name.
 
-    >>> names_of("40x  # tip\\n40 y\\n\\n41:3")
-    ['40x', '40y', '41:3']
+    >>> names_of("40x  # tip\\n40 y\\n\\n41:3\\n41 1")
+    ['40x', '40y', '41:3', '41:1']
     """
     lines = (line.partition("#")[0].replace(",", " ").split() for line in text.splitlines())
-    return ["".join(words) for words in lines if words]
+    return [(":" if words[-1].isdecimal() else "").join(words) for words in lines if words]
 
 
 def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[str] | None) -> dict[str, Any]:
