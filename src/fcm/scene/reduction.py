@@ -136,7 +136,7 @@ def damping_of(
         if effect > WORTH_SAYING:
             said.append(
                 "structure: damping between modes is left out; with it, the response without contacts "
-                f"would change by up to {100 * effect:.2g} %"
+                f"would change by up to {100 * effect:.2g} % at resonances and the range's ends"
             )
     return ratio, said
 
