@@ -222,6 +222,11 @@ def test_numbers_alone_are_rows_and_no_motions_of_nodes(tmp_path):
     assert scene.modal.dofs == ("1:1", "1:2", "2:1")
 
 
+def test_rows_without_stiffness_and_mass_are_named():
+    said = refused(mass=[1.0, 0.0, 0.0], stiffness=[1.0, 1.0, 0.0])
+    assert '"3x" has neither stiffness nor mass' in said and "singular" not in said
+
+
 def test_both_matrices_are_said_not_to_be_those_of_a_structure():
     said = refused(mass=[1.0, -2.0, 0.5], stiffness=(-K).tolist())
     assert "the mass has 1 negative eigenvalue" in said and "the stiffness has 3 negative" in said

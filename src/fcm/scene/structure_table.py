@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from fcm.scene.errors import kind, quoted, shown
+from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.matrix_file import is_matrix_file, read_matrix
@@ -62,6 +62,8 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
         check_symmetric(section, key, matrix, dofs)
+    if sound:
+        _check_rows(section, K, M, dofs)
     sound = sound and top.mistakes.count == read
     damping = _damping(section, files, rows, dofs)
     modes = _modes(section)
@@ -76,6 +78,18 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     return dofs, Matrices(
         dofs, symmetric(K), symmetric(M), modes=modes, flexibility=keep, coupling=coupling, **damping
     )
+
+
+def _check_rows(section: Section, K: Any, M: Any, dofs: Names | None) -> None:
+    """Note the rows that nothing holds and that have no mass."""
+    idle = np.flatnonzero((K.diagonal() == 0.0) & (M.diagonal() == 0.0)).tolist()
+    if idle:
+        fits = dofs is not None and len(dofs) == K.shape[0]
+        rows = choices([dofs[i] if dofs is not None and fits else str(i) for i in idle])
+        have = "has" if len(idle) == 1 else "have"
+        section.wrong(
+            "", f"{rows} {have} neither stiffness nor mass on the diagonal; leave out what is not used"
+        )
 
 
 def _check_definite(section: Section, K: Any, M: Any) -> None:
