@@ -53,6 +53,12 @@ def test_a_line_for_each_of_the_other_values():
     assert draw_peak(peaks(n_0=n_0, mu=mu), against=MU).axes[1].get_xlabel().startswith("$\\mu$")
 
 
+def test_keys_that_go_in_step_are_one_line_without_a_name():
+    figure = draw_peak(peaks(n_0=[10, 30, 20, 40], mu=[0.1, 0.3, 0.2, 0.4]))
+    assert figure.axes[0].lines[0].get_xdata().tolist() == [10, 20, 30, 40]
+    assert not figure.legends
+
+
 def test_random_draws_are_points_without_lines():
     random = np.random.default_rng(0)
     upper, lower = draw_peak(peaks(n_0=random.normal(10, 3, 50), mu=random.normal(0.4, 0.05, 50))).axes

@@ -115,7 +115,10 @@ def test_a_universal_file_with_less_and_with_more(tmp_path):
     first = [*head, *tail, "         7", node, "    -1"]
     second = [*head, *tail, "         8", node, "    -1"]
     (tmp_path / "m.unv").write_text("\r\n".join([*first, *second]))
-    modal = scene_of(tmp_path, "m.unv", [{"dof": "7rx", "amplitude": 1}], damping=0.01).modal
+    scene = scene_of(tmp_path, "m.unv", [{"dof": "7rx", "amplitude": 1}], damping=0.01)
+    said = [note for note in scene.notes if "has no value at" in note]
+    assert len(said) == 2 and 'mode 2 of m.unv has no value at "7x", "7y", "7z", ... (6 in all)' in said[1]
+    modal = scene.modal
     assert modal.dofs[:6] == ("7x", "7y", "7z", "7rx", "7ry", "7rz")
     assert modal.shapes.tolist() == [[0, 1, 2, 3, 4, 5, 0, 0, 0, 0, 0, 0], [0] * 6 + [0, 1, 2, 3, 4, 5]]
     assert modal.mass.tolist() == [1, 1]

@@ -197,3 +197,10 @@ def test_every_damaged_mode_is_said(tmp_path):
     twice = TRANSLATION.replace("1.82904e+00", "1.82x04e+00", 1).replace("1.50162e-01", "1.5x162e-01", 1)
     said = refused(tmp_path, twice)
     assert said.count("is damaged") == 2 and "m.uff" in said
+
+
+def test_a_mode_that_is_there_twice_is_refused(tmp_path):
+    """As in a file that has its modes in datasets of both kinds: each would answer for itself."""
+    said = refused(tmp_path, TRANSLATION + TRANSLATION)
+    assert "its normal modes 1 and 3 are the same" in said and "modes 2 and 4 are the same" in said
+    assert "the same" not in refused(tmp_path, TRANSLATION.replace("1.50162e-01", "1.5x162e-01", 1))

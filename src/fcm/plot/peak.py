@@ -71,7 +71,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
             _draw(axes, peaks.parameters[key], values[:, column], known, lines)
         _finish_axes(upper, lower, peaks, key, column, known)
         if len(lines) > 1:
-            _name_lines(figure, upper, peaks, key, lines)
+            _name_lines(figure, upper, peaks, _others(peaks, key, known), lines)
         _mark_least(upper, lower, peaks, key, column, known)
     return figure
 
@@ -87,13 +87,25 @@ def _key(peaks: Peaks, against: str | None) -> str:
 def _lines(peaks: Peaks, key: str, known: BoolArray) -> list[IntArray]:
     """Curves with the same other swept values, each in the order of the key; none if there are too many."""
     x = peaks.parameters[key]
-    others = [values for name, values in peaks.parameters.items() if name != key]
+    others = [peaks.parameters[name] for name in _others(peaks, key, known)]
     groups: dict[tuple[float, ...], list[int]] = {}
     for i in np.flatnonzero(known).tolist():
         groups.setdefault(tuple(float(values[i]) for values in others), []).append(i)
     if len(groups) > _MOST_LINES:
         return []
     return [np.array(group)[np.argsort(x[group], kind="stable")] for group in groups.values()]
+
+
+def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
+    """The other swept keys, without those that rise or fall with this one, as paired ones do."""
+    x = peaks.parameters[key][known]
+    order = np.argsort(x, kind="stable")
+
+    def in_step(values: FloatArray) -> bool:
+        rises = np.sign(np.diff(values[known][order]))
+        return bool(rises.size and np.diff(x[order]).all() and rises[0] and (rises == rises[0]).all())
+
+    return [name for name, values in peaks.parameters.items() if name != key and not in_step(values)]
 
 
 def _draw(axes: Axes, x: FloatArray, y: FloatArray, known: BoolArray, lines: Sequence[IntArray]) -> None:
@@ -124,8 +136,9 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     lower.minorticks_on()
 
 
-def _name_lines(figure: Figure, axes: Axes, peaks: Peaks, key: str, lines: Sequence[IntArray]) -> None:
-    others = [name for name in peaks.parameters if name != key]
+def _name_lines(
+    figure: Figure, axes: Axes, peaks: Peaks, others: Sequence[str], lines: Sequence[IntArray]
+) -> None:
     names = [curve_label({name: float(peaks.parameters[name][line[0]]) for name in others}) for line in lines]
     figure.legend(axes.get_lines(), names, loc="outside right upper")
 

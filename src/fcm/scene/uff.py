@@ -11,13 +11,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from math import ceil, pi
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.scene.errors import quoted
+from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError
 from fcm.scene.uff_contents import contents, units
 
@@ -26,6 +28,7 @@ NORMAL_MODE, AT_NODES = 2, 1
 MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each is a mode's shape
 REAL, COMPLEX = (2, 4), (5, 6)  # data types: of single and of double precision
 PER_LINE = 6  # reals on a line
+SAME = 1e-6  # relative difference of what two datasets write of one mode
 COLLINEAR = 1e-4  # of a shape: what may be left when it is turned to be real
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
 
@@ -69,6 +72,9 @@ def read_uff(path: Path) -> dict[str, Any]:
         "shapes": np.array([_real(mode, dofs, number, faults) for number, mode in enumerate(modes, 1)]),
         "notes": units(datasets),
     }
+    if not faults:
+        faults = _twice(found["angular_frequency"], found["shapes"])
+        found["notes"] += _unlike(modes, dofs, path.name)
     if faults:
         raise DataFileError(*(f"{quoted(path.name)} cannot be read: {fault}" for fault in faults))
     given = {"mass": [mode.mass for mode in modes], "damping": [mode.damping for mode in modes]}
@@ -155,6 +161,27 @@ def _real(mode: _Mode, dofs: list[str], number: int, faults: list[str]) -> list[
             faults.append(f"its normal mode {number} is complex; a real one is needed")
         shape = turned
     return shape.real.tolist()  # type: ignore[no-any-return]
+
+
+def _unlike(modes: list[_Mode], dofs: list[str], name: str) -> list[str]:
+    """Which modes have no values where others have: they are taken not to move there."""
+    said = []
+    for number, mode in enumerate(modes, 1):
+        lacking = [dof for dof in dofs if dof not in mode.values]
+        if lacking:
+            at = f"{choices(lacking, 3)}, where others have"
+            said.append(f"modal: normal mode {number} of {name} has no value at {at}: taken as 0")
+    return said
+
+
+def _twice(frequency: npt.NDArray[np.float64], shapes: npt.NDArray[np.float64]) -> list[str]:
+    """Which modes are there twice, as in a file that has them in datasets of both kinds."""
+    said = []
+    for one, other in combinations(range(frequency.size), 2):
+        near = abs(frequency[one] - frequency[other]) <= SAME * frequency[other]
+        if near and np.abs(shapes[one] - shapes[other]).max() <= SAME * np.abs(shapes[other]).max():
+            said.append(f"its normal modes {one + 1} and {other + 1} are the same; leave one out")
+    return said
 
 
 def _integers(line: str) -> list[int]:
