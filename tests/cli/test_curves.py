@@ -70,3 +70,10 @@ def test_units_and_edges_reach_table_and_files(fcm, tmp_path, end, edge):
     with netCDF4.Dataset(tmp_path / "s.nc") as file:
         assert file["amplitude"].units == file["peak_amplitude"].units == "mm"
         assert file["spring_force"].units == "N"
+
+
+def test_of_levels_no_errors_are_computed_and_none_is_said_to_have_been_sought():
+    one = curve({"u": 1.0}) | {"harmonics": [1], "level_folds": []}
+    one["peak"]["u"]["error"] = None
+    said = as_table({"curves": [one]}, "Hz").splitlines()[-1]
+    assert "along levels" in said and "found" not in said

@@ -13,6 +13,7 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _LOST = "\n- the curve has no stable part there to land on"
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
+_OF_LEVELS = "- not told: along levels of the forces what harmonics leave out is not estimated"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
 
 
@@ -84,7 +85,7 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
-        lines.append(_UNTOLD)
+        lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
 
 
