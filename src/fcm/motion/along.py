@@ -16,10 +16,10 @@ from fcm.motion.pool import ORDER
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
-    from cython.cimports.fcm.motion.series import needed
+    from cython.cimports.fcm.motion.polynomial import needed
 else:
     from fcm.motion.flow import Flows
-    from fcm.motion.series import needed
+    from fcm.motion.polynomial import needed
 
 FEW = cython.declare(cython.int, 4)  # rows that are sooner moved one by one
 DENSE = cython.declare(cython.int, 32)  # components from which matrices are multiplied by BLAS

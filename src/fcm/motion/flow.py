@@ -19,33 +19,22 @@ enters only the two columns of the forces (`forced`): everything else of a flow 
 from __future__ import annotations
 
 import cython
-import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.scene.model import FloatArray
-
 if cython.compiled:
-    from cython.cimports.fcm.motion.forced import Forced
+    from cython.cimports.fcm.motion.exits import Exits
+    from cython.cimports.fcm.motion.polynomial import needed
 else:
-    from fcm.motion.forced import Forced
+    from fcm.motion.exits import Exits
+    from fcm.motion.polynomial import needed
 
 _ORDER = cython.declare(cython.int, 19)
 _POWERS = cython.declare(cython.int, 8)  # of two, of the steps by which a flow moves at once
 
 
 @cython.cclass
-class Flows(Forced):
+class Flows(Exits):
     """The flows of a scene, and their forced columns at the frequency `omega` [rad/s]; see `Pool`."""
-
-    def __init__(
-        self,
-        modal: tuple[FloatArray, ...],
-        ports: tuple[FloatArray, ...],
-        law: FloatArray,
-        springs: tuple[FloatArray, ...],
-    ) -> None:
-        Forced.__init__(self, modal, ports, law, springs)
-        self._whole = np.zeros(self.size)
 
     @cython.cfunc
     @cython.nogil
@@ -56,31 +45,14 @@ class Flows(Forced):
         """Move row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
-        p: cython.Py_ssize_t = 0
-        a: cython.double
-        b: cython.double
-        c: cython.double
-        d: cython.double
         sine: cython.double = y[k, n]
         cosine: cython.double = y[k, n + 1]
         self.reach(slot, j)
         for i in range(n):
-            self._whole[i] = self.forced[slot, j, 0, i] * sine + self.forced[slot, j, 1, i] * cosine
-        while p + 4 <= n:  # four together, to go through the sums less often
-            a, b, c, d = y[k, p], y[k, p + 1], y[k, p + 2], y[k, p + 3]
-            for i in range(n):
-                self._whole[i] = (
-                    ((self._whole[i] + self.power[slot, j, p, i] * a) + self.power[slot, j, p + 1, i] * b)
-                    + self.power[slot, j, p + 2, i] * c
-                ) + self.power[slot, j, p + 3, i] * d
-            p += 4
-        while p < n:
-            a = y[k, p]
-            for i in range(n):
-                self._whole[i] += self.power[slot, j, p, i] * a
-            p += 1
+            self.whole[i] = self.forced[slot, j, 0, i] * sine + self.forced[slot, j, 1, i] * cosine
+        self.free(slot, j, y, k)
         for i in range(n):
-            y[k, i] = self._whole[i]
+            y[k, i] = self.whole[i]
         y[k, n] = self.turn[slot, j, 0] * sine + self.turn[slot, j, 1] * cosine
         y[k, n + 1] = self.turn[slot, j, 0] * cosine - self.turn[slot, j, 1] * sine
 
@@ -105,72 +77,6 @@ class Flows(Forced):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def watch(
-        self,
-        slot: cython.Py_ssize_t,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
-        steps: cython.Py_ssize_t,
-        seen: cython.double[::1],
-    ) -> cython.void:
-        """g, g' h and g'''' h**4 of the exits at 0 to `steps` <= BLOCK steps from row k of y."""
-        wide: cython.Py_ssize_t = (steps + 1) * 3 * self.exits[slot]
-        n: cython.Py_ssize_t = self.linear
-        w: cython.Py_ssize_t
-        i: cython.Py_ssize_t = 0
-        a: cython.double
-        b: cython.double
-        c: cython.double
-        d: cython.double
-        x: cython.double = y[k, n]
-        other: cython.double = y[k, n + 1]
-        self.look(slot, steps)
-        for w in range(wide):
-            seen[w] = self.table_forced[slot, 0, w] * x + self.table_forced[slot, 1, w] * other
-        while i + 4 <= n:
-            a, b, c, d = y[k, i], y[k, i + 1], y[k, i + 2], y[k, i + 3]
-            for w in range(wide):
-                seen[w] = (
-                    ((seen[w] + self.table[slot, i, w] * a) + self.table[slot, i + 1, w] * b)
-                    + self.table[slot, i + 2, w] * c
-                ) + self.table[slot, i + 3, w] * d
-            i += 4
-        while i < n:
-            a = y[k, i]
-            for w in range(wide):
-                seen[w] += self.table[slot, i, w] * a
-            i += 1
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
-    def leave(
-        self,
-        slot: cython.Py_ssize_t,
-        e: cython.Py_ssize_t,
-        y: cython.double[:, ::1],
-        k: cython.Py_ssize_t,
-        powers: cython.double[:, ::1],
-    ) -> cython.void:
-        """Taylor coefficients (ORDER + 1,) of exit e in the step from row k of y, into its row."""
-        n: cython.Py_ssize_t = self.linear
-        w: cython.Py_ssize_t = e * (_ORDER + 1)
-        i: cython.Py_ssize_t
-        j: cython.int
-        x: cython.double = y[k, n]
-        other: cython.double = y[k, n + 1]
-        self.expand(slot, e)
-        for j in range(_ORDER + 1):
-            powers[e, j] = self.series_forced[slot, 0, w + j] * x + self.series_forced[slot, 1, w + j] * other
-        for i in range(n):
-            x = y[k, i]
-            if x != 0.0:
-                for j in range(_ORDER + 1):
-                    powers[e, j] += self.series[slot, i, w + j] * x
-
-    @cython.cfunc
-    @cython.nogil
-    @cython.exceptval(check=False)
     def bound(
         self, slot: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t, out: cython.double[::1]
     ) -> cython.void:
@@ -187,3 +93,45 @@ class Flows(Forced):
             for i in range(n):
                 out[i] += self.sizes[slot, p, i] * x
         out[n] = out[n + 1] = 2.5  # of 1 + x + x**2 / 2, x <= 1 the angle of a step
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def taylor(
+        self,
+        slot: cython.Py_ssize_t,
+        y: cython.double[:, ::1],
+        k: cython.Py_ssize_t,
+        terms: cython.double[:, ::1],
+    ) -> cython.void:
+        """Taylor coefficients of the motion from row k of y, by the position in a step: (ORDER + 1, d)."""
+        i: cython.Py_ssize_t
+        for i in range(self.size):
+            terms[0, i] = y[k, i]
+        self.extend(slot, terms, _ORDER, self.step[slot], terms, False)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def part(
+        self,
+        slot: cython.Py_ssize_t,
+        x: cython.double,
+        y: cython.double[:, ::1],
+        first: cython.Py_ssize_t,
+        last: cython.Py_ssize_t,
+    ) -> cython.void:
+        """Move the rows from the first to before the last of y by a part x of a step."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        orders: cython.Py_ssize_t = needed(x)
+        for k in range(first, last):
+            for i in range(self.size):
+                self._own[0, i] = y[k, i]
+            self.extend(slot, self._own, orders, x * self.step[slot], self._own, False)
+            for j in range(orders - 1, -1, -1):
+                for i in range(self.size):
+                    self._own[j, i] += self._own[j + 1, i]
+            for i in range(self.size):
+                y[k, i] = self._own[0, i]

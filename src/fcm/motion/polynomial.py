@@ -1,4 +1,4 @@
-"""A polynomial by its powers of x, its derivatives, and the root of one of them."""
+"""A polynomial by its powers of x, its derivatives, the root of one of them; and many polynomials at once."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import cython
 from cython.cimports.libc.math import fabs
 
 _ORDER = cython.declare(cython.int, 19)  # its degree, ORDER of fcm.motion.pool
+_SERIES_END = cython.declare(cython.double, 4e-19)  # 1 / 20!, as many terms as make a step complete
 
 
 @cython.cfunc
@@ -51,3 +52,33 @@ def root(
             return new
         x = new
     return x
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def needed(x: cython.double) -> cython.int:
+    """The terms beyond the first that a part x of a step takes, to rounding."""
+    j: cython.int = 0
+    size: cython.double = 1.0
+    while size > _SERIES_END and j < _ORDER:
+        j += 1
+        size *= x / j
+    return j
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def summed(
+    terms: cython.double[:, ::1], x: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
+) -> cython.void:
+    """Row k of y becomes the sum of terms[j] x**j."""
+    i: cython.Py_ssize_t
+    j: cython.int
+    n: cython.Py_ssize_t = terms.shape[1]
+    for i in range(n):
+        y[k, i] = terms[_ORDER, i]
+    for j in range(_ORDER - 1, -1, -1):
+        for i in range(n):
+            y[k, i] = y[k, i] * x + terms[j, i]

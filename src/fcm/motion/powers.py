@@ -11,11 +11,11 @@ from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
-    from cython.cimports.fcm.motion.series import summed
+    from cython.cimports.fcm.motion.polynomial import summed
     from cython.cimports.fcm.motion.walk import Walk
 else:
     from fcm.motion.flow import Flows
-    from fcm.motion.series import summed
+    from fcm.motion.polynomial import summed
     from fcm.motion.walk import Walk
 
 NODES = 8  # integrate exactly polynomials of degree 15

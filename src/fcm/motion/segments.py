@@ -27,8 +27,8 @@ class Segments:
 
     def __init__(self, size: int, contacts: int, capacity: int = 16) -> None:
         self.count = 0
-        self._numbers = np.zeros((capacity, size + contacts + 3))
-        self.states = np.zeros((capacity, contacts), np.int8)
+        self._numbers = np.empty((capacity, size + contacts + 3))
+        self.states = np.empty((capacity, contacts), np.int8)
         self._part(size)
 
     @cython.cfunc

@@ -9,12 +9,12 @@ from fcm.motion.pool import ORDER
 
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
+    from cython.cimports.fcm.motion.polynomial import summed
     from cython.cimports.fcm.motion.segments import Segments
-    from cython.cimports.fcm.motion.series import summed
 else:
     from fcm.motion.flow import Flows
+    from fcm.motion.polynomial import summed
     from fcm.motion.segments import Segments
-    from fcm.motion.series import summed
 
 MISSING = -1
 
