@@ -13,7 +13,9 @@ cdef class Scan(Walk):
     cdef void _look(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
     cdef void _note_ends(self, Py_ssize_t count, double last) noexcept nogil
     cdef void _step(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
-    cdef bint _may_turn(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef void _spread(self, Py_ssize_t slot, Py_ssize_t k, Py_ssize_t last) noexcept nogil
+    cdef bint _may_exceed(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef bint _may_turn(self, Py_ssize_t slot, Py_ssize_t r, Py_ssize_t k) noexcept nogil
     cdef void _extremes(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
     cdef void _turn(self, Py_ssize_t r, Py_ssize_t k, double low, double high) noexcept nogil
     cdef void _note(self, Py_ssize_t r, double x, double here) noexcept nogil

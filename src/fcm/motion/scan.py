@@ -46,7 +46,7 @@ class Scan(Walk):
         self.place, self._powers = np.zeros((2 * rows.count, 2)), np.zeros(ORDER + 1)
         self._there, self._terms = np.zeros((3, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._path = self.ahead if self.span else np.zeros((SPAN + 1, flows.size))
-        self._values = np.zeros((3, SPAN + 1, rows.count))
+        self._values = np.zeros((2, SPAN + 1, rows.count))
         self._first, self._length = 0.0, 0.0
 
     def begins(self, segments: Segments) -> None:
@@ -108,28 +108,32 @@ class Scan(Walk):
         """What `_look` tells of the state vectors `ahead`."""
         n: cython.Py_ssize_t = self.flows.linear
         rows, y = np.asarray(self._rows.dense), np.asarray(self.ahead)
-        out, forces = np.asarray(self._values), np.zeros((2, 3, self.flows.size))
+        out, forces = np.asarray(self._values), np.zeros((2, 2, self.flows.size))
         for b in range(2):
             forces[b, 0, n + b] = 1.0
-            self.flows.extend(slot, forces[b], 2, self.flows.step[slot], forces[b], False)
+            self.flows.extend(slot, forces[b], 1, self.flows.step[slot], forces[b], False)
+        term = np.asarray(self.flows.terms)[slot, 1].reshape(n, n)
         np.matmul(y[:, :n], rows, out=out[0])
-        for j in (1, 2):
-            term = np.asarray(self.flows.terms)[slot, j].reshape(n, n)
-            by_state = np.vstack((term @ rows, forces[:, j, :n] @ rows))
-            np.matmul(y, by_state, out=out[j])
+        np.matmul(y, np.vstack((term @ rows, forces[:, 1, :n] @ rows)), out=out[1])
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
     def _look(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """The rows where step k begins, with their first two Taylor coefficients by the position."""
+        """The rows where step k begins, and their slopes by the position."""
+        self._spread(slot, k, 1)
+        self._rows.all(self._there, 0, self._values[0], k)
+        self._rows.all(self._there, 1, self._values[1], k)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _spread(self, slot: cython.Py_ssize_t, k: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.void:
+        """The Taylor coefficients by the position where step k begins, up to the last."""
         i: cython.Py_ssize_t
-        j: cython.int
         for i in range(self.flows.size):
             self._there[0, i] = self._path[k, i]
-        self.flows.extend(slot, self._there, 2, self.flows.step[slot], self._there, False)
-        for j in range(3):
-            self._rows.all(self._there, j, self._values[j], k)
+        self.flows.extend(slot, self._there, last, self.flows.step[slot], self._there, False)
 
     @cython.cfunc
     @cython.nogil
@@ -150,7 +154,7 @@ class Scan(Walk):
         r: cython.Py_ssize_t
         expanded: cython.bint = False
         for r in range(self.greatest.shape[0]):
-            if self._may_turn(r, k):
+            if self._may_exceed(r, k) and self._may_turn(slot, r, k):
                 if not expanded:
                     self.flows.taylor(slot, self._path, k, self._terms)
                     expanded = True
@@ -159,22 +163,31 @@ class Scan(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _may_turn(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
-        """Whether step k may hold an extreme beyond those so far, by the slopes at its ends.
+    def _may_exceed(self, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
+        """Whether step k may go beyond the extremes so far, by the slopes at its ends.
 
         A step is a part of the fastest motion in which no slope grows to more than twice those at its ends:
         what rises and falls by no more goes no further from the middle of its ends than it.
         """
-        first: cython.double = self._values[1, k, r]
-        last: cython.double = self._values[1, k + 1, r]
-        bend: cython.double = self._values[2, k, r]
-        middle: cython.double
-        reach: cython.double
-        if first * last >= 0.0 and (bend * first >= 0.0 or bend * self._values[2, k + 1, r] >= 0.0):
-            return False
-        middle = 0.5 * (self._values[0, k, r] + self._values[0, k + 1, r])
-        reach = max(fabs(first), fabs(last))
+        middle: cython.double = 0.5 * (self._values[0, k, r] + self._values[0, k + 1, r])
+        reach: cython.double = max(fabs(self._values[1, k, r]), fabs(self._values[1, k + 1, r]))
         return middle + reach > self.greatest[r] or middle - reach < self.least[r]
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _may_turn(self, slot: cython.Py_ssize_t, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
+        """Whether step k may hold an extreme of its own."""
+        first: cython.double = self._values[1, k, r]
+        bend: cython.double
+        if first * self._values[1, k + 1, r] < 0.0:
+            return True
+        self._spread(slot, k, 2)
+        bend = self._rows.dot(r, self._there, 2)
+        if bend * first >= 0.0:
+            return False
+        self._spread(slot, k + 1, 2)
+        return bend * self._rows.dot(r, self._there, 2) < 0.0
 
     @cython.cfunc
     @cython.nogil
