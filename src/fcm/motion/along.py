@@ -158,6 +158,9 @@ class Along:
         if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
             return
+        if not self.flows.spelled[slot]:
+            with cython.gil:
+                self.flows.spell(slot)
         size = x
         for i in range(n * n):
             self._flat[i] = self.flows.terms[slot, 0, i]

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import BLOCK, FITS, NEGATIVE, OPEN, ORDER, POSITIVE, POWERS, SMALL, STICK
+from fcm.motion.pool import BLOCK, FITS, NEGATIVE, OPEN, ORDER, POSITIVE, STICK
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
@@ -33,8 +33,8 @@ class Flow(NamedTuple):
     rows: FloatArray  # (exit, linear)
     owner: list[int]  # (exit,) the contact that it belongs to
     goal: list[int]  # (exit,) the state to which it leads
-    powers: FloatArray  # (POWERS, linear, linear)
-    terms: FloatArray  # (ORDER + 1, linear, linear) Taylor coefficients over a step, none of a large system
+    power: FloatArray  # (linear, linear) what a step does
+    change: FloatArray  # (linear, linear) the matrix times the step
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
@@ -49,18 +49,15 @@ def made(system: System, states: Codes) -> Flow:
     step, halved = _step(system, matrix)
     change = matrix.T * step
     rows, owner, goal = _exits(system, states)
-    terms = _terms(change)
-    powers = [terms.sum(axis=0) if len(terms) else _exponential(change)]
-    for _ in range(POWERS - 1):
-        powers.append(powers[-1] @ powers[-1])
+    power = _exponential(change)
     leading = [rows.T]
     for j in range(1, ORDER + 1):
         leading.append(change @ leading[-1] / j)
     table = [np.hstack((leading[0], leading[1], 24.0 * leading[4]))]
     for _ in range(BLOCK):
-        table.append(powers[0] @ table[-1])
+        table.append(power @ table[-1])
     return Flow(
-        states.copy(), step, halved, rows, owner, goal, np.array(powers), terms,
+        states.copy(), step, halved, rows, owner, goal, power, change,
         np.stack(leading, axis=2).reshape(rows.shape[1], -1),
         np.eye(change.shape[0]) + np.abs(change) + 0.5 * np.abs(change @ change),
         np.hstack(table), _pushes(system, change, step),
@@ -124,19 +121,6 @@ def _exponential(a: FloatArray) -> FloatArray:
         for i in (3, 2, 1, 0):
             total += powers[i] / factorial(first + i)
     return total
-
-
-def _terms(a: FloatArray) -> FloatArray:
-    """a**j / j! for j = 0 ... ORDER."""
-    n = a.shape[0]
-    if n > SMALL:
-        return np.empty((0, n, n))
-    terms = np.empty((ORDER + 1, n, n))
-    terms[0] = np.eye(n)
-    for j in range(1, ORDER + 1):
-        np.matmul(terms[j - 1], a, out=terms[j])
-        terms[j] /= j
-    return terms
 
 
 def _pushes(system: System, change: FloatArray, step: float) -> FloatArray:

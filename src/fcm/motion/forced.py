@@ -130,6 +130,9 @@ class Forced(Series):
         while self.reached[slot] <= last:
             if self.reached[slot] > 0:
                 self._double(slot, self.reached[slot] - 1)
+            if self.squared[slot] < self.reached[slot]:
+                with cython.gil:
+                    self.next_power(slot)
             t = self.omega * self.step[slot] * (1 << self.reached[slot])
             self.turn[slot, self.reached[slot], 0] = cos(t)
             self.turn[slot, self.reached[slot], 1] = sin(t)

@@ -7,7 +7,7 @@ cdef class Pool:
     cdef readonly signed char[::1] rough, halved
     cdef readonly signed char[:, ::1] states
     cdef readonly double[::1] step
-    cdef readonly Py_ssize_t[::1] exits, reached, looked
+    cdef readonly Py_ssize_t[::1] exits, reached, looked, squared, spelled
     cdef readonly Py_ssize_t[:, ::1] owner, first, spread
     cdef readonly signed char[:, ::1] goal
     cdef readonly double[:, :, ::1] terms, row, table, table_forced, series, series_forced, sizes, sizes_forced

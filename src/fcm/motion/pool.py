@@ -29,6 +29,9 @@ PUSHED = np.array(
 class Pool:
     """The flows of a scene; where there is no room for more, the one that was used longest ago goes.
 
+    Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
+    and the Taylor coefficients, are made where they are needed.
+
     Parameters
     ----------
     modal : tuple of arrays
@@ -92,8 +95,8 @@ class Pool:
         rows: FloatArray,
         owner: list[int],
         goal: list[int],
-        powers: FloatArray,
-        terms: FloatArray,
+        power: FloatArray,
+        change: FloatArray,
         series: FloatArray,
         sizes: FloatArray,
         table: FloatArray,
@@ -105,19 +108,35 @@ class Pool:
         made["halved"][k] = halved
         made["owner"][k, :exits], made["goal"][k, :exits], made["row"][k, :exits] = owner, goal, rows
         made["first"][k, :exits] = (rows != 0.0).argmax(axis=1) if exits else 0
-        made["power"][k], made["sizes"][k], made["used"][k] = powers, sizes, self.clock
-        made["terms"][k] = terms.reshape(terms.shape[0], -1)
+        made["power"][k, 0], made["sizes"][k], made["used"][k] = power, sizes, self.clock
+        made["squared"][k] = made["spelled"][k] = 0
+        if made["terms"].shape[1]:
+            made["terms"][k, 0], made["terms"][k, 1] = np.eye(self.linear).ravel(), change.ravel()
         made["table"][k, :, : table.shape[1]], made["series"][k, :, : series.shape[1]] = table, series
         made["push"][k], made["kick"][k, :exits] = pushes[:2], np.einsum("ei,kci->eck", rows, pushes)
         made["pushed"][k] = np.tensordot(PUSHED, pushes, 1).swapaxes(0, 1)
         return k
+
+    def spell(self, slot: int) -> None:
+        """Make the Taylor coefficients (A h)**j / j! of a flow, of which those to j = 1 are there."""
+        terms = self._pool["terms"][slot].reshape(ORDER + 1, self.linear, self.linear)
+        for j in range(2, ORDER + 1):
+            np.matmul(terms[j - 1], terms[1], out=terms[j])
+            terms[j] /= j
+        self._pool["spelled"][slot] = 1
+
+    def next_power(self, slot: int) -> None:
+        """Make the power of a flow over twice as many steps as the last."""
+        power, j = self._pool["power"][slot], int(self._pool["squared"][slot])
+        np.matmul(power[j], power[j], out=power[j + 1])
+        self._pool["squared"][slot] = j + 1
 
     def _place(self) -> int:
         """A place for one more."""
         capacity = self.step.shape[0]
         most = max(int(MOST_BYTES / (self.bytes() / capacity)), FEWEST)
         if self.count == capacity < most:
-            capacity = min(4 * capacity, most)  # what is not used of it takes no memory
+            capacity = min(16 * capacity, most)  # what is not used of it takes no memory
             self._make_room(capacity)
         if self.count == capacity:
             return int(np.argmin(np.asarray(self.used)))
@@ -129,7 +148,7 @@ class Pool:
         wide = (BLOCK + 1) * WATCHED * e
         shapes = {
             "states": (c,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
-            "made_for": (), "used": (), "row": (e, n), "power": (POWERS, n, n),
+            "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n), "power": (POWERS, n, n),
             "forced": (POWERS, 4, n), "turn": (POWERS, 2), "reached": (), "looked": (),
             "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
@@ -147,6 +166,8 @@ class Pool:
             "reached": np.intp,
             "looked": np.intp,
             "spread": np.intp,
+            "squared": np.intp,
+            "spelled": np.intp,
         }
         old, made = self._pool, {}
         for name, shape in shapes.items():
@@ -158,7 +179,7 @@ class Pool:
         self.owner, self.goal = made["owner"], made["goal"]
         self.row, self.first = made["row"], made["first"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
-        self.terms = made["terms"]
+        self.terms, self.squared, self.spelled = made["terms"], made["squared"], made["spelled"]
         self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
         self.reached, self.looked, self.spread = made["reached"], made["looked"], made["spread"]
         self.push, self.pushed, self.kick = made["push"], made["pushed"], made["kick"]
