@@ -10,6 +10,7 @@ import pytest
 from fcm.motion import simulate
 from fcm.motion.system import System
 from fcm.orbit import Shooting, periodic
+from fcm.orbit.derivative import along
 from fcm.orbit.shooting import Shot
 from fcm.scene import Contact, Force, Modal, Scene
 
@@ -109,3 +110,30 @@ def test_a_contact_that_always_sticks_has_the_friction_that_is_wanted(preload):
     assert shot.residual < 1e-10
     u = scene.modal.shapes.T @ shot.state.q
     assert shot.state.friction[0] == pytest.approx(u[0])  # k_u = 1, w = 0
+
+
+def instants(segments, duration, count, rng):
+    """Places (segment, position) in no order, several of them in one step, and their times."""
+    start, length = (np.asarray(x)[: len(segments)] for x in (segments.start, segments.length))
+    lasts = np.append(start[1:], duration) - start
+    k = rng.choice(np.flatnonzero(lasts > 1e-3 * duration), count)
+    share = rng.choice(rng.uniform(0.05, 0.95, count // 4), count) + rng.uniform(0.0, 1e-3, count)
+    return np.column_stack((k, share * length[k])), start[k] + share * lasts[k]
+
+
+@pytest.mark.parametrize(("name", "omega"), CASES)
+def test_the_change_along_a_direction_is_the_difference_of_two_motions(name, omega):
+    """At many instants, several of them in one step."""
+    scene, rng, h = SCENES[name], np.random.default_rng(1), 1e-6
+    problem, state = Shooting(scene), periodic(scene, omega).state
+    shot = problem.residual(problem.unknowns(state), omega)
+    places, times = instants(shot.segments, shot.duration, 40, rng)
+    way, rate, order = rng.normal(size=shot.x.size) * shot.scale, 0.3 * omega, np.argsort(times)
+    rows = np.eye(shot.system.size)[: shot.system.modes]
+    ends = [
+        Shot(System(scene, omega + e * rate), shot.x + e * way).cycle.values(rows, times[order])
+        for e in (-h, h)
+    ]
+    found = along(shot.system, shot.segments, places, way, rate)[order]
+    expected = (ends[1] - ends[0]) / (2.0 * h)
+    assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
