@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fcm.motion.system import System
 
 SLOWEST = 1e-300  # [1/s] a rate below is none
+BLOCKS = np.array([[1.0 / factorial(4 * i + j) for j in range(4)] for i in range((ORDER + 1) // 4)])
 Codes = npt.NDArray[np.int8]
 
 
@@ -113,13 +114,12 @@ def _step(system: System, a: FloatArray) -> tuple[float, bool]:
 
 def _exponential(a: FloatArray) -> FloatArray:
     """The sum of a**j / j! for j = 0 ... ORDER, in blocks of four powers (Paterson and Stockmeyer)."""
-    powers = [np.eye(a.shape[0]), a, a @ a]
-    powers.append(powers[2] @ a)
-    fourth, total = powers[2] @ powers[2], np.zeros_like(a)
-    for first in range(ORDER - 3, -1, -4):
-        total = total @ fourth
-        for i in (3, 2, 1, 0):
-            total += powers[i] / factorial(first + i)
+    square = a @ a
+    powers = np.stack((np.eye(a.shape[0]), a, square, square @ a))
+    blocks, fourth = np.tensordot(BLOCKS, powers, 1), square @ square
+    total: FloatArray = blocks[-1]
+    for block in blocks[-2::-1]:
+        total = total @ fourth + block
     return total
 
 
