@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.corrector import Corrector
+from fcm.harmonic.corrector import corrector_of
 from fcm.harmonic.filled import Filled, places, steepness
 from fcm.harmonic.further import LEAST_AMPLITUDE
 from fcm.harmonic.system import System
@@ -39,7 +39,7 @@ class Corrected:
         self.path, self.amplitude, self.linear = path, amplitude, _with_ends(path, linear)
         self.unit = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
-        self.corrector = Corrector(system)
+        self.corrector = corrector_of(system)
         count, dofs = amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)

@@ -12,6 +12,8 @@ cdef class Corrector:
     cdef list lifts
     cdef list sets
     cdef dict second
+    cdef dict spare
+    cdef dict spares
     cdef unsigned char[:, ::1] covers
     cdef double[::1] top, found
     cdef Py_ssize_t[::1] place

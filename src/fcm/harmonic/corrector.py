@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
@@ -21,6 +23,7 @@ LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from wh
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
 SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
+MOST = 16  # balances, and correctors, that are kept for the next system
 NAN = cython.declare(cython.double, float("nan"))
 
 
@@ -33,20 +36,28 @@ class Corrector:
     """
 
     def __init__(self, system: System, again: bool = True, enough: float = ENOUGH) -> None:
-        self.system, self.again, self.enough = system, again, enough
+        self.again, self.enough = again, enough
         contacts = max(len(system.scene.contacts), 1)
         self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
         self.further = Further(system)
         # whether a point takes no more than a few milliseconds
         self.cheap = 4 * contacts * (len(system.harmonics) + self.count) <= UNKNOWNS
+        # the greatest squares of what harmonics would do, and where they are
+        self.top, self.place, self.among = np.zeros(self.count), np.zeros(self.count, dtype=np.intp), 0
+        self.found = np.zeros(1 + system.linear.dofs.shape[1])
+        self.spare: dict[tuple[int, ...], Lifted] = {}  # made for systems that were taken before,
+        self.spares: dict[tuple[int, ...], Corrector] = {}  # as these were
+        self.take(system)
+
+    def take(self, system: System) -> None:
+        """A system with the same structure and harmonics, whose contacts may be others; no set is known."""
+        self.system = system
+        self.further.take(system)
         self.known: dict[tuple[int, ...], Lifted] = {}
         self.lifts: list[Lifted] = []  # the same,
         self.sets: list[tuple[int, ...]] = []  # their harmonics,
         self.covers = np.zeros((FURTHER, self.further.highest), dtype=np.uint8)  # and which these are
         self.second: dict[tuple[int, ...], Corrector] = {}
-        # the greatest squares of what harmonics would do, and where they are
-        self.top, self.place, self.among = np.zeros(self.count), np.zeros(self.count, dtype=np.intp), 0
-        self.found = np.zeros(1 + system.linear.dofs.shape[1])
 
     def move(
         self,
@@ -127,10 +138,7 @@ class Corrector:
     def lifted(self, more: tuple[int, ...]) -> Lifted:
         """The balance of more harmonics."""
         if more not in self.known:
-            system = self.system
-            made = Lifted(
-                system.with_harmonics(more).balance(), list(system.harmonics), list(more), self.enough
-            )
+            made = self._lifted(more)
             self.known[more] = made
             self.lifts.append(made)
             self.sets.append(more)
@@ -141,11 +149,29 @@ class Corrector:
             self.covers = covers
         return self.known[more]
 
+    def _lifted(self, more: tuple[int, ...]) -> Lifted:
+        """The same as if it were new."""
+        system, made = self.system, self.spare.get(more)
+        if made is not None:
+            made.take([(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts])
+            return made
+        if len(self.spare) == MOST:
+            self.spare.clear()
+        balance = system.with_harmonics(more).balance()
+        made = self.spare[more] = Lifted(balance, list(system.harmonics), list(more), self.enough)
+        return made
+
     def of(self, harmonics: tuple[int, ...]) -> Corrector:
         """Corrects points of a balance of some harmonics."""
         if harmonics not in self.second:
-            system = self.system.with_harmonics(harmonics)
-            self.second[harmonics] = Corrector(system, again=False, enough=self.enough)
+            system, made = self.system.with_harmonics(harmonics), self.spares.get(harmonics)
+            if made is not None:
+                made.take(system)
+            else:
+                if len(self.spares) == MOST:
+                    self.spares.clear()
+                made = self.spares[harmonics] = Corrector(system, again=False, enough=self.enough)
+            self.second[harmonics] = made
         return self.second[harmonics]
 
     def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
@@ -239,3 +265,25 @@ class Corrector:
             self.among = min(self.among + 1, self.count)
         while self.among and not self.top[self.among - 1] > LEAST * LEAST * self.top[0]:
             self.among -= 1
+
+
+class _Kept(threading.local):
+    """The corrector of each thread, and what it is for."""
+
+    def __init__(self) -> None:
+        self.key: tuple[object, ...] = ()
+        self.corrector: Corrector | None = None
+
+
+_KEPT = _Kept()
+
+
+def corrector_of(system: System) -> Corrector:
+    """A corrector as if it were new: that before it, if the contacts alone are others, as in a sweep."""
+    kept, scene = _KEPT, system.scene
+    key = (*system.linear.numbers, scene.frequency_range, bool(scene.loads), system.harmonics)
+    if kept.corrector is None or kept.key != key or scene.ring is not None:
+        kept.key, kept.corrector = key, Corrector(system)
+    else:
+        kept.corrector.take(system)
+    return kept.corrector

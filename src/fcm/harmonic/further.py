@@ -42,17 +42,21 @@ class Further:
     """The harmonics of the exact forces of motions of a system's balance."""
 
     def __init__(self, system: System) -> None:
-        contacts, linear = system.scene.contacts, system.linear
-        self.system, self.highest = system, highest(system)
-        self.contacts, self.width = len(contacts), 2 + 4 * len(system.harmonics)
+        linear, self.highest = system.linear, highest(system)
+        self.contacts, self.width = len(system.scene.contacts), 2 + 4 * len(system.harmonics)
         self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
-        self.laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]).reshape(-1, 4)
         few = system.scene.ring is None and linear.ports.size <= FEW
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.answers = Answers(*own) if few else None
         self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
         self.force = np.zeros((self.highest, 2 * self.contacts, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
+        self.take(system)
+
+    def take(self, system: System) -> None:
+        """A system with the same structure and harmonics, whose contacts may be others."""
+        self.system = system
+        self.laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts]).reshape(-1, 4)
 
     def _without(self, harmonics: Sequence[int]) -> npt.NDArray[np.intp]:
         """The other harmonics."""

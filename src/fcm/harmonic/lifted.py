@@ -14,7 +14,6 @@ ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is jud
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
 FAR = cython.declare(cython.double, 0.5)  # a displacement of this part of the solution's size is not believed
 TURNED = cython.declare(cython.double, 0.7)  # nor a curve that goes another way, by the cosine of the angle
-NAN = cython.declare(cython.double, float("nan"))
 GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
 
 
@@ -39,27 +38,11 @@ class Lifted:
         self.still = np.zeros(balance.unknowns + 1)
         self.found = np.zeros(1 + balance.outputs)
 
-    def all(
-        self,
-        z: cython.double[:, ::1],
-        direction: cython.double[:, ::1],
-        found: cython.double[:, ::1],
-        there: cython.double[:, :, ::1],
-    ) -> None:
-        """What is found beside each of some points (point, 1 + dof), NaN where nothing is; and where that
-        is, its z and the direction of its curve, (2, point, unknown + 1)."""
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        for i in range(z.shape[0]):
-            if not self.beside(z[i], direction[i]):
-                for j in range(found.shape[1]):
-                    found[i, j] = NAN
-                continue
-            for j in range(found.shape[1]):
-                found[i, j] = self.found[j]
-            for j in range(there.shape[2]):
-                there[0, i, j] = self.newton.z[j]
-                there[1, i, j] = self.newton.tangent[j] * self.newton.scale[j]
+    def take(self, contacts: list[tuple[float, float, float, float]]) -> None:
+        """Contacts with other mu, k_u, k_v, n_0, as if nothing had been looked at yet."""
+        for law, numbers in zip(self.balance.laws, contacts, strict=True):
+            law.mu, law.k_u, law.k_v, law.n_0 = numbers
+        self.balance.largest[:] = 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

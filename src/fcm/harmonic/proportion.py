@@ -58,11 +58,8 @@ def in_common(system: System, omega: float, followed: Followed) -> Path | None:
 
 def _made_of(system: System) -> tuple[object, ...]:
     """What the curve is of, besides the frequency."""
-    linear = system.linear
-    arrays = (linear.natural, linear.damping, linear.ports, linear.force, linear.square)
     laws = tuple((c.mu, c.k_u, c.k_v, c.n_0) for c in system.normal.scene.contacts)
-    means = linear.counted.tobytes(), linear.adrift.tobytes()
-    return *(array.tobytes() for array in arrays), *means, laws, system.harmonics
+    return *system.linear.numbers, laws, system.harmonics
 
 
 def passings(system: System, path: Path, omega: float) -> list[FloatArray] | None:

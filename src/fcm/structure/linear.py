@@ -57,6 +57,11 @@ class Linear:
         """As `attached_to`, of the degrees of freedom."""
         return attached_to(self.ports, self.dofs)
 
+    @cached_property
+    def numbers(self) -> tuple[bytes, ...]:
+        """What is the same of structures that are the same."""
+        return tuple(getattr(self, field.name).tobytes() for field in fields(Linear))
+
     def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
         """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
         seen = self._fundamental
