@@ -9,6 +9,7 @@ the number of real multipliers above +1, and changes exactly at the folds: it de
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 
 import numpy as np
@@ -27,6 +28,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
 SMALL = 16  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
+SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
 FAR = 6.0  # times the excitation, and FURTHER times the highest harmonic
 FURTHER = 1.5
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
@@ -40,7 +42,7 @@ class Multipliers:
     def __init__(self, system: System, highest: float) -> None:
         linear = system.linear
         self.contacts = len(system.scene.contacts)
-        contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]).reshape(-1, 4)
+        self.contact = contact = np.zeros((self.contacts, 4))  # what all look at
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
         far = far_above(linear.natural, highest, harmonics)
@@ -51,6 +53,12 @@ class Multipliers:
         self.fine = Monodromy(stiffness, Transitions(contact, finer))
         self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
         self.eigenvalues = Eigenvalues(SMALL)
+        self.take(system)
+
+    def take(self, system: System) -> None:
+        """A system with the same structure and harmonics, whose contacts may be others."""
+        for row, c in zip(self.contact, system.scene.contacts, strict=True):
+            row[:] = c.mu, c.k_u, c.k_v, c.n_0
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
@@ -72,11 +80,13 @@ class Multipliers:
         of the balanced harmonics.
         """
         fine, plain, omega = self.fine.transitions, self.plain.transitions, float(z[-1])
-        self.finer.at(z)
-        if not (self.see(plain, z) and self.see(fine, self.finer.x)):
+        if not self.see(plain, z):
             return UNKNOWN
-        if plain.moving + plain.held + fine.moving + fine.held == 0:
-            return PASSIVE
+        if plain.moving + plain.held == 0:
+            return PASSIVE  # nor does the finer motion, which has no further harmonics
+        self.finer.at(z)
+        if not self.see(fine, self.finer.x):
+            return UNKNOWN
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
@@ -139,13 +149,32 @@ def _from_one(value: complex) -> float:
     return abs(value - 1.0)
 
 
-def multipliers_of(system: System, highest: float) -> Multipliers:
-    """The workspace for a system, be it a structure or a sector of a ring."""
-    if system.scene.ring is None:
-        return Multipliers(system, highest)
-    from fcm.harmonic.ring_multipliers import RingMultipliers
+class _Last(threading.local):
+    """The workspace that each thread used last, and what it is for."""
 
-    return RingMultipliers(system, highest)
+    def __init__(self) -> None:
+        self.key: tuple[object, ...] = ()
+        self.multipliers: Multipliers | None = None
+
+
+_LAST = _Last()
+
+
+def multipliers_of(system: System, highest: float) -> Multipliers:
+    """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
+    the contacts alone are others, as in a sweep."""
+    if system.scene.ring is not None:
+        from fcm.harmonic.ring_multipliers import RingMultipliers
+
+        return RingMultipliers(system, highest)
+    linear = system.linear
+    if 2 * linear.natural.size + len(system.scene.contacts) > SMALLEST:
+        return Multipliers(system, highest)
+    key = (*linear.numbers, system.harmonics)
+    if _LAST.multipliers is None or _LAST.key != key:
+        _LAST.key, _LAST.multipliers = key, Multipliers(system, highest)
+    _LAST.multipliers.take(system)
+    return _LAST.multipliers
 
 
 def multipliers(system: System, z: FloatArray) -> ComplexArray:

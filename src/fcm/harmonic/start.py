@@ -7,6 +7,7 @@ can change what it does. Every passing of the level 1 is a solution.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -33,6 +34,17 @@ FURTHER = 2.0  # times its greatest level before, up to which that of more is fo
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
 
 ComplexArray = npt.NDArray[np.complex128]
+
+
+class _Last(threading.local):
+    """The linear answers that each thread found last, and what they are of."""
+
+    def __init__(self) -> None:
+        self.key: tuple[object, ...] = ()
+        self.found: ComplexArray = np.empty((0, 3, 0), dtype=np.complex128)
+
+
+_LAST = _Last()
 
 
 @dataclass(frozen=True)
@@ -201,14 +213,26 @@ def _linear_answers(system: System, omega: float) -> ComplexArray:
 
 
 def foresee(system: System, frequencies: Sequence[float]) -> None:
-    """Find the linear answers at all frequencies at which solutions will be asked for, at once."""
-    G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
-    ports = X.shape[1]
+    """Find the linear answers at all frequencies at which solutions will be asked for, at once.
+
+    Those of the last system are still known: of a sweep most are the same.
+    """
     at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
-    held = system.springs(stuck=True) * np.array([at_rest, np.ones(ports), np.zeros(ports)])
-    matrices = np.eye(ports) + G[:, None] * held[:, None, :]
-    found = np.linalg.solve(matrices, X[:, None, :, None])[..., 0].astype(np.complex128, copy=False)
-    system.answers.update(zip(frequencies, found, strict=True))
+    held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
+    key = (*system.linear.numbers, *frequencies, held.tobytes())
+    if key != _LAST.key or system.scene.ring is not None:
+        _LAST.key, _LAST.found = key, _answers_of(system, frequencies, held)
+    system.answers.update(zip(frequencies, _LAST.found, strict=True))
+
+
+def _answers_of(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
+    """Of the ports with springs held (case, port): (frequency, case, port)."""
+    G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
+    matrices = np.eye(X.shape[1]) + G[:, None] * held[:, None, :]
+    found: ComplexArray = np.linalg.solve(matrices, X[:, None, :, None])[..., 0].astype(
+        np.complex128, copy=False
+    )
+    return found
 
 
 def loads_at_rest(system: System) -> FloatArray:

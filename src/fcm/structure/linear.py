@@ -112,8 +112,18 @@ def _attached(
 
 def with_springs(natural: FloatArray, ports: FloatArray | ComplexArray, springs: FloatArray) -> FloatArray:
     """Natural frequencies of modes with springs (port,) on their ports (mode, port), in ascending order."""
+    return _with_springs(natural.tobytes(), ports.tobytes(), ports.dtype.str, springs.tobytes())
+
+
+@lru_cache(SAME)
+def _with_springs(of_modes: bytes, of_ports: bytes, kind: str, of_springs: bytes) -> FloatArray:
+    """The same of their numbers."""
+    natural, springs = np.frombuffer(of_modes), np.frombuffer(of_springs)
+    ports = np.frombuffer(of_ports, dtype=kind).reshape(natural.size, springs.size)
     stiffness = np.diag(natural**2) + (ports.conj() * springs) @ ports.T
-    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0)), dtype=np.float64)
+    found: FloatArray = np.sqrt(np.maximum(np.linalg.eigvalsh(stiffness), 0.0))
+    found.flags.writeable = False
+    return found
 
 
 def amplitudes(
