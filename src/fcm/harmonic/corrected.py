@@ -107,7 +107,7 @@ class Corrected:
             i = int(group[len(group) // 2])
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
-            there, now = np.isin(places, group), self.amplitude[i]
+            there, now = (places >= group[0]) & (places <= group[-1]), self.amplitude[i]
             factor = self.corrector.settled(self.path.z[i], self.path.direction[i], now)
             factor /= np.where(now > 0.0, now, 1.0)
             there &= np.isfinite(factor)

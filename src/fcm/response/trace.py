@@ -177,6 +177,12 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path)
         inserted = judged.inserted
+        if not inserted:
+            paths.append(path)
+            shown.append(known)
+            errors.append(error)
+            stable.append(judged.stable)
+            continue
         after = np.array([one.after for one in inserted], dtype=np.intp)
         paths.append(with_points(path, inserted))
         shown.append(_with_reported(found.system, known, inserted, after))
@@ -195,8 +201,6 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
 
 def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:
     """With what is reported of points inserted after some others."""
-    if not inserted:
-        return known
     z, direction = (np.array([getattr(one, name) for one in inserted]) for name in ("z", "direction"))
     return known.with_rows(after, reported_at(system, z, direction))
 
@@ -247,7 +251,9 @@ def _would_do(system: System, status: Status) -> str:
 
 
 def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:
-    """Rows of a curve; where an index is -1, a gap: NaN or ''."""
+    """Rows of a curve: all in order, but for gaps of NaN or '' where an index is -1."""
+    if len(rows) == len(values):  # no gap
+        return np.ascontiguousarray(values)
     out = values[rows]
     out[rows < 0] = "" if values.dtype.kind == "U" else np.nan
     return out
