@@ -1,5 +1,6 @@
 """Estimated errors beside the true ones."""
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.error import astray, errors_along
+from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
@@ -74,6 +76,22 @@ def test_where_no_curve_of_more_harmonics_is_near_it_says_so():
     found = estimated(System(scene("isola")), 0.0)
     assert np.isnan(found.worst)
     assert np.isnan(found.peak).all()
+
+
+def test_errors_and_stability_do_not_depend_on_the_curve_before():
+    """What the contacts of one curve were looked at with is taken again for the next, in the same thread."""
+
+    def judged(preload):
+        found = estimated(System(scene("yang1998", preload)), 0.0)
+        (path,) = found.traced.branches.paths
+        return found.errors[0].amplitude, found.peak, stability(found.system, path).stable
+
+    with ThreadPoolExecutor(1) as alone:
+        expected = alone.submit(judged, 5).result()
+    for before in (-5, 20):
+        judged(before)
+        for found, value in zip(judged(5), expected, strict=True):
+            assert np.array_equal(found, value, equal_nan=True)
 
 
 def test_errors_do_not_depend_on_the_direction():
