@@ -10,7 +10,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.error import astray, errors_along
-from fcm.harmonic.stability import stability
+from fcm.harmonic.stability import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
@@ -78,13 +78,14 @@ def test_where_no_curve_of_more_harmonics_is_near_it_says_so():
     assert np.isnan(found.peak).all()
 
 
-def test_errors_and_stability_do_not_depend_on_the_curve_before():
+def test_errors_and_multipliers_do_not_depend_on_the_curve_before():
     """What the contacts of one curve were looked at with is taken again for the next, in the same thread."""
 
     def judged(preload):
         found = estimated(System(scene("yang1998", preload)), 0.0)
         (path,) = found.traced.branches.paths
-        return found.errors[0].amplitude, found.peak, stability(found.system, path).stable
+        top = found.shown[0].amplitude[:, 0].argmax()
+        return found.errors[0].amplitude, found.peak, multipliers(found.system, path.z[top])
 
     with ThreadPoolExecutor(1) as alone:
         expected = alone.submit(judged, 5).result()
