@@ -22,8 +22,6 @@ cdef class Balance(Problem):
     cdef public double[::1] evaluated
     cdef double[::1] now
     cdef double[::1] rate
+    cdef double[::1] by_frequency
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
     cdef int contact_forces(self, double[::1] z) except -1
-    cdef void means(self) noexcept
-    cdef void harmonic(self, int j) noexcept
-    cdef void by_parameter(self) noexcept

@@ -22,9 +22,11 @@ from fcm.structure.receptance import Receptance
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.problem import NONE, Problem
+    from cython.cimports.fcm.harmonic.compliance import answer, answers, slope
     from cython.cimports.fcm.harmonic.law import KINDS, Law
 else:
     from fcm.continuation.problem import NONE, Problem
+    from fcm.harmonic.compliance import answer, answers, slope
     from fcm.harmonic.law import KINDS, Law
 
 OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
@@ -51,7 +53,7 @@ class Balance(Problem):
         self.group = laws[0].margins if laws else 0  # all contacts have as many
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
         self.rest = np.zeros(2 * len(laws))
-        self.force, self.now, self.rate = (np.zeros(self.unknowns) for _ in range(3))
+        self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
         self.condensed = Condensed(seen, flexibility, np.asarray(self.tangent)) if rank else None
@@ -61,19 +63,34 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
-        j: cython.int
+        self.probe(z)
+        slope(self.seen, self.force, self.load, self.by_frequency)
+        for i in range(self.unknowns):
+            self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
+        if not self.rank:
+            answers(self.seen, self.tangent, self.jacobian)
+            for i in range(self.unknowns):
+                self.jacobian[i, i] += 1.0
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, z: cython.double[::1]) -> cython.int:
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t
+        first: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
         self.contact_forces(z)
-        self.means()
-        for j in range(self.seen.count):
-            self.harmonic(j)
-        self.by_parameter()
-        self.evaluated[self.unknowns] = z[self.unknowns]
+        answer(self.seen, self.force, self.residual)
+        for p in range(2 * self.contacts):
+            first = (p // 2) * self.width + p % 2
+            self.residual[first] -= self.share * self.rest[p]
+            first += 2 + 4 * self.seen.driven + p % 2
+            self.residual[first] -= self.load * self.seen.X_re[p]
+            self.residual[first + 1] -= self.load * self.seen.X_im[p]
         for i in range(self.unknowns):
-            self.evaluated[i] = z[i]
             self.residual[i] += z[i]
-            if not self.rank:
-                self.jacobian[i, i] += 1.0
+        self.evaluated[:] = z
         return 0
 
     @cython.cfunc
@@ -95,91 +112,6 @@ class Balance(Problem):
             self.force[first + 1] -= self.counted[c] * z[first + 1]
             self.tangent[c, 1, 1] -= self.counted[c]
         return 0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def means(self) -> cython.void:
-        """Rows of the means: the static answer to the mean forces."""
-        w: cython.Py_ssize_t = self.width
-        row: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        q: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        for p in range(2 * self.contacts):
-            row = (p // 2) * w + p % 2
-            self.residual[row] = -self.share * self.rest[p]
-            for q in range(self.contacts):
-                S_u: cython.double = self.seen.static[p, 2 * q]
-                S_v: cython.double = self.seen.static[p, 2 * q + 1]
-                self.residual[row] += S_u * self.force[q * w] + S_v * self.force[q * w + 1]
-                for k in range(0 if self.rank else w):
-                    self.jacobian[row, q * w + k] = S_u * self.tangent[q, 0, k] + S_v * self.tangent[q, 1, k]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def harmonic(self, j: cython.int) -> cython.void:
-        """Rows of one harmonic: real and imaginary part of G F."""
-        w: cython.Py_ssize_t = self.width
-        at: cython.Py_ssize_t = 2 + 4 * j  # of Re U among the unknowns of a contact; Im U, Re V, Im V follow
-        row: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        q: cython.Py_ssize_t
-        k: cython.Py_ssize_t
-        for p in range(2 * self.contacts):
-            row = (p // 2) * w + at + 2 * (p % 2)
-            self.residual[row] = self.residual[row + 1] = 0.0
-            for q in range(self.contacts):
-                u_re: cython.double = self.seen.G_re[j, p, 2 * q]
-                u_im: cython.double = self.seen.G_im[j, p, 2 * q]
-                v_re: cython.double = self.seen.G_re[j, p, 2 * q + 1]
-                v_im: cython.double = self.seen.G_im[j, p, 2 * q + 1]
-                f: cython.Py_ssize_t = q * w + at
-                self.residual[row] += u_re * self.force[f] - u_im * self.force[f + 1]
-                self.residual[row] += v_re * self.force[f + 2] - v_im * self.force[f + 3]
-                self.residual[row + 1] += u_im * self.force[f] + u_re * self.force[f + 1]
-                self.residual[row + 1] += v_im * self.force[f + 2] + v_re * self.force[f + 3]
-                for k in range(0 if self.rank else w):
-                    a: cython.double = self.tangent[q, at, k]
-                    b: cython.double = self.tangent[q, at + 1, k]
-                    c: cython.double = self.tangent[q, at + 2, k]
-                    d: cython.double = self.tangent[q, at + 3, k]
-                    self.jacobian[row, q * w + k] = u_re * a - u_im * b + v_re * c - v_im * d
-                    self.jacobian[row + 1, q * w + k] = u_im * a + u_re * b + v_im * c + v_re * d
-            if j == self.seen.driven:
-                self.residual[row] -= self.load * self.seen.X_re[p]
-                self.residual[row + 1] -= self.load * self.seen.X_im[p]
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def by_parameter(self) -> cython.void:
-        """Derivative by the frequency; the means have none."""
-        w: cython.Py_ssize_t = self.width
-        n: cython.Py_ssize_t = 0 if self.rank else self.unknowns
-        j: cython.int
-        row: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        q: cython.Py_ssize_t
-        for p in range(2 * self.contacts):
-            self.jacobian[(p // 2) * w + p % 2, n] = 0.0
-            for j in range(self.seen.count):
-                row = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
-                re: cython.double = 0.0
-                im: cython.double = 0.0
-                for q in range(2 * self.contacts):
-                    f: cython.Py_ssize_t = (q // 2) * w + 2 + 4 * j + 2 * (q % 2)
-                    re += (
-                        self.seen.dG_re[j, p, q] * self.force[f]
-                        - self.seen.dG_im[j, p, q] * self.force[f + 1]
-                    )
-                    im += (
-                        self.seen.dG_im[j, p, q] * self.force[f]
-                        + self.seen.dG_re[j, p, q] * self.force[f + 1]
-                    )
-                if j == self.seen.driven:
-                    re -= self.load * self.seen.dX_re[p]
-                    im -= self.load * self.seen.dX_im[p]
-                self.jacobian[row, n] = re
-                self.jacobian[row + 1, n] = im
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
