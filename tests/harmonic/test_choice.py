@@ -87,6 +87,17 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
 
 
+def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
+    """Two rounds are enough, each of which alone is not too long."""
+    system = System(scene("yang1998", 5))
+    assert accurate(system, 1e-4).reached
+    monkeypatch.setattr(choice, "seconds_with", lambda *_: 0.6 * choice.PATIENCE)
+    found = accurate(system, 1e-4)
+    assert not found.reached
+    assert set(found.system.harmonics) > {1}
+    assert set(found.further) > set(found.system.harmonics)
+
+
 def test_what_would_take_too_long_is_said(monkeypatch):
     monkeypatch.setattr(choice, "PATIENCE", 0.0)
     found = accurate(System(scene("yang1998", 5)), 1e-3)

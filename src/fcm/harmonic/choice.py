@@ -72,11 +72,11 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
     its true place than the accuracy (relative), the harmonics are added that it takes, as far as that can be
     foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
     more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
-    to it. Only what is foreseen to be enough has its errors estimated point by point. More harmonics than
-    anyone waits for are not begun, see `PATIENCE`. Whether the branches are complete is another question, see
-    their status.
+    to it. Only what is foreseen to be enough has its errors estimated point by point. What would take longer,
+    with all before it, than anyone waits is not begun, see `PATIENCE`. Whether the branches are complete is
+    another question, see their status.
     """
-    found = outlined(system, progress)
+    found, spent = outlined(system, progress), 0.0
     further: tuple[int, ...] = ()
     for _ in range(ROUNDS - 1):
         ahead, sure = found.ahead(accuracy), None
@@ -92,7 +92,8 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
                 more = enlarged(sure, accuracy)
         if more == found.system.harmonics:
             break
-        if found.seconds_with(more) > PATIENCE:
+        spent += found.seconds_with(more)
+        if spent > PATIENCE:
             further = more
             break
         near = _near(found, more)

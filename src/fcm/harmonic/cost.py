@@ -9,10 +9,10 @@ from __future__ import annotations
 from fcm.harmonic.condensed import rank_of
 from fcm.harmonic.system import System
 
-PATIENCE = 60.0  # seconds that following branches with more harmonics may take
+PATIENCE = 30.0  # seconds that following branches with more harmonics may take, time and again
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
 CYCLE = 3.5e-6  # seconds of an evaluation, for each harmonic of a contact: when it sticks, slips, is open
-SYSTEM = 5e-11  # and for each third power of the unknowns that are solved for
+SYSTEM = 2.7e-11  # and for each third power of the unknowns that are solved for
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
