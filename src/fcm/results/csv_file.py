@@ -55,7 +55,8 @@ def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
     orbits, frequency = c.orbits, in_unit(c.frequency, unit)
     own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
     parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
-    values = np.stack(parts, axis=2).reshape(c.frequency.size, -1)
+    stacked = np.stack(parts, axis=2)
+    values = stacked.reshape(c.frequency.size, stacked.shape[1] * stacked.shape[2])  # of no points, too
     for k in np.flatnonzero(np.isfinite(c.frequency)):
         row = [c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
         row += [] if c.level is None else [repr(float(c.level[k]))]
