@@ -15,16 +15,16 @@ from .conftest import FEW, SIGNALS, SWEEP, session, variables
 
 KILLS = int(os.environ.get("FCM_KILLS", "10"))
 FORMER = b"the result of an earlier run, which nothing but a whole one may replace"
-# which groups are taken from what is kept, and which are computed
+# which groups are taken from what is kept, of which a part is, and which are computed
 NOTED = (
     FEW
     + """
 import fcm.response.curve_sweep as module
 real = module.sweep
 def sweep(compute, batches, at, kept, progress):
-    taken = set(kept.finished)
+    taken, begun = set(kept.finished), set(kept.states)
     outcome = real(compute, batches, at, kept, progress)
-    for name, numbers in (("taken", taken), ("computed", set(outcome.results) - taken)):
+    for name, numbers in (("taken", taken), ("begun", begun), ("computed", set(outcome.results) - taken)):
         with open(name, "w") as file:
             file.write(" ".join(map(str, numbers)))
     return outcome
@@ -70,10 +70,10 @@ def test_a_killed_sweep_loses_nothing(program, whole, number):
     resumed = program(*args, 1, "--resume", before=NOTED)
     assert resumed.returncode == 0, resumed.err
     assert variables(former) == reference
-    taken, again = (
-        {*map(int, (program.folder / name).read_text().split())} for name in ("taken", "computed")
+    taken, begun, again = (
+        {*map(int, (program.folder / name).read_text().split())} for name in ("taken", "begun", "computed")
     )
     assert not taken & again and taken | again == set(range(6))
-    assert program.files == ["a.nc", "computed", "one.toml", "sweep.toml", "taken"]
+    assert program.files == ["a.nc", "begun", "computed", "one.toml", "sweep.toml", "taken"]
     if "continue with --resume" in said:
-        assert taken
+        assert taken or begun
