@@ -56,6 +56,29 @@ def test_a_jump_to_no_stable_part_is_explained():
     assert "land on" not in settled
 
 
+def test_where_stability_is_not_told_a_sweep_may_jump_and_the_table_says_so():
+    """In the order in which the sweeps come there: on the way up first what lies lower."""
+    jumps = [
+        {"sweep": sweep, "frequency": at, "before": {"u": 1.0}, "after": {"u": 0.5}}
+        for sweep, at in (("up", 1.6), ("down", 1.5))
+    ]
+    untold = [
+        {"sweep": "up", "from": 1.2, "to": 1.3, "before": {"u": 0.7}},
+        {"sweep": "down", "from": 1.4, "to": 1.1, "before": {"u": 0.8}},
+    ]
+    one = curve({"u": 1.0}, jumps) | {"stability_untold": untold}
+    _, *rows, said = as_table({"curves": [one]}, "Hz").partition("\n\n")[2].splitlines()
+    assert [row.split() for row in rows] == [
+        ["1.20000", "to", "1.30000?", "0.700000", "?", "up"],
+        ["1.60000", "1.00000", "0.500000", "up"],
+        ["1.50000", "1.00000", "0.500000", "down"],
+        ["1.40000", "to", "1.10000?", "0.800000", "?", "down"],
+    ]
+    assert said == "? between these it is not told whether the motion is stable: it may jump there already"
+    alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": untold[:1]}]}, "Hz")
+    assert "1.20000 to 1.30000?" in alone and "land on" not in alone
+
+
 UNITS = '[units]\nlength = "mm"\nforce = "N"\n'
 SCENE = UNITS + oscillator("[response]\nfrequency = [0.5, RANGE]\n", damping=0.05)
 

@@ -7,6 +7,8 @@ from typing import Any
 
 from fcm.cli.terminal import plain
 
+UNKNOWN = "?"  # beside that of which it is not told whether it is stable
+
 
 def aligned(rows: Sequence[Sequence[str]], left: int) -> str:
     """Columns of equal width: numbers to the right, the last ``left`` to the left."""

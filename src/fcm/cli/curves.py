@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import aligned, number, ranges, short, swept
+from fcm.cli.jump_table import jump_table
 from fcm.rotation import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_LOST = "\n- the curve has no stable part there to land on"
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
 _OF_LEVELS = "- not told: along levels of the forces what harmonics leave out is not estimated"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
@@ -31,8 +31,7 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         return of_modes(summary, names, unit)
     dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length)]
-    if any(curve.get("jumps") for curve in curves):
-        parts.append(_jumps(curves, names, dofs, unit))
+    parts += filter(None, [jump_table(curves, names, dofs, unit)])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
 
@@ -116,18 +115,6 @@ def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
     folds = "  ".join(number(fold) for fold in curve.get("level_folds", curve["folds"])) or "none"
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
-
-
-def _jumps(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str) -> str:
-    """Where a slow sweep of the frequency leaves a curve's stable part, and to which amplitudes."""
-    moves = [text for dof in dofs for text in (f"{dof} before", f"{dof} after")]
-    rows = [[*names, f"jump at {unit}", *moves, "sweep"]]
-    for curve in curves:
-        for jump in curve.get("jumps", ()):
-            moves = [number(jump[side].get(dof)) for dof in dofs for side in ("before", "after")]
-            rows.append([*swept(curve), number(jump["frequency"]), *moves, jump["sweep"]])
-    lost = any("-" in row[len(names) :] for row in rows)
-    return aligned(rows, left=1) + (_LOST if lost else "")
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.jumps import Jump
+from fcm.results.jumps import Swept
 
 if TYPE_CHECKING:
     from fcm.results.result import Curve
@@ -26,14 +26,13 @@ class Gist:
         float, float
     ]  # [rad/s] lowest and highest frequency sought; of a single point, and of none, NaN
     stable: bool | None  # whether all of the curve is; None where that is not known
-    jumps: list[Jump]  # of a slow upward and a slow downward sweep
+    swept: Swept  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
     truncation_error: float | None
 
     def at(self, shown: npt.NDArray[np.bool_]) -> Gist:
         """At some of the degrees of freedom."""
-        found = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
-        return replace(self, jumps=found)
+        return replace(self, swept=self.swept.at(shown))
 
 
 def gist_of(curve: Curve) -> Gist:
@@ -43,7 +42,7 @@ def gist_of(curve: Curve) -> Gist:
         points=known.size,
         ends=_ends(curve, known),
         stable=_stable(curve),
-        jumps=curve.jumps(),
+        swept=curve.swept(),
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
     )

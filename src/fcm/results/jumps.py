@@ -1,8 +1,8 @@
-"""Jumps of the response when the frequency is swept slowly up or down along the stable parts of a curve."""
+"""Slow sweeps of the frequency along a curve: where they jump, and where they may jump already."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -24,30 +24,58 @@ class Jump:
     after: FloatArray  # (dof,) amplitude; NaN where the curve has no stable part to land on
 
 
-def jumps(frequency: FloatArray, amplitude: FloatArray, stable: BoolArray) -> list[Jump]:
-    """Jumps of an upward, then of a downward sweep along a curve; amplitude (point, dof).
+@dataclass(frozen=True)
+class Untold:
+    """A way of a slow sweep on which it is not known whether the motion is stable: it may jump already."""
+
+    sweep: str  # 'up' or 'down'
+    start: float  # [rad/s] up to which it is known that it is stable
+    end: float  # [rad/s] from which on that is known again, or where the sweep jumps or ends
+    before: FloatArray  # (dof,) amplitude at the start
+
+
+@dataclass(frozen=True)
+class Swept:
+    """What a slow upward, then a slow downward sweep meets."""
+
+    jumps: list[Jump]
+    untold: list[Untold]
+
+    def at(self, shown: BoolArray) -> Swept:
+        """At some of the degrees of freedom."""
+        jumps = [replace(one, before=one.before[shown], after=one.after[shown]) for one in self.jumps]
+        return Swept(jumps, [replace(one, before=one.before[shown]) for one in self.untold])
+
+
+def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> Swept:
+    """What slow sweeps meet along a curve; amplitude (point, dof), stable 1, 0, or NaN where it is not known.
+
+    A sweep stays on what is not known to be unstable, and says where it did not know.
 
     >>> w = np.array([1.0, 2.0, 3.0, 2.5, 2.0, 3.0, 4.0])
-    >>> found = jumps(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], w == w)
-    >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found]
-    [('up', 3.0, [5.0]), ('down', 2.0, [2.0])]
+    >>> found = swept(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], np.ones(7))
+    >>> [(j.sweep, j.frequency, j.after.tolist()) for j in found.jumps], found.untold
+    ([('up', 3.0, [5.0]), ('down', 2.0, [2.0])], [])
     >>> w = np.array([1.0, 2.0, np.nextafter(2.0, 1.0), 3.0])  # a peak at a corner is there twice
-    >>> jumps(w, w[:, None], w == w)
+    >>> swept(w, w[:, None], np.ones(4)).jumps
     []
+    >>> found = swept(w, w[:, None], np.array([1.0, np.nan, np.nan, 1.0]))
+    >>> [(one.sweep, one.start, one.end) for one in found.untold]
+    [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable)
     known = np.flatnonzero(np.isfinite(frequency))
-    if not stable[known].any():  # no motion that could be lost
-        return []
-    first, last = known[frequency[known].argmin()], known[frequency[known].argmax()]
-    return _sweep(frequency, amplitude, stable, int(first), "up") + _sweep(
-        frequency, amplitude, stable, int(last), "down"
-    )
+    found = Swept([], [])
+    if (stable[known] != 0.0).any():  # else there is no motion that could be lost
+        first, last = known[frequency[known].argmin()], known[frequency[known].argmax()]
+        _sweep(frequency, amplitude, stable, int(first), "up", found)
+        _sweep(frequency, amplitude, stable, int(last), "down", found)
+    return found
 
 
 def _once(
-    frequency: FloatArray, amplitude: FloatArray, stable: BoolArray
-) -> tuple[FloatArray, FloatArray, BoolArray]:
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The points without those that are there twice, as a peak at a corner is."""
     again = np.abs(np.diff(frequency)) <= ROUNDING * frequency[1:]
     again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=SAME, atol=0.0).all(axis=1)
@@ -56,39 +84,68 @@ def _once(
 
 
 def _sweep(
-    frequency: FloatArray, amplitude: FloatArray, stable: BoolArray, at: int, sweep: str
-) -> list[Jump]:
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, at: int, sweep: str, found: Swept
+) -> None:
     """Walk from a point along stable segments in the direction of the sweep, and jump where they end."""
     rises = np.diff(frequency) * (1.0 if sweep == "up" else -1.0)
-    usable = stable[:-1] & stable[1:] & (rises != 0.0) & np.isfinite(rises)
+    bears = stable != 0.0
+    usable = bears[:-1] & bears[1:] & (rises != 0.0) & np.isfinite(rises)
     onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
-    found: list[Jump] = []
     visited: set[int] = set()
+    start, told = (float(frequency[at]), amplitude[at]), bool(stable[at] == 1.0)
     while at not in visited:
-        at = _end_of_branch(at, onwards, visited)
+        walked = _walked(at, onwards)
+        visited.update(walked)
+        _note_untold(sweep, (frequency, amplitude, stable), walked, start, told, found)
+        at = walked[-1]
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
-            return found
+            return
         onto = _landing(frequency, usable, at)
         if onto is None:
-            return [*found, Jump(sweep, here, before, np.full_like(before, np.nan))]
+            found.jumps.append(Jump(sweep, here, before, np.full_like(before, np.nan)))
+            return
         share = (here - frequency[onto]) / (frequency[onto + 1] - frequency[onto])
         after = amplitude[onto] + share * (amplitude[onto + 1] - amplitude[onto])
-        found.append(Jump(sweep, here, before, after))
+        found.jumps.append(Jump(sweep, here, before, after))
+        start, told = (here, after), bool((stable[onto : onto + 2] == 1.0).all())
         at = onto + 1 if rises[onto] > 0.0 else onto
-    return found
 
 
-def _end_of_branch(at: int, onwards: list[float], visited: set[int]) -> int:
-    """The last point of stable segments that lead onwards (1), or from their end to their start (-1)."""
+def _walked(at: int, onwards: list[float]) -> list[int]:
+    """Points along stable segments that lead onwards (1), or from their end to their start (-1)."""
+    walked = [at]
     while True:
-        visited.add(at)
         if at < len(onwards) and onwards[at] > 0.0:
             at += 1
         elif at > 0 and onwards[at - 1] < 0.0:
             at -= 1
         else:
-            return at
+            return walked
+        walked.append(at)
+
+
+def _note_untold(
+    sweep: str,
+    curve: tuple[FloatArray, FloatArray, FloatArray],
+    walked: list[int],
+    start: tuple[float, FloatArray],
+    told: bool,
+    found: Swept,
+) -> None:
+    """Note the ways on which stability is not told, of a walk that begins before its first point."""
+    frequency, amplitude, stable = curve
+    unknown = np.concatenate(([not told], np.isnan(stable[walked])))
+    if stable[walked[0]] == 0.0 or not unknown.any():
+        return
+    edges = np.diff(unknown.astype(int), prepend=0, append=0)
+    sides = (np.flatnonzero(side).tolist() for side in (edges > 0, edges < 0))
+    for first, end in zip(*sides, strict=True):
+        last = walked[min(end, len(walked)) - 1]  # the first that is told again, if one is
+        k = walked[max(first - 2, 0)]
+        begin, before = start if first < 2 else (float(frequency[k]), amplitude[k])
+        if begin != frequency[last]:
+            found.untold.append(Untold(sweep, begin, float(frequency[last]), before))
 
 
 def _landing(frequency: FloatArray, usable: BoolArray, at: int) -> int | None:

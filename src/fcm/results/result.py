@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.results.gist import Gist, gist_of, worst
-from fcm.results.jumps import Jump, jumps
+from fcm.results.jumps import Jump, Swept, Untold, swept
 from fcm.scene.model import Scene
 from fcm.units import in_unit
 
@@ -89,13 +89,17 @@ class Curve:
         """Number of the branch of each point, (point,); a row of NaN stands between branches."""
         return np.cumsum(np.isnan(self.frequency))
 
+    def swept(self) -> Swept:
+        """What a slow upward and a slow downward sweep of the frequency meet."""
+        if self.orbits is not None and self.orbits.jumps is not None:
+            return Swept(self.orbits.jumps, [])
+        if self.level is not None or self.mode is not None:
+            return Swept([], [])
+        return swept(self.frequency, self.amplitude, self.stable)
+
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
-        if self.orbits is not None and self.orbits.jumps is not None:
-            return self.orbits.jumps
-        if self.level is not None or self.mode is not None:
-            return []
-        return jumps(self.frequency, self.amplitude, self.stable != 0.0)  # what is unknown is no jump
+        return self.swept().jumps
 
     def _jump(self, jump: Jump, unit: str) -> dict[str, Any]:
         return {
@@ -103,6 +107,14 @@ class Curve:
             "frequency": float(in_unit(jump.frequency, unit)),
             "before": dict(zip(self.peaks, jump.before.tolist(), strict=True)),
             "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
+        }
+
+    def _untold(self, one: Untold, unit: str) -> dict[str, Any]:
+        return {
+            "sweep": one.sweep,
+            "from": float(in_unit(one.start, unit)),
+            "to": float(in_unit(one.end, unit)),
+            "before": dict(zip(self.peaks, one.before.tolist(), strict=True)),
         }
 
     def _peak(self, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
@@ -118,6 +130,7 @@ class Curve:
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
         gist = self.gist or gist_of(self)
+        untold = gist.swept.untold
         return {
             "parameters": self.parameters,
             "points": gist.points,
@@ -131,7 +144,8 @@ class Curve:
             "folds": in_unit(self.folds, unit).tolist(),
             **({} if self.sensitivity is None else {"sensitivity": self._of_numbers(self.sensitivity, unit)}),
             **({} if self.level is None else {"level_folds": self.level_folds}),
-            "jumps": [self._jump(jump, unit) for jump in gist.jumps],
+            "jumps": [self._jump(jump, unit) for jump in gist.swept.jumps],
+            **({"stability_untold": [self._untold(one, unit) for one in untold]} if untold else {}),
             "stable": gist.stable,
             "table_error": gist.table_error,
             "truncation_error": gist.truncation_error,

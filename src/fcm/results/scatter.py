@@ -63,7 +63,7 @@ def _first(curve: Curve, sweep: str) -> float:
     """The first jump in a direction that lands on another part of the curve; NaN if there is none."""
     landing = (
         one
-        for one in (curve.gist or gist_of(curve)).jumps
+        for one in (curve.gist or gist_of(curve)).swept.jumps
         if one.sweep == sweep and np.isfinite(one.after).any()
     )
     return next((one.frequency for one in landing), np.nan)

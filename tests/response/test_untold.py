@@ -1,0 +1,115 @@
+"""Where stability is not told: what is said of slow sweeps that come there."""
+
+from __future__ import annotations
+
+import json
+
+import netCDF4
+import numpy as np
+import pytest
+
+import fcm as package
+from fcm.response import trace
+from fcm.response.exact import trace_exact
+from fcm.results.jumps import swept
+
+SCENE = """
+[modal]
+dofs = ["d0", "d1", "d2", "d3"]
+frequency = [1.0, 1.7363, 2.1874, 5.7427]
+damping = [0.01277, 0.04284, 0.00404, 0.01221]
+shapes = [[0.448, -0.314, 0.105, -0.104], [0.204, -0.088, -0.089, -0.467],
+          [-0.395, -1.056, -0.751, -0.167], [-0.02, -0.93, 0.505, 0.826]]
+[[contact]]
+name = "c0"
+tangential = "d3"
+normal = "d0"
+mu = 0.607
+k_u = 0.536
+k_v = 1.517
+n_0 = -1.696
+[[contact]]
+name = "c1"
+tangential = "d2"
+normal = "d0"
+mu = 0.06
+k_u = 0.383
+k_v = 4.052
+n_0 = -0.256
+[[force]]
+dof = "d2"
+amplitude = 0.599
+phase = 0.24
+[[force]]
+dof = "d1"
+amplitude = 0.142
+phase = 3.426
+[response]
+frequency = [0.915, 2.509]
+"""
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    path = tmp_path_factory.mktemp("untold") / "scene.toml"
+    path.write_text(SCENE)
+    return path
+
+
+@pytest.fixture(scope="module")
+def curve(scene):
+    (curve,) = trace(package.load_scene(scene)).curves
+    return curve
+
+
+def test_the_motion_jumps_where_it_is_said_that_it_may(scene, curve):
+    """The exact motion, swept upwards in steps, leaves its branch long before the balance's own jump."""
+    loaded = package.load_scene(scene)
+    (exact,) = trace_exact(loaded, tuple(np.linspace(1.06, 1.16, 11))).curves
+    (true,) = (jump for jump in exact.jumps() if jump.sweep == "up")
+    first = next(one for one in curve.swept().untold if one.sweep == "up")
+    assert first.start < true.frequency < first.end
+    assert next(jump.frequency for jump in curve.jumps() if jump.sweep == "up") > 1.5 * true.frequency
+
+
+def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
+    for one in curve.swept().untold:
+        (at,) = np.flatnonzero(curve.frequency == one.start)
+        beside = curve.stable[[at - 1, at + 1]]
+        assert curve.stable[at] == 1.0 and np.isnan(beside).any()
+        assert one.before.tolist() == curve.amplitude[at].tolist()
+
+
+def test_summary_and_file_say_the_same(fcm, scene, tmp_path, curve):
+    (printed,) = json.loads(fcm("respond", str(scene), "--json", "-o", "a.nc").out)["curves"]
+    found = [(one["sweep"], one["from"], one["to"]) for one in printed["stability_untold"]]
+    assert found == [(one.sweep, one.start, one.end) for one in curve.swept().untold]
+    with netCDF4.Dataset(tmp_path / "a.nc") as file:
+        (kept,) = json.loads(file.summary)["curves"]
+    assert kept["stability_untold"] == printed["stability_untold"]
+
+
+@pytest.mark.parametrize("unknown", [(), (1, 2), (5, 6), (0,), (4, 5)])
+def test_upwards_a_sweep_is_in_doubt_on_what_it_passes_alone(unknown):
+    """Up along 0 to 3, jump at 3.0 onto the middle between 5 and 6, and on: by hand."""
+    w = np.array([1.0, 2.0, 2.5, 3.0, 2.0, 2.5, 3.5, 4.0])
+    a = np.array([1.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0, 3.0])[:, None]
+    stable = np.ones(8)
+    stable[list(unknown)] = np.nan
+    expected = {
+        (): [],
+        (1, 2): [(1.0, 3.0, 1.0)],
+        (5, 6): [(3.0, 4.0, 3.0)],
+        (0,): [(1.0, 2.0, 1.0)],
+        (4, 5): [(3.0, 3.5, 3.0)],
+    }
+    found = swept(w, a, stable)
+    assert [jump.frequency for jump in found.jumps if jump.sweep == "up"] == [3.0]
+    ups = [one for one in found.untold if one.sweep == "up"]
+    assert [(one.start, one.end, one.before[0]) for one in ups] == expected[unknown]
+
+
+def test_all_that_is_known_to_be_unstable_is_no_doubt():
+    w = np.array([1.0, 2.0, 3.0])
+    found = swept(w, w[:, None], np.zeros(3))
+    assert found.jumps == found.untold == []
