@@ -228,8 +228,16 @@ def test_a_full_disk_does_not_take_the_result_away(fcm, scene, tmp_path, monkeyp
     monkeypatch.undo()
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("fcm.response.groups.traced_curve", refuse)
-    assert fcm("respond", scene, "-o", "a.nc", "--resume").code == 0
+    done = fcm("respond", scene, "-o", "a.nc", "--resume")
+    assert done.code == 0 and "afresh" not in done.err
     assert files(tmp_path) == ["a.nc", "scene.toml"]
+
+
+def test_where_nothing_is_kept_to_go_on_with_it_says_that_it_begins_afresh(fcm, scene):
+    fresh = "a.nc: nothing of an unfinished run is kept: begun afresh"
+    assert fresh in fcm("respond", scene, "-o", "a.nc", "--resume").err.splitlines()
+    assert fresh in fcm("respond", scene, "-o", "a.nc", "--resume").err  # of a run that was finished
+    assert "afresh" not in fcm("respond", scene, "-o", "a.nc").err
 
 
 def test_an_interrupted_run_says_so_and_leaves_nothing(program, scene, tmp_path):

@@ -41,6 +41,8 @@ class Outputs:
         from fcm.run.checkpoint import unfinished
 
         with Checkpoint(unfinished(anchor), resume) as self.checkpoint:
+            if resume and self.checkpoint.empty:
+                self.messages.info(f"{plain(anchor)}: nothing of an unfinished run is kept: begun afresh")
             remove_stale(anchor.resolve())
             try:
                 yield self.checkpoint
