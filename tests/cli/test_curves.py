@@ -56,6 +56,19 @@ def test_a_jump_to_no_stable_part_is_explained():
     assert "land on" not in settled
 
 
+def test_a_peak_at_which_no_motion_stays_is_marked():
+    one = curve({"u": 1.0, "v": 2.0, "w": 3.0})
+    for dof, stable in (("u", True), ("v", False), ("w", None)):
+        one["peak"][dof]["stable"] = stable
+    _header, row, *said = as_table({"curves": [one]}, "Hz").splitlines()
+    assert row.split()[:9:3] == ["1.00000", "2.00000!", "3.00000?"]
+    assert said == [
+        "! the motion is not stable there: none stays at this peak",
+        "? whether the motion is stable there is not told",
+    ]
+    assert as_table({"curves": [curve({"u": 1.0})]}, "Hz").count("\n") == 1
+
+
 def test_where_stability_is_not_told_a_sweep_may_jump_and_the_table_says_so():
     """In the order in which the sweeps come there: on the way up first what lies lower."""
     jumps = [

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fcm import response
-from fcm.results.result import Peak
+from fcm.results.peak import Peak
 
 
 def files(folder):
@@ -72,6 +72,7 @@ def test_a_number_that_does_not_exist_is_null(fcm, scene, monkeypatch):
         "amplitude": None,
         "frequency": None,
         "error": None,
+        "stable": None,
         "at_edge": False,
     }
     assert fcm("respond", scene).out.splitlines()[1].split()[:2] == ["-", "-"]

@@ -1,5 +1,7 @@
 """The peaks of a sweep as drawn: lines, a cloud, the least of all; from the file to the picture."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -74,6 +76,18 @@ def test_a_curve_that_is_not_complete_is_not_drawn():
     some.complete[:] = False
     with pytest.raises(PlotError, match="no complete curve"):
         draw_peak(some)
+
+
+def test_peaks_at_which_no_motion_stays_are_crossed():
+    some = replace(peaks(n_0=[0, 10, 20]), unstable=np.array([[1, 0], [0, 0], [1, 0]], bool))
+    upper, lower = draw_peak(some).axes
+    for axes, values in ((upper, some.amplitude), (lower, some.frequency)):
+        (cross,) = (line for line in axes.lines if line.get_marker() == "x")
+        assert cross.get_xdata().tolist() == [0, 20]
+        assert cross.get_ydata().tolist() == values[[0, 2], 0].tolist()
+    assert "not stable" in lower.get_title(loc="left")
+    for settled in (draw_peak(some, dof="v"), draw_peak(peaks(n_0=[0, 10, 20]))):
+        assert not any(line.get_marker() == "x" for axes in settled.axes for line in axes.lines)
 
 
 def test_decades_of_positive_values_are_logarithmic():

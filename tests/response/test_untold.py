@@ -72,6 +72,14 @@ def test_the_motion_jumps_where_it_is_said_that_it_may(scene, curve):
     assert next(jump.frequency for jump in curve.jumps() if jump.sweep == "up") > 1.5 * true.frequency
 
 
+def test_at_the_peak_no_motion_stays(scene, curve):
+    """What the exact motion does at its frequency, after the periodic one is lost, is far less."""
+    peak = curve.peaks["d0"]
+    assert peak.stable == 0.0
+    (exact,) = trace_exact(package.load_scene(scene), (peak.frequency,)).curves
+    assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * peak.amplitude
+
+
 def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
     for one in curve.swept().untold:
         (at,) = np.flatnonzero(curve.frequency == one.start)
@@ -86,6 +94,8 @@ def test_summary_and_file_say_the_same(fcm, scene, tmp_path, curve):
     assert found == [(one.sweep, one.start, one.end) for one in curve.swept().untold]
     with netCDF4.Dataset(tmp_path / "a.nc") as file:
         (kept,) = json.loads(file.summary)["curves"]
+        assert file["peak_stable"][:].tolist() == [[0.0] * 4]
+    assert [peak["stable"] for peak in printed["peak"].values()] == [False] * 4
     assert kept["stability_untold"] == printed["stability_untold"]
 
 

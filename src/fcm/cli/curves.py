@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import aligned, number, ranges, short, swept
+from fcm.cli.columns import UNKNOWN, aligned, number, ranges, short, swept
 from fcm.cli.jump_table import jump_table
 from fcm.rotation import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
+_UNSTABLE = "!"  # beside a peak where the motion is not stable
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
 _OF_LEVELS = "- not told: along levels of the forces what harmonics leave out is not estimated"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
@@ -83,6 +84,11 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
         lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
+    marks = {_stability(curve, dof) for curve in curves for dof in dofs}
+    if _UNSTABLE in marks:
+        lines.append(f"{_UNSTABLE} the motion is not stable there: none stays at this peak")
+    if UNKNOWN in marks:
+        lines.append(f"{UNKNOWN} whether the motion is stable there is not told")
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
         lines.append(_OF_LEVELS if "level_folds" in curves[0] else _UNTOLD)
     return "\n".join(lines)
@@ -98,6 +104,14 @@ def _at_edge(curve: Curve, dof: str) -> bool:
     return bool((curve["peak"].get(dof) or {}).get("at_edge"))
 
 
+def _stability(curve: Curve, dof: str) -> str:
+    """A mark beside a peak of which it is not known that it is stable."""
+    peak = curve["peak"].get(dof) or {}
+    if peak.get("amplitude") is None or "stable" not in peak or peak["stable"]:
+        return ""
+    return UNKNOWN if peak["stable"] is None else _UNSTABLE
+
+
 def _untold(curve: Curve, dof: str) -> bool:
     """Whether the error of a peak of a balance is not known."""
     peak = curve["peak"].get(dof) or {}
@@ -109,7 +123,8 @@ def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
         at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
-        cells += [number(peak.get("amplitude")), at, short(peak.get("error"))]
+        height = number(peak.get("amplitude")) + _stability(curve, dof)
+        cells += [height, at, short(peak.get("error"))]
     if balanced:
         cells.append(ranges(curve["harmonics"]) if "harmonics" in curve else "-")
     folds = "  ".join(number(fold) for fold in curve.get("level_folds", curve["folds"])) or "none"

@@ -41,6 +41,7 @@ class Peaks:
     frequency: FloatArray  # (curve, dof) in the file's unit
     complete: BoolArray  # (curve,)
     length: str = ""  # unit of displacements, if the file says it
+    unstable: BoolArray | None = None  # (curve, dof) whether the motion is not stable there; None: not known
 
 
 def read_peaks(path: Path) -> Peaks:
@@ -53,8 +54,11 @@ def read_peaks(path: Path) -> Peaks:
         shape = (len(complete), len(dofs))
         if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
             raise ValueError(f"its peaks have shape {amplitude.shape}, not {shape}")
+        unstable = floats(variables["peak_stable"]) == 0.0 if "peak_stable" in variables else None
+        if unstable is not None and unstable.shape != shape:
+            raise ValueError(f"peak_stable has shape {unstable.shape}, not {shape}")
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
-    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length))
+    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), unstable)
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
@@ -73,6 +77,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         if len(lines) > 1:
             _name_lines(figure, upper, peaks, _others(peaks, key, known), lines)
         _mark_least(upper, lower, peaks, key, column, known)
+        _mark_unstable((upper, lower), peaks, key, column, known)
     return figure
 
 
@@ -153,3 +158,12 @@ def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, k
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     where = curve_label({name: float(values[least]) for name, values in peaks.parameters.items()})
     upper.set_title(f"least peak {y:.4g} at {where}", loc="right", fontsize=8, color=_MARK)
+
+
+def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    """A cross on each peak at which no motion stays, and what it means."""
+    if peaks.unstable is None or not (at := known & peaks.unstable[:, column]).any():
+        return
+    for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
+        axes.plot(peaks.parameters[key][at], values[at, column], "x", color=_MARK, markersize=4)
+    both[1].set_title("\u00d7 the motion is not stable there", loc="left", fontsize=8, color=_MARK)

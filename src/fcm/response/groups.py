@@ -15,7 +15,8 @@ from fcm.results.gist import Gist, without_points
 from fcm.results.jumps import Jump
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits
-from fcm.results.result import DEFECT, Curve, Peak
+from fcm.results.peak import Peak
+from fcm.results.result import DEFECT, Curve
 from fcm.run import Interrupted, Lost, Report
 from fcm.scene.model import Scene
 

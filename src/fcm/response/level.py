@@ -22,7 +22,8 @@ from fcm.harmonic.start import highest, level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
 from fcm.response.trace import BEYOND, ResponseError, Rows, Wanted, pick, wanted_of
-from fcm.results.result import Curve, Peak, Response
+from fcm.results.peak import Peak, stability_at_top
+from fcm.results.result import Curve, Response
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
 
@@ -110,8 +111,9 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
     if inside.size:
         curve = replace(curve, **_points(system, path, inside, omega))
         tops = np.nanargmax(curve.amplitude, axis=0)
+        at_top = stability_at_top(curve.amplitude, curve.stable).tolist()
         curve.peaks = {
-            dof: Peak(float(curve.amplitude[i, d]), omega, float(curve.error[i, d]))
+            dof: Peak(float(curve.amplitude[i, d]), omega, float(curve.error[i, d]), at_top[d])
             for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
         }
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]

@@ -21,7 +21,8 @@ from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.visit import Visitor
 from fcm.results.orbits import Orbits
-from fcm.results.result import Curve, Peak
+from fcm.results.peak import Peak, stability_at_top
+from fcm.results.result import Curve
 from fcm.scene.model import Scene
 
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
@@ -83,6 +84,8 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
     families = _families(scene, points, amplitude, everywhere)
     regime = _regimes(points, len(scene.contacts))
     told = everywhere | np.isfinite(families[1]).any(axis=1)
+    stable = np.array([np.nan if p is None else float(p.stable) for p in points])
+    at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
         empty,
@@ -94,13 +97,13 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
         regime=regime,
         loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
         cycle=np.full((len(points), *empty.cycle.shape[1:]), np.nan),
-        stable=np.array([np.nan if p is None else float(p.stable) for p in points]),
+        stable=stable,
         table_error=zero,
         error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
         loose=int((loose(scene.contacts, regime) & ~told).sum()),
-        peaks={d: _peak(amplitude[:, i], frequency) for i, d in enumerate(empty.peaks)},
+        peaks={d: _peak(amplitude[:, i], frequency, at_top[i]) for i, d in enumerate(empty.peaks)},
         orbits=Orbits(
             _numbers(points, "residual"),
             np.full(len(points), "", dtype="<U4"),
@@ -168,8 +171,8 @@ def _short(states: str) -> str:
     return states if len(states) <= LONGEST_REGIME else states[: LONGEST_REGIME - 3] + "..."
 
 
-def _peak(amplitude: FloatArray, frequency: FloatArray) -> Peak:
+def _peak(amplitude: FloatArray, frequency: FloatArray, stable: float) -> Peak:
     if not np.isfinite(amplitude).any():
         return Peak(np.nan, np.nan)
     at = int(np.nanargmax(amplitude))
-    return Peak(float(amplitude[at]), float(frequency[at]), 0.0)
+    return Peak(float(amplitude[at]), float(frequency[at]), 0.0, stable)

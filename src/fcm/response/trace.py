@@ -22,7 +22,8 @@ from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.loose import loose
-from fcm.results.result import Curve, Peak
+from fcm.results.peak import Peak, stability_at_top
+from fcm.results.result import Curve
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.rules import harmonics_fault, harmonics_up_to
 from fcm.table import Table
@@ -160,7 +161,7 @@ def _curve(found: Accurate) -> Curve:
         truncation_error=pick(truncation, rows),
         complete=not reason,
         reason=reason,
-        peaks=_peaks(scene.modal.dofs, points, found.peak, rounding),
+        peaks=_peaks(scene.modal.dofs, points, found.peak, rounding, stable),
         folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),
@@ -211,11 +212,16 @@ def _between(values: FloatArray, after: Rows) -> FloatArray:
     return np.insert(values, after + 1, means, axis=0)
 
 
-def _peaks(dofs: tuple[str, ...], points: Record, error: FloatArray, rounding: FloatArray) -> dict[str, Peak]:
+def _peaks(
+    dofs: tuple[str, ...], points: Record, error: FloatArray, rounding: FloatArray, stable: FloatArray
+) -> dict[str, Peak]:
     """Where each degree of freedom is greatest: at a point, for every peak is one."""
-    highest = points.amplitude.argmax(axis=0)
+    highest, amplitude = points.amplitude.argmax(axis=0), points.amplitude
+    at_top = stability_at_top(amplitude, stable).tolist()
     return {
-        dof: Peak(float(points.amplitude[i, d]), float(points.z[i, -1]), float(max(error[d], rounding[i, d])))
+        dof: Peak(
+            float(amplitude[i, d]), float(points.z[i, -1]), float(max(error[d], rounding[i, d])), at_top[d]
+        )
         for d, (dof, i) in enumerate(zip(dofs, highest, strict=True))
     }
 

@@ -40,7 +40,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
     """One value or row for each curve: peaks, folds, whether it is complete."""
     curves, unit = response.curves, response.frequency_unit
     cf_unit = CF_UNIT[unit]
-    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 3)
+    peaks = np.array([[c.peaks[d] for d in response.dofs] for c in curves]).reshape(-1, len(response.dofs), 4)
     folds = by_fold(curves, lambda c: in_unit(c.folds, unit))
     complete = np.array([c.complete for c in curves], dtype=np.int8)
     by_dof = ("curve", "dof")
@@ -55,6 +55,11 @@ def curve_fields(response: Response) -> dict[str, Field]:
             by_dof,
             peaks[..., 2],
             {"long_name": "estimated error of the greatest amplitude, relative", "units": "1"},
+        ),
+        "peak_stable": Field(
+            by_dof,
+            peaks[..., 3],
+            {"long_name": "stable of the greatest amplitude", "units": "1"},
         ),
         "fold_frequency": Field(
             ("curve", "fold"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.gist import Gist, gist_of, worst
 from fcm.results.jumps import Jump, Swept, Untold, swept
+from fcm.results.peak import Peak
 from fcm.scene.model import Scene
 from fcm.units import in_unit
 
@@ -25,14 +26,6 @@ if TYPE_CHECKING:
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
 INTERRUPTED = "interrupted"  # how it begins where an interruption has cut the curve off, or left it out
 NOT_BEGUN = f"{INTERRUPTED} before it was traced"
-
-
-class Peak(NamedTuple):
-    """The greatest amplitude of a degree of freedom on a curve."""
-
-    amplitude: float
-    frequency: float  # [rad/s]
-    error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
 
 
 @dataclass
@@ -124,6 +117,7 @@ class Curve:
             "amplitude": peak.amplitude,
             "frequency": float(in_unit(peak.frequency, unit)),
             "error": peak.error,
+            "stable": None if np.isnan(peak.stable) else bool(peak.stable),
             "at_edge": bool(at_edge),
         }
 
@@ -180,8 +174,8 @@ class Curve:
         known = np.isfinite(orbits.family_greatest).any(axis=1)
         families = {
             dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
-            for i, (dof, (_, omega, _)) in enumerate(self.peaks.items())
-            for k in np.flatnonzero(known & (self.frequency == omega))[:1]
+            for i, (dof, peak) in enumerate(self.peaks.items())
+            for k in np.flatnonzero(known & (self.frequency == peak.frequency))[:1]
         }
         return {
             "closure_error": worst(orbits.closure_error),

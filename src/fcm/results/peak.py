@@ -1,0 +1,34 @@
+"""The greatest amplitude of a degree of freedom on a curve, and whether the motion is stable there."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+from fcm.results.jumps import SAME
+
+
+class Peak(NamedTuple):
+    """The greatest amplitude of a degree of freedom on a curve."""
+
+    amplitude: float
+    frequency: float  # [rad/s]
+    error: float = np.nan  # estimated, relative, of the amplitude; NaN where it is not known
+    stable: float = np.nan  # 1 where small disturbances die out there, 0 where not, NaN where it is not known
+
+
+def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
+    """Whether the motion is stable at the greatest amplitude of each degree of freedom, (dof,).
+
+    Of several points that are as high, as where two branches meet, a stable one counts.
+
+    >>> stability_at_top(np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]), np.array([np.nan, 1.0, 0.0]))
+    array([1., 0.])
+    """
+    if not np.isfinite(amplitude).any():
+        return np.full(amplitude.shape[1], np.nan)
+    there = amplitude >= (1.0 - SAME) * np.nanmax(amplitude, axis=0)
+    told, untold = ((there & one[:, None]).any(axis=0) for one in (stable == 1.0, np.isnan(stable)))
+    return np.where(told, 1.0, np.where(untold, np.nan, 0.0))
