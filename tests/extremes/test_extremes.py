@@ -95,7 +95,7 @@ def test_the_curve_does_not_depend_on_units(yang, name):
 
 def test_masses_and_shapes_of_any_size_give_the_same_curve(yang):
     curve = curve_of("extreme/heavy-and-light")
-    (height, at, _), (same, there, _) = curve.peaks["u"], yang[1].peaks["u"]
+    (height, at, *_), (same, there, *_) = curve.peaks["u"], yang[1].peaks["u"]
     assert height == pytest.approx(same, rel=1e-9)
     assert at == pytest.approx(there, rel=1e-8)  # it is flat there
     assert curve.folds == pytest.approx(yang[1].folds, rel=1e-9)

@@ -153,7 +153,7 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
     whole, alone = curve_of(yang(n_0)), curve_of(yang(n_0), only="peaks")
     assert alone.complete and alone.points < 8
     assert sorted(alone.folds) == pytest.approx(sorted(whole.folds), rel=1e-8)
-    for dof, (amplitude, omega, _) in whole.peaks.items():
+    for dof, (amplitude, omega, *_) in whole.peaks.items():
         assert alone.peaks[dof][0] == pytest.approx(amplitude, rel=1e-8)
         assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
     assert [jump.sweep for jump in alone.jumps()] == [jump.sweep for jump in whole.jumps()]

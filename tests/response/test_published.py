@@ -24,7 +24,7 @@ def test_the_ten_preloads_of_figure_13(curves):
 def test_least_peak_at_the_optimal_preload(curves):
     peaks = {n_0: curve.peaks["u"][0] for n_0, curve in curves.items()}
     assert min(peaks, key=peaks.get) == 10.0
-    amplitude, frequency, _ = curves[10.0].peaks["u"]
+    amplitude, frequency, *_ = curves[10.0].peaks["u"]
     assert amplitude == pytest.approx(6.236, abs=5e-4)
     assert frequency == pytest.approx(1.345, abs=5e-4)
 
