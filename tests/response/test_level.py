@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.harmonic.linear_contacts import highest, least
 from fcm.harmonic.proportion import forget
 from fcm.harmonic.record import recorded_at_levels
-from fcm.harmonic.start import highest, least, level_curve, resonances, solutions
+from fcm.harmonic.start import level_curve, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.orbit import periodic
 from fcm.response import trace

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fcm.harmonic.start import Found, few_of, foresee, solutions
+from fcm.harmonic.linear_contacts import foresee
+from fcm.harmonic.start import Found, few_of, solutions
 from fcm.harmonic.system import System
 
 NEAR = (

@@ -7,23 +7,20 @@ can change what it does. Every passing of the level 1 is a solution.
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
+from fcm.harmonic.linear_contacts import GREATEST, highest, least, linear_responses
 from fcm.harmonic.proportion import in_common, passings
 from fcm.harmonic.system import System
-from fcm.scene.model import Contact, FloatArray
+from fcm.scene.model import FloatArray
 
 WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
 BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to there nothing is to be followed
-BEYOND = 3.0  # times the level at which the last contact changes what it does
-GREATEST = 1e4  # level
 STEP = 0.2  # longest, along the curve of a level
 SHORTER = 0.5  # of that, where a curve has stalled,
 FINER = 0.25  # and where it has gone back on itself
@@ -32,19 +29,6 @@ UNKNOWNS = 64  # or as many as make this many unknowns
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
 FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
-
-ComplexArray = npt.NDArray[np.complex128]
-
-
-class _Last(threading.local):
-    """The linear answers that each thread found last, and what they are of."""
-
-    def __init__(self) -> None:
-        self.key: tuple[object, ...] = ()
-        self.found: ComplexArray = np.empty((0, 3, 0), dtype=np.complex128)
-
-
-_LAST = _Last()
 
 
 @dataclass(frozen=True)
@@ -199,57 +183,6 @@ def _back(path: Path, low: float) -> bool:
     return bool(levels.size and levels[0] > low and levels[-1] <= low)
 
 
-def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
-    """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
-    for ports in _linear_answers(system, omega):
-        yield _unknowns(system.rest, level * ports, len(system.harmonics), system.harmonics.index(1))
-
-
-def _linear_answers(system: System, omega: float) -> ComplexArray:
-    """Of the ports, (3, port), with the contacts as in `linear_responses`; kept in the system."""
-    if omega not in system.answers:
-        foresee(system, (omega,))
-    return system.answers[omega]
-
-
-def foresee(system: System, frequencies: Sequence[float]) -> None:
-    """Find the linear answers at all frequencies at which solutions will be asked for, at once.
-
-    Those of the last system are still known: of a sweep most are the same.
-    """
-    at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
-    held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
-    key = (*system.linear.numbers, *frequencies, held.tobytes())
-    if key != _LAST.key or system.scene.ring is not None:
-        _LAST.key, _LAST.found = key, _answers_of(system, frequencies, held)
-    system.answers.update(zip(frequencies, _LAST.found, strict=True))
-
-
-def _answers_of(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
-    """Of the ports with springs held (case, port): (frequency, case, port)."""
-    G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
-    matrices = np.eye(X.shape[1]) + G[:, None] * held[:, None, :]
-    found: ComplexArray = np.linalg.solve(matrices, X[:, None, :, None])[..., 0].astype(
-        np.complex128, copy=False
-    )
-    return found
-
-
-def loads_at_rest(system: System) -> FloatArray:
-    """Normal loads (contact,) at rest, negative where a contact is open."""
-    law = np.array([(c.n_0, c.k_v) for c in system.scene.contacts]).reshape(-1, 2)
-    loads: FloatArray = law[:, 0] + law[:, 1] * system.rest[1::2]
-    return loads
-
-
-def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:
-    x = np.zeros((ports.size // 2, 2 + 4 * harmonics))
-    x[:, :2] = rest.reshape(-1, 2)
-    first = 2 + 4 * driven
-    x[:, first : first + 4] = ports.view(np.float64).reshape(-1, 4)
-    return x.ravel()
-
-
 def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
     """Solutions that Newton's method finds from linear responses, where no level could be followed."""
     newton = Newton(system.balance())
@@ -262,35 +195,6 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
         newton.z[:], newton.row[:] = z, row
         if newton.correct(1.0):
             yield np.array(newton.z)
-
-
-def highest(system: System, omega: float) -> float:
-    """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
-    levels, loads = [1.0], np.abs(loads_at_rest(system))
-    for ports in _linear_answers(system, omega)[1:]:
-        for load, (variation, slip, contact) in zip(loads, _motions(system, ports), strict=True):
-            levels += [load / variation] if variation > 0.0 else []
-            levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
-    return min(BEYOND * max(levels), GREATEST)
-
-
-def least(system: System, omega: float) -> float:
-    """The least level at which a contact is not as it is at rest; 0 where static loads have a say in that."""
-    if system.scene.loads:
-        return 0.0
-    levels = [GREATEST]
-    for variation, slip, contact in _motions(system, _linear_answers(system, omega)[0]):
-        levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
-        closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
-        levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []
-    return min(levels)
-
-
-def _motions(system: System, ports: ComplexArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
-    """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
-    for contact, (U, V) in zip(system.scene.contacts, ports.reshape(-1, 2).tolist(), strict=True):
-        over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
-        yield contact.k_v * abs(V), (over, under), contact
 
 
 def resonances(system: System) -> list[float]:

@@ -12,9 +12,10 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.harmonic.drift import undetermined
+from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
-from fcm.harmonic.start import Found, foresee, resonances, solutions
+from fcm.harmonic.start import Found, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
