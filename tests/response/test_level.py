@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.continuation import Status
 from fcm.harmonic.linear_contacts import highest, least
 from fcm.harmonic.proportion import forget
 from fcm.harmonic.record import recorded_at_levels
@@ -105,6 +106,19 @@ def test_what_is_not_followed_of_a_level_has_no_solution(scene, frequency):
     found = solutions(system, frequency)
     assert found.complete and len(found.solutions) == len(passings)
     assert np.array([z[:-1] for z in found.solutions]) == pytest.approx(passings, rel=1e-6, abs=1e-7)
+
+
+def test_a_passing_that_long_steps_lead_across_is_found():
+    """The curve is not found between the ends of such a step: shorter ones find it."""
+    scene = random_scene(13)
+    scene = replace(scene, forces=tuple(replace(one, amplitude=5.0 * one.amplitude) for one in scene.forces))
+    system = System(scene)
+    for frequency in (*resonances(system), 1.1800850503105396):
+        path = level_curve(system, frequency, (0.0, highest(system, frequency)))
+        passings = path.z[path.parameter == 1.0, :-1]
+        found = solutions(system, frequency)
+        assert path.status is Status.COMPLETE and found.complete
+        assert np.array(found.solutions)[:, :-1] == pytest.approx(passings, rel=1e-6, abs=1e-7)
 
 
 def preloaded(scene, n_0):

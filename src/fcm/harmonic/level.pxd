@@ -4,5 +4,6 @@ from fcm.harmonic.balance cimport Balance
 cdef class Level(Problem):
     cdef public Balance balance
     cdef public double omega
+    cdef bint many
     cdef double[::1] z
     cdef void place(self, double[::1] z) noexcept

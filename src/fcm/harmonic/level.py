@@ -24,11 +24,12 @@ class Level(Problem):
         self.group = balance.group
         self.boundless *= self.boundless  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
+        self.many = self.dear
         self.begin(omega)
 
-    def begin(self, omega: float) -> None:
-        """Another curve, at omega."""
-        self.omega = omega
+    def begin(self, omega: float, lightly: bool = False) -> None:
+        """Another curve, at omega; lightly if slight corners are stepped over however few the unknowns."""
+        self.omega, self.dear = omega, lightly or self.many
         self.balance.largest[:] = 0.0
 
     @cython.ccall

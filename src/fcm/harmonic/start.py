@@ -21,7 +21,8 @@ from fcm.scene.model import FloatArray
 
 WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
 BEFORE = 0.9  # times the least level at which a contact is nonlinear: up to there nothing is to be followed
-STEP = 0.2  # longest, along the curve of a level
+STEP = 0.2  # longest, along the curve of a level,
+LONG = 1.0  # and where its passings of the level 1 alone matter
 SHORTER = 0.5  # of that, where a curve has stalled,
 FINER = 0.25  # and where it has gone back on itself
 FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
@@ -76,7 +77,7 @@ def _followed(system: System, omega: float, linear: float, top: float) -> Found:
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
     found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
-    complete = path.status in (Status.COMPLETE, Status.RETURNED)
+    complete = path.status in (Status.COMPLETE, Status.RETURNED) and not _lost(path, (1.0,))
     return Found(omega, found, complete, _reach(path.status, path.parameter), _turns(path.parameter))
 
 
@@ -102,15 +103,23 @@ def _whole(system: System, omega: float) -> Path:
 
 
 def _hasty(system: System, omega: float, linear: float, top: float, stations: tuple[float, ...]) -> Path:
-    """The curve of the level, by long steps if those come to its end; shorter ones may where it stalls."""
-    path = level_curve(system, omega, (0.0, top), stations=stations, linear=linear, hasty=True)
-    if path.status is Status.COMPLETE:
-        return path
+    """The curve of the level, by long steps if those come to its end, and to its stations; shorter ones may
+    where they do not."""
+    for step, lightly in ((LONG, True), (STEP, False)):
+        path = level_curve(system, omega, (0.0, top), step, stations, linear, True, lightly)
+        if path.status is Status.COMPLETE and not _lost(path, stations):
+            return path
     for step in (STEP, SHORTER * STEP):
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
         if path.status is not Status.STALLED:
             break
     return path
+
+
+def _lost(path: Path, stations: tuple[float, ...]) -> bool:
+    """Whether a curve leads across one of its stations without a point there."""
+    before, after = path.parameter[:-1], path.parameter[1:]
+    return any(bool(((before - one) * (after - one) < 0.0).any()) for one in stations)
 
 
 def few_of(system: System) -> int:
@@ -124,7 +133,8 @@ def _reach(status: Status, levels: FloatArray) -> float:
     if status is not Status.COMPLETE:
         return np.inf
     near = np.flatnonzero(levels < NEAR)
-    return FURTHER * float(levels[: near[-1] + 1].max()) if near.size else FURTHER * NEAR
+    most = float(levels[: near[-1] + 1].max()) if near.size else NEAR
+    return FURTHER * max(most, NEAR)  # however far apart the points are
 
 
 def _turns(levels: FloatArray) -> tuple[float, ...]:
@@ -141,15 +151,16 @@ def level_curve(
     stations: tuple[float, ...] = (1.0,),
     linear: float = 0.0,
     hasty: bool = False,
+    lightly: bool = False,
 ) -> Path:
     """Response at omega against the level of the forces, from rest, or from a level up to which it is
-    linear; hasty if only its stations matter, as of `follow`."""
+    linear; hasty if only its stations matter, as of `follow`, lightly if slight corners are stepped over."""
     path, low = None, max(span[0], WEAK[-1])  # a stiffened resonance may take much less than leads to it
     for weak in WEAK:
         level = max(span[0], weak, linear)
         for x in linear_responses(system, omega, level):
             start, whole = np.append(x, level), (low, span[1])
-            path = _raised(system, start, omega, whole, step, stations, hasty)
+            path = _raised(system, start, omega, whole, step, stations, hasty, lightly)
             if _back(path, low):
                 path = _raised(system, start, omega, whole, FINER * step, stations)
             if _back(path, low):
@@ -168,9 +179,10 @@ def _raised(
     step: float,
     stations: tuple[float, ...],
     hasty: bool = False,
+    lightly: bool = False,
 ) -> Path:
     level, front = system.raised
-    level.begin(omega)
+    level.begin(omega, lightly)
     return follow(level, start, span, True, step, stations, hasty=hasty, front=front)
 
 
