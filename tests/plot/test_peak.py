@@ -55,6 +55,18 @@ def test_a_line_for_each_of_the_other_values():
     assert draw_peak(peaks(n_0=n_0, mu=mu), against=MU).axes[1].get_xlabel().startswith("$\\mu$")
 
 
+def test_nothing_is_drawn_between_engine_orders():
+    one = peaks(n_0=[3, 2, 4])
+    whole = {"cyclic.engine_order": one.parameters[N_0]}
+    figure = draw_peak(Peaks(one.dofs, "Hz", whole, one.amplitude, one.frequency, one.complete))
+    for axes, drawn in zip(figure.axes, (one.amplitude, one.frequency), strict=True):
+        points = axes.lines[0]
+        assert (points.get_linestyle(), points.get_marker()) == ("None", "o")
+        assert points.get_xdata().tolist() == [2, 3, 4]
+        assert points.get_ydata().tolist() == drawn[[1, 0, 2], 0].tolist()
+    assert all(value == round(value) for value in figure.axes[1].get_xticks())
+
+
 def test_keys_that_go_in_step_are_one_line_without_a_name():
     figure = draw_peak(peaks(n_0=[10, 30, 20, 40], mu=[0.1, 0.3, 0.2, 0.4]))
     assert figure.axes[0].lines[0].get_xdata().tolist() == [10, 20, 30, 40]

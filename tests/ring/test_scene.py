@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.plot.campbell import folded
+from fcm.plot.campbell import Ring, draw_campbell, folded
 from fcm.response.trace import ResponseError
 from fcm.scene import SceneError, scene_from_dict
 
@@ -137,6 +137,28 @@ def test_campbell_draws_and_refuses(tmp_path):
     assert picture.stat().st_size > 10_000
     code, _, err = called("plot", "campbell", "yang1998")
     assert code == 2 and err.startswith("fcm: error: yang1998: has no [cyclic]") and "Usage" not in err
+
+
+def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
+    levels = tuple(np.array([200.0, 700.0]) for _ in range(13))
+    orders = (3, 21, 27, 8, 45, 0, 51)
+    ring = Ring("", 24, orders, (100.0, 350.0), "Hz", tuple(range(13)), levels, levels)
+    figure = draw_campbell(ring)
+    (axes,) = figure.axes
+    bars = [
+        (b.get_x(), b.get_x() + b.get_width(), b.get_y(), b.get_y() + b.get_height()) for b in axes.patches
+    ]
+    top = axes.get_ylim()[1]
+    assert len(bars) == 6 * sum(100.0 * h < top for h in range(1, 6))
+    for i, (left, right, low, high) in enumerate(bars):
+        nearest = round(0.5 * (left + right))
+        assert nearest - 0.5 < left < right < nearest + 0.5 and high == pytest.approx(3.5 * low)
+        for other_left, other_right, other_low, other_high in bars[:i]:
+            apart = right <= other_left + 1e-9 or other_right <= left + 1e-9
+            assert apart or high <= other_low or other_high <= low
+    named = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {f"order {n}, its harmonics" for n in orders[:6]} <= named
+    assert axes.get_title(loc="right") == "24 sectors; the first 6 of 7 engine orders"
 
 
 def test_lines_of_engine_orders_run_up_and_down():

@@ -26,6 +26,9 @@ _BEYOND = 2.5  # times the range's end: so far up modes are shown
 _ROOM = 1.08  # above the highest of them
 _MOST_HARMONICS = 5  # of an engine order that are marked
 _MOST_ORDERS = 6  # that have a line each
+_WIDE = 0.018  # of the axis: a bar of an engine order
+_FILLED = 0.75  # of the distance of two diameters, by bars beside one another
+_LABELLED = 0.95  # of the axis: up to there the numbers of harmonics
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,16 @@ class Ring:
     diameters: tuple[int, ...]
     opened: tuple[FloatArray, ...]  # (mode,) for each diameter
     stuck: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A harmonic of an engine order, over the range of the excitation."""
+
+    order: int
+    harmonic: int
+    low: float
+    high: float
 
 
 def draw_campbell(ring: Ring) -> Figure:
@@ -59,9 +72,16 @@ def draw_campbell(ring: Ring) -> Figure:
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         axes.set_xlabel("Nodal diameter")
         axes.set_ylabel(frequency_label(ring.unit))
-        axes.set_title(f"{ring.sectors} sectors", loc="right", fontsize=8)
+        axes.set_title(_title(ring), loc="right", fontsize=8)
         figure.legend(loc="outside right upper")
     return figure
+
+
+def _title(ring: Ring) -> str:
+    """What is drawn, and of how many engine orders some are."""
+    count = len(ring.engine_orders)
+    text = f"{ring.sectors} sectors"
+    return text if count <= _MOST_ORDERS else f"{text}; the first {_MOST_ORDERS} of {count} engine orders"
 
 
 def _top(ring: Ring) -> float:
@@ -87,7 +107,9 @@ def _families(axes: Axes, diameters: Sequence[int], frequencies: Sequence[FloatA
 def _orders(axes: Axes, ring: Ring, top: float) -> None:
     """For each engine order where its harmonics are, and the line of its highest speed; if alone, of both."""
     shown = ring.engine_orders[:_MOST_ORDERS]
-    for order, colour in zip(shown, _colours(len(shown)), strict=True):
+    colours = dict(zip(shown, _colours(len(shown)), strict=True))
+    _bars(axes, ring, colours, top)
+    for order, colour in colours.items():
         if order:
             low, high = (abs(end / order) for end in ring.span)
             lines = ((low, (0, (1, 2))), (high, (0, (4, 2))))
@@ -96,17 +118,66 @@ def _orders(axes: Axes, ring: Ring, top: float) -> None:
                     *_zigzag(ring.sectors, speed, top), color=colour, linewidth=0.7, linestyle=dashes,
                     zorder=0, label=f"all orders at {_speed(speed, ring.unit)}",
                 )  # fmt: skip
+
+
+def _bars(axes: Axes, ring: Ring, colours: dict[int, str], top: float) -> None:
+    """Where the harmonics of engine orders are: those that meet one diameter stand beside one another."""
+    placed = [one for x, bars in _met(ring, tuple(colours), top).items() for one in _placed(ring, x, bars)]
+    for bar, middle, width in sorted(placed, key=lambda one: tuple(colours).index(one[0].order)):
+        axes.bar(
+            middle, bar.high - bar.low, width, bar.low, color=colours[bar.order], alpha=0.35, zorder=1,
+            linewidth=0.0, label=f"order {bar.order}, its harmonics" if bar.harmonic == 1 else None,
+        )  # fmt: skip
+    named: dict[tuple[float, int], list[tuple[Bar, float]]] = {}
+    for bar, middle, _ in placed:
+        named.setdefault((round(middle), bar.harmonic), []).append((bar, middle))
+    for (_, harmonic), some in named.items():
+        only = colours[some[0][0].order] if len(some) == 1 else "black"
+        centre = sum(middle for _, middle in some) / len(some)
+        axes.annotate(
+            f"{harmonic}", (centre, min(some[0][0].high, _LABELLED * top)), xytext=(0, 1),
+            textcoords="offset points", fontsize=7, color=only, ha="center", va="bottom",
+        )  # fmt: skip
+
+
+def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, float]]:
+    """The bars at a diameter, with their middles and widths."""
+    lanes = beside([(bar.low, bar.high) for bar in bars])
+    count = max(lanes) + 1
+    room = min(_WIDE * (ring.sectors // 2 + 1), _FILLED / count)
+    return [
+        (bar, x + room * (lane - 0.5 * (count - 1)), room if bar.harmonic == 1 else 0.5 * room)
+        for bar, lane in zip(bars, lanes, strict=True)
+    ]
+
+
+def _met(ring: Ring, orders: Sequence[int], top: float) -> dict[float, list[Bar]]:
+    """The bars at each nodal diameter, as far as they are seen."""
+    met: dict[float, list[Bar]] = {}
+    for order in orders:
         for harmonic in range(1, _MOST_HARMONICS + 1):
-            x, ends = folded(harmonic * order, ring.sectors), [harmonic * end for end in ring.span]
-            if ends[0] < top:
-                axes.plot(
-                    [x, x], ends, color=colour, linewidth=5.0 if harmonic == 1 else 2.5, alpha=0.35, zorder=1,
-                    solid_capstyle="butt", label=f"order {order}, its harmonics" if harmonic == 1 else None,
-                )  # fmt: skip
-                axes.annotate(
-                    f"{harmonic}", (x, min(ends[1], 0.97 * top)), xytext=(4, -1), textcoords="offset points",
-                    fontsize=7, color=colour, va="top",
-                )  # fmt: skip
+            low, high = (harmonic * end for end in ring.span)
+            if low < top:
+                met.setdefault(folded(harmonic * order, ring.sectors), []).append(
+                    Bar(order, harmonic, low, high)
+                )
+    return met
+
+
+def beside(spans: Sequence[tuple[float, float]]) -> list[int]:
+    """A lane for each of some spans, so that those in one lane do not overlap; as few lanes as that takes.
+
+    >>> beside([(1, 2), (1, 2), (2, 4), (1.5, 3)])
+    [0, 1, 0, 2]
+    """
+    ends: list[float] = []  # of what is last in each lane
+    lanes = [0] * len(spans)
+    for i in sorted(range(len(spans)), key=lambda i: spans[i][0]):
+        low, high = spans[i]
+        free = [lane for lane, end in enumerate(ends) if end <= low]
+        lanes[i] = free[0] if free else len(ends)
+        ends[lanes[i] : lanes[i] + 1] = [high]
+    return lanes
 
 
 def _speed(speed: float, unit: str) -> str:

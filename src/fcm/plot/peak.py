@@ -27,6 +27,7 @@ _NEEDED = ("dof", "peak_amplitude", "peak_frequency", "complete")
 _DECADES = 100.0  # positive swept values that span more are on a logarithmic axis
 _MOST_LINES = 12  # more combinations of the other swept values than this are a cloud of points
 _MARK = "#c03020"
+_WHOLE = ("cyclic.engine_order",)  # whole numbers, between which there is nothing
 _MANY = 60  # values on a line whose points are not marked any more
 
 
@@ -72,7 +73,7 @@ def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) 
         figure = new_figure(WIDTH, 1.3 * HEIGHT)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         for axes, values in ((upper, peaks.amplitude), (lower, peaks.frequency)):
-            _draw(axes, peaks.parameters[key], values[:, column], known, lines)
+            _draw(axes, peaks.parameters[key], values[:, column], known, lines, key not in _WHOLE)
         _finish_axes(upper, lower, peaks, key, column, known)
         if len(lines) > 1:
             _name_lines(figure, upper, peaks, _others(peaks, key, known), lines)
@@ -113,17 +114,24 @@ def _others(peaks: Peaks, key: str, known: BoolArray) -> list[str]:
     return [name for name, values in peaks.parameters.items() if name != key and not in_step(values)]
 
 
-def _draw(axes: Axes, x: FloatArray, y: FloatArray, known: BoolArray, lines: Sequence[IntArray]) -> None:
-    """Lines, or a cloud of points where there are none."""
+def _draw(
+    axes: Axes, x: FloatArray, y: FloatArray, known: BoolArray, lines: Sequence[IntArray], joined: bool
+) -> None:
+    """Lines, or their points alone where nothing is between them; a cloud of points where there are none."""
     if not lines:
         axes.plot(x[known], y[known], "o", color="black", markersize=1.5, markeredgewidth=0.0)
         return
     for line, colour in zip(lines, sequence_colours(len(lines)), strict=True):
-        mark = "o" if line.size <= _MANY else ""
-        axes.plot(x[line], y[line], color=colour, linewidth=1.1, marker=mark, markersize=2.5)
+        if joined:
+            mark = "o" if line.size <= _MANY else ""
+            axes.plot(x[line], y[line], color=colour, linewidth=1.1, marker=mark, markersize=2.5)
+        else:
+            axes.plot(x[line], y[line], "o", color=colour, markersize=4.0)
 
 
 def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
+    from matplotlib.ticker import MaxNLocator, NullLocator
+
     (symbol,) = symbols([key])
     name = symbol if symbol == key else f"{symbol}  ({key})"
     x = peaks.parameters[key][known]
@@ -139,6 +147,9 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     else:
         upper.set_ylim(bottom=0.0)
     lower.minorticks_on()
+    if key in _WHOLE:
+        lower.xaxis.set_major_locator(MaxNLocator(integer=True))
+        lower.xaxis.set_minor_locator(NullLocator())
 
 
 def _name_lines(
