@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.harmonic import choice
-from fcm.harmonic.choice import accurate, estimated
+from fcm.harmonic.choice import accurate, enlarged, estimated
 from fcm.harmonic.system import System
 
 from .truth import scene
@@ -105,3 +105,15 @@ def test_what_would_take_too_long_is_said(monkeypatch):
     assert found.system.harmonics == (1,)
     assert found.worst == found.told == pytest.approx(0.062, rel=0.1)
     assert set(found.further) > {1, 2, 3}
+
+
+def test_no_more_harmonics_are_added_than_some_seconds_allow():
+    found = estimated(System(scene("yang1998", -5)), 1e-3)
+    every = enlarged(found, 1e-4)
+    assert {2, 9} < set(every)
+    for count in range(1, len(every)):
+        seconds = found.seconds_with(every[: count + 1])
+        fewer = enlarged(found, 1e-4, seconds)
+        assert len(fewer) == count + 1 and {1} < set(fewer) <= set(every)
+        assert found.seconds_with(fewer) <= seconds
+    assert enlarged(found, 1e-4, 0.0) == (1,)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.cli.track import as_table
 from fcm.continuation import Mark, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.harmonic.record import recorded
@@ -90,6 +91,32 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     short = optimise(aimed, accuracy=1e-3)
     assert short.tracking.harmonics == (1,) and short.tracking.optima[0].error > 1e-3
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
+
+
+def test_what_cannot_be_followed_is_found_by_trials(scene, monkeypatch):
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 30.0),), (Aim("u"),)))
+    followed = optimise(aimed, harmonics=1).tracking.optima[0]
+    monkeypatch.setattr("fcm.track.lowest.land", lambda *_: None)
+    tried = optimise(aimed, harmonics=1)
+    (found,) = tried.tracking.optima
+    low, high = found.between
+    assert found.kind == "trials" and low < followed.values[PRELOAD] < high < low + 8.0
+    assert low < found.values[PRELOAD] < high
+    for value in (found.values[PRELOAD], 2.0, 9.0, 16.0, 23.0, 30.0):  # a plain sweep
+        system, paths = run(scene, PRELOAD, value)
+        peak = recorded(system, paths).amplitude[:, 0].max()
+        if value == found.values[PRELOAD]:
+            assert found.value == pytest.approx(peak, rel=EXACT)
+        assert peak >= found.value * (1.0 - EXACT) >= followed.value * (1.0 - 2.0 * EXACT)
+    result = {"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}
+    assert f"by trials alone, between {low:.6g} and {high:.6g}" in as_table(result, "rad/s")
+
+
+def test_trials_that_are_least_at_a_bound_say_both(scene, monkeypatch):
+    monkeypatch.setattr("fcm.track.lowest.land", lambda *_: None)
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((20.0, 60.0),), (Aim("u"),)))
+    (found,) = optimise(aimed, harmonics=1).tracking.optima
+    assert (found.kind, found.values[PRELOAD], found.between[0]) == ("bound", 20.0, 20.0)
 
 
 def test_the_curve_of_the_optimum(scene):

@@ -306,6 +306,7 @@ class FallsAndEnds(Search):
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
+        self.seen = {}
 
     def best(self):
         return Least(3.0, 1.3, (), "end") if "lower" in self.curves else Least(3.0, 1.8, (), "corner")

@@ -117,7 +117,11 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
         "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less",
+        "trials": "",
     }[one["kind"]]  # fmt: skip
+    if one["between"]:
+        ends = "{:.6g} and {:.6g}".format(*one["between"])
+        kind += f"; known by trials alone, between {ends}, as not all peaks could be followed"
     at = " and ".join(f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}" for place in one["at"])
     least = (
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g} (error {short(one['error'])})"

@@ -181,15 +181,18 @@ def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
     return np.where(unknown, np.nan, peak)
 
 
-def enlarged(found: Accurate, accuracy: float) -> tuple[int, ...]:
+def enlarged(found: Accurate, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
     """The harmonics of a response and those that would do most, until the others do less than the accuracy.
 
     What harmonics do is more than they are, because they change the others: by how much is told by the
-    error now.
+    error now. No more are added than can be followed in some seconds.
     """
     share = np.max([one.share for one in found.errors], axis=0, initial=0.0)
-    total = share.sum()
+    total, has = share.sum(), found.system.harmonics
     if not total > 0.0:
-        return found.system.harmonics
+        return has
     gain = found.worst / total if np.isfinite(found.worst) else UNKNOWN
-    return needed(share, found.system.harmonics, gain, accuracy)
+    more = sorted(set(needed(share, has, gain, accuracy)) - set(has), key=lambda h: -share[h - 1])
+    while more and found.seconds_with((*has, *more)) > seconds:
+        more.pop()
+    return tuple(sorted((*has, *more)))

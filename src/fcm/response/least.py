@@ -20,6 +20,7 @@ from fcm.scene.model import FloatArray, Scene
 from fcm.track.descent import Valley, descend
 from fcm.track.envelope import Least, Target
 from fcm.track.lowest import Lowest, Search
+from fcm.track.trials import by_trials
 from fcm.track.varied import along
 
 ROUNDS = 4  # of choosing harmonics by the accuracy at the optimum
@@ -55,27 +56,32 @@ class Task:
 
 def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
-    chosen = harmonics or (1,)
+    chosen, seconds = harmonics or (1,), AGAIN
     known: Lowest | None = None
     for i in range(ROUNDS):
         shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
         if len(task.numbers) == 1:
-            known = _search(task, chosen).run(known, _sharing(shown))
+            search = _search(task, chosen)
+            known = search.run(known, _sharing(shown))
+            if not known.checked:
+                known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
         else:
             found = _downhill(task, chosen)
         if harmonics:
             break
-        more = _enough(task, found[0], chosen)
+        more, taken = _enough(task, found[0], chosen, seconds)
         if more == chosen:
             break
-        chosen = more
+        chosen, seconds = more, seconds - taken
     return found
 
 
 def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:
     """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
     every = {h for one, _ in found for h in one.harmonics}
+    if all(len(one.harmonics) == len(every) for one, _ in found):
+        return found
     for _ in range(ROUNDS):
         chosen = tuple(sorted(every))
         found = [
@@ -83,7 +89,7 @@ def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:
             for task, one in zip(tasks, found, strict=True)
         ]
         for task, one in zip(tasks, found, strict=True):
-            every |= set(_enough(task, one[0], chosen))
+            every |= set(_enough(task, one[0], chosen, AGAIN)[0])
         if len(every) == len(chosen):
             break
     return found
@@ -93,9 +99,14 @@ def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
     return None if progress is None else lambda share: progress(share, "optimum")
 
 
-def _enough(task: Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int, ...]:
-    """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on."""
-    scene = task.put(np.array(list(found.values.values())))
+def _enough(
+    task: Task, found: Optimal, harmonics: tuple[int, ...], seconds: float
+) -> tuple[tuple[int, ...], float]:
+    """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
+
+    No more than a response can be followed with in some seconds; and how many that takes.
+    """
+    scene, taken = task.put(np.array(list(found.values.values()))), 0.0
     dofs = [target.dof for target in task.targets]
     while True:
         there = estimated(System(scene, harmonics), task.accuracy)
@@ -103,11 +114,11 @@ def _enough(task: Task, found: Optimal, harmonics: tuple[int, ...]) -> tuple[int
         worst = float(there.peak[dofs][height > COUNTS * height.max()].max(initial=0.0))
         there = replace(there, worst=worst)
         if worst <= task.accuracy:
-            return harmonics
-        more = enlarged(there, task.accuracy)
-        if more == harmonics or there.seconds_with(more) > AGAIN:
-            return harmonics
-        harmonics = more
+            return harmonics, taken
+        more = enlarged(there, task.accuracy, seconds - taken)
+        if more == harmonics:
+            return harmonics, taken
+        harmonics, taken = more, taken + there.seconds_with(more)
 
 
 def _search(task: Task, harmonics: tuple[int, ...]) -> Search:
@@ -149,5 +160,6 @@ def _optimal(task: Task, values: FloatArray, best: Least, harmonics: tuple[int, 
         value=best.value,
         active=tuple(sorted(active, key=lambda pair: pair[1])),
         kind=best.kind,
+        between=best.between,
         harmonics=harmonics,
     )

@@ -84,9 +84,10 @@ class Optimal:
     minimised: tuple[str, ...]
     value: float
     active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
-    kind: str  # "smooth", "kink", "corner", "end", "bound"
+    kind: str  # "smooth", "kink", "corner", "end", "bound", "trials"
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
+    between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -99,6 +100,7 @@ class Optimal:
             "kind": self.kind,
             "harmonics": list(self.harmonics),
             "error": self.error,
+            "between": None if self.between is None else list(self.between),
         }
 
 

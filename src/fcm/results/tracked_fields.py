@@ -12,6 +12,7 @@ from fcm.results.result import Response
 from fcm.results.tracked import Tracking
 from fcm.units import in_unit
 
+KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"
 WHAT = "what of the response is tracked"
 MEANINGS = {  # of what is known of each point of a tracked curve
     "number": "tracked value of {key}",
@@ -128,7 +129,7 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
         "optimum_kind": (
             ("optimum",),
             np.array([one.kind for one in optima], dtype=str),
-            {"long_name": "smooth, kink of equal peaks, corner of the response, end of a higher peak, bound"},
+            {"long_name": f"{KINDS}, bound, trials"},
         ),
     }
 

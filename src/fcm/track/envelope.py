@@ -50,7 +50,8 @@ class Least:
     s: float
     value: float
     active: tuple[Height, ...]
-    kind: str  # "smooth", "kink" of two equal peaks, "corner", "end" of a higher peak, or "bound"
+    kind: str  # "smooth", "kink" of two equal peaks, "corner", "end" of a higher peak, "bound", or "trials"
+    between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
 
 
 class Piece:

@@ -2,7 +2,9 @@
 
 What was followed is nowhere above the response. So where the response, traced at the lowest point of what
 was followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
-Only ordinary curves at such points are traced, and those at both ends of the range.
+Only ordinary curves at such points are traced, and those at both ends of the range. A higher peak may be one
+that cannot be followed, of a motion with many states: then only what ordinary curves show can be believed,
+see `by_trials`.
 """
 
 from __future__ import annotations
@@ -17,7 +19,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track, whole
-from fcm.track.envelope import Least, Piece, Target, gaps, least, pieces_of
+from fcm.track.envelope import FINE, Height, Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.follow import land
 from fcm.track.known import passed
 from fcm.track.spot import Spot, Way
@@ -28,6 +30,7 @@ from fcm.track.varied import Line
 VISITS = 12  # of lowest points
 HIGHER = 1e-5  # relative: a peak that is this much higher was not followed
 HIGH = 0.9  # of the highest: peaks that are followed from where they are met
+NOTHING = Height(0.0, 0.0, np.zeros(0), -1)
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class Search:
     span: tuple[float, float]
     targets: Sequence[Target]
     curves: list[Track] = field(default_factory=list)
-    visited: set[float] = field(default_factory=set)
+    seen: dict[float, Height] = field(default_factory=dict)  # the greatest of the responses that were traced
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
@@ -77,16 +80,20 @@ class Search:
             if best is None:
                 break
             before = len(self.curves)
-            top = self.visit(best.s)
+            fine = FINE * (self.span[1] - self.span[0])
+            seen = [one.value for value, one in self.seen.items() if abs(value - best.s) <= fine]
+            top = seen[0] if seen else self.visit(best.s)
             checked = top <= best.value * (1.0 + HIGHER)
             if checked and (top >= best.value * (1.0 - HIGHER) or len(self.curves) == before):
                 break  # else a higher one is there; or lower ones, where the followed one ends
+            if seen:
+                break  # a higher one that could not be followed
         return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> Least | None:
         """Of what was followed, and of what is met where nothing was."""
         for value in gaps(self.way, self.pieces()):
-            if value not in self.visited:
+            if value not in self.seen:
                 self.visit(value)
         return least(self.way, self.pieces())
 
@@ -96,31 +103,38 @@ class Search:
 
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
-        self.visited.add(value)
-        here = moved(self.system, self.line.scene(self.system.scene, value))
-        points = special_points(here, self.conditions())[0]
-        spots = [(one, land(self.way, one, np.append(z, value))) for one, z in points]
-        return self.follow([(one, spot) for one, spot in spots if spot is not None])
-
-    def follow(self, spots: list[tuple[Condition, Spot]]) -> float:
-        """Curves through the high ones of some spots; the greatest height."""
-        heights = [self.height(one, spot) for one, spot in spots]
-        top = max(heights, default=0.0)
-        for (one, spot), height in zip(spots, heights, strict=True):
-            known = any(passed(curve, one, spot, self.way) for curve in self.curves)
-            if height >= HIGH * top and not known:
-                self.curves.append(whole(self.way, one, spot))
+        found = self.look(value)
+        top = self.seen[value].value
+        for condition, height in found:
+            spot = land(self.way, condition, height.z) if height.value >= HIGH * top else None
+            if spot is not None:
+                self.follow(condition, spot)
         return top
 
-    def height(self, condition: Condition, spot: Spot) -> float:
-        """The greatest of the targets at a spot; 0 where it is none of them."""
+    def look(self, value: float) -> list[tuple[Condition, Height]]:
+        """What may be greatest of the response at a value, with its heights."""
+        here = moved(self.system, self.line.scene(self.system.scene, value))
+        points = special_points(here, self.conditions())[0]
+        found = [(one, self.height(one, np.append(z, value))) for one, z in points]
+        self.seen[value] = max((height for _, height in found), key=lambda one: one.value, default=NOTHING)
+        return found
+
+    def follow(self, condition: Condition, spot: Spot) -> None:
+        """The curve through a spot, if it is not known."""
+        if not any(passed(curve, condition, spot, self.way) for curve in self.curves):
+            self.curves.append(whole(self.way, condition, spot))
+
+    def height(self, condition: Condition, z: FloatArray) -> Height:
+        """The greatest of the targets at a place; 0 where it is none of them."""
         problem = self.way.tracked(condition)
-        problem.measure(spot.z)
-        amplitude = problem.along(spot.z)[1]
-        counts = [
-            t.dof for t in self.targets if condition.which == t.dof or (condition.kind is Kind.END and t.ends)
+        problem.measure(z)
+        amplitude = problem.along(z)[1]
+        heights = [
+            Height(float(amplitude[t.dof]), 0.0, z, t.dof)
+            for t in self.targets
+            if condition.which == t.dof or (condition.kind is Kind.END and t.ends)
         ]
-        return max((float(amplitude[d]) for d in counts), default=0.0)
+        return max(heights, key=lambda one: one.value, default=NOTHING)
 
     def lift(self, known: Lowest) -> None:
         """Follow curves found with fewer harmonics from both their ends and their middle."""
@@ -130,7 +144,7 @@ class Search:
                 z = lifted(curve.spots[i].z, contacts, known.harmonics, self.system.harmonics)
                 spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
                 if spot is not None:
-                    self.follow([(curve.condition, spot)])
+                    self.follow(curve.condition, spot)
 
 
 def lifted(
