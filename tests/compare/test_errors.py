@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.compare.comparison import Comparison
 from fcm.compare.errors import MEASURES, Reference, reference, worst
 from fcm.compare.lines import Line
+from fcm.compare.methods import CLOSED_FORM, EXACT, Run
+from fcm.scene import load_scene
 
 
 def line(peak=2.0, at=1.5, folds=(1.2, 1.1), complete=True):
@@ -63,3 +66,15 @@ def test_it_is_at_least_the_distance_of_the_points_of_the_other_run():
 )
 def test_nothing_is_shown_that_is_less_than_ten_times_the_references_own(errors, own, text):
     assert str(worst(np.array(errors), np.array(own))) == text
+
+
+def test_a_table_as_it_is_that_ends_a_curve_says_how_far_it_jumps():
+    scene = load_scene("yang1998-n5")
+    known = {name: Reference(name, 0.1, [line()]) for name in (CLOSED_FORM, EXACT)}
+    stopped = Run("fast table", False, False, 0.05, [line(complete=False)], 1.0, 1.0, 10)
+    made = Comparison(scene, references=known, runs=[stopped], seams={"fast table": 1.3e-3})
+    (said,) = made.notes
+    assert "fast table, as it is" in said and "1 of 1 curves not complete" in said
+    assert "jump by up to 1.3e-03 at n0_bar = b_bar" in said
+    (said,) = replace(made, runs=[replace(stopped, corrected=True)]).notes
+    assert said.endswith("not complete")

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from fcm import fourier_coefficients
 from fcm.contact import fourier_gradients
 from fcm.table.error import sample
+from fcm.table.seam import seam
 
 from ..program import python
 
@@ -207,3 +208,26 @@ def test_look_up_needs_numpy_alone():
         "print(sorted({'click', 'xarray', 'matplotlib', 'scipy', 'netCDF4'} & set(sys.modules)))"
     )
     assert python("-c", code).out == "[]\n"
+
+
+class ClosedForm:
+    """As a table without an error."""
+
+    resolution = (25, 9, 37, 29)
+
+    def __call__(self, n0_bar, b_bar, phi):
+        return fourier_coefficients(n0_bar, b_bar, phi)
+
+
+def test_the_seam_is_as_far_apart_as_both_sides_err(default, fast):
+    """At random places where separation begins, most near the cones; the closed form has no jump there."""
+    random = np.random.default_rng(3)
+    near = 10.0 ** random.uniform(-4.0, 0.0, (2, COUNT)) * random.choice([-1.0, 1.0], (2, COUNT))
+    b, phi = 1.0 + 0.99 * near[0], near[1] % np.pi
+    exact = np.stack(fourier_coefficients(b, b, phi))
+    for table in (default, fast):
+        before, beyond = (np.stack(table(n0, b, phi)) for n0 in (np.nextafter(b, 0.0), b))
+        assert (np.abs(beyond - before) <= np.abs(before - exact) + np.abs(beyond - exact) + 1e-15).all()
+        seen = np.abs(beyond - before).max(axis=1)
+        assert (seen > 1e-6).all() and (seen < 1.05 * seam(table)).all() and (seam(table) < 10.0 * seen).all()
+    assert (seam(ClosedForm()) < 1e-7).all()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from fcm.response.around import refuse_ring
 from fcm.response.sweep import trace
 from fcm.scene.model import Scene
 from fcm.table import open_table
+from fcm.table.seam import seam
 from fcm.table.shipped import DEFAULT
 
 STEPS = (4.0, 2.0, 1.0, 0.5, 0.25)  # of harmonic balance, in the scene's longest steps
@@ -38,6 +39,7 @@ class Comparison:
     runs: list[Run] = field(default_factory=list)
     errors: dict[str, list[Errors]] = field(default_factory=lambda: {EXACT: [], CLOSED_FORM: []})
     left_out: list[str] = field(default_factory=list)
+    seams: dict[str, float] = field(default_factory=dict)  # of each table, see `fcm.table.seam`
     seconds: float = 0.0
     interrupted: bool = False
 
@@ -74,7 +76,7 @@ class Comparison:
             if harmonic.complete and exact.complete and len(harmonic.folds) != len(exact.folds):
                 count = f"{len(harmonic.folds)} folds, the exact curve {len(exact.folds)}"
                 found.append(f"{name}: harmonic balance has {count}; they are not compared")
-        return found + [text for one in self.runs if (text := _incomplete(one))]
+        return found + [text for one in self.runs if (text := _incomplete(one, self.seams))]
 
     def add(self, one: Run) -> None:
         """A run and its errors."""
@@ -99,13 +101,17 @@ class Comparison:
         return None
 
 
-def _incomplete(one: Run) -> str:
-    """What is missing in a run, else ''."""
+def _incomplete(one: Run, seams: Mapping[str, float]) -> str:
+    """What is missing in a run, else ''; of a table as it is, why that may be."""
     stopped = sum(not line.complete for line in one.lines)
     if one.method == EXACT or not stopped:  # of exact curves it is said which
         return ""
     name = one.method if one.corrected else f"{one.method}, as it is"
-    return f"{name}, longest step {one.max_step:g}: {stopped} of {len(one.lines)} curves not complete"
+    said = f"{name}, longest step {one.max_step:g}: {stopped} of {len(one.lines)} curves not complete"
+    if one.corrected or one.method not in seams:
+        return said
+    jump = f"uncorrected coefficients jump by up to {seams[one.method]:.1e} at n0_bar = b_bar"
+    return f"{said}; its {jump}, where a curve may end"
 
 
 def compare(
@@ -158,6 +164,7 @@ def compare(
     if table is not None:
         tables[f"table {table.name}"] = table
     methods = [Method(name, open_table(path)) for name, path in tables.items()]
+    out.seams = {one.name: float(seam(one.table).max()) for one in methods if one.table is not None}
     methods += [Method(CLOSED_FORM), Method(EXACT)]
     first = trace(with_step(scene, max(STEPS)), tolerance=tolerance)
     if first.interrupted:
