@@ -119,6 +119,51 @@ def test_the_bound_holds_and_is_no_exaggeration(monkeypatch, kept, blocks):
             assert more.bound < 3 * error.max()
 
 
+@pytest.mark.parametrize("free", [False, True])
+@pytest.mark.parametrize("kept", [4, 8])
+def test_the_bound_where_no_flexibility_of_its_own_is_kept(kept, free):
+    """At all displacements under a load in the middle, undamped, and with one ratio by all modes."""
+    K, M, names = beams.beam(60, clamped=not free)
+    value, shapes = scipy.linalg.eigh(K.toarray(), M.toarray())
+    rigid, ratio = (2 if free else 0), 0.02
+    loads, others = np.eye(len(names))[:, [names.index("31w")]], np.eye(len(names))
+    static = (shapes[:, rigid:] ** 2 / value[rigid:]).sum(axis=1)
+    unit = np.sqrt(static * static[names.index("31w")])
+    for share in (0.3, 0.8):
+        omega = share * np.sqrt(value[kept])
+        found = reduced(K, M, loads, omega, kept, True, others)
+        undamped = damped = 0.0
+        for lam, phi, sign in ((value, shapes, 1.0), (found.modes.stiffness, found.modes.shapes, -1.0)):
+            lam = np.where(np.arange(lam.size) < rigid, 0.0, lam)
+            force = sign * (phi.T @ loads)[:, 0]
+            undamped = undamped + phi @ (force / (lam - omega**2))
+            damped = damped + phi @ (force / (lam - omega**2 + 2j * ratio * np.sqrt(lam) * omega))
+        error, whole = np.abs(undamped / unit).max(), np.abs(damped / unit).max()
+        assert 1e-7 < error < found.aside[0] < 30.0 * error
+        assert whole < found.aside[0] + 2.0 * ratio * found.aside[1]
+
+
+def test_many_outputs_are_said_to_keep_no_flexibility_of_their_own(tmp_path):
+    few, many = (scene(tmp_path, modes=4, output=one) for one in (["1*"], ["*"]))
+    (note,) = few.notes
+    same, said = many.notes
+    assert "own flexibility" not in note + same and many.modal.added < few.modal.added
+    assert said.startswith(
+        "structure: the 120 outputs are more than 30, so that their own flexibility is not"
+    )
+    K, M, names = beams.beam(60)
+    load = np.eye(len(names))[:, [names.index("31w")]]
+    static = np.sqrt(np.diagonal(beams.direct(K, M, 0.0, np.eye(len(names)), 0.0)).real)
+    exact = beams.direct(K, M, 0.0, load, 30.0).real[:, 0]
+    at = [many.modal.dofs.index(name) for name in names]
+    denominator = many.modal.frequency**2 - 30.0**2
+    found = many.modal.shapes.T[at] @ (many.modal.shapes[:, at[names.index("31w")]] / denominator)
+    off = np.abs((found - exact) / (static * static[names.index("31w")])).max()
+    assert 1e-7 < off < float(said.rpartition(" ")[2])
+    assert len(scene(tmp_path, modes=4, output=["*"], flexibility=False).notes) == 1
+    assert len(scene(tmp_path, modes=120, output=["*"]).notes) == 1
+
+
 @pytest.mark.parametrize("count", [None, 2])
 @pytest.mark.parametrize("free", [False, True])
 def test_rows_without_mass_keep_their_flexibility(free, count):
@@ -141,7 +186,7 @@ def test_rows_without_mass_keep_their_flexibility(free, count):
     assert few.modes.count == 3  # nothing is added where nothing without mass is loaded
 
 
-def scene(folder, elements=60, **structure):
+def scene(folder, elements=60, output=(), **structure):
     """A beam that rubs at its tip, pushed in the middle."""
     K, M, names = beams.beam(elements)
     scipy.sparse.save_npz(folder / "K.npz", K)
@@ -153,7 +198,7 @@ def scene(folder, elements=60, **structure):
         "structure": table,
         "contact": [contact | {"n_0": 0.6}],
         "force": [{"dof": "31w", "amplitude": 1.0}],
-        "response": {"frequency": [2.0, 30.0], "harmonics": 1},
+        "response": {"frequency": [2.0, 30.0], "harmonics": 1} | ({"output": output} if output else {}),
     }
     return scene_from_dict(data, "beam.toml", folder)
 

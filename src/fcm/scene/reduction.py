@@ -26,12 +26,11 @@ def modal_of_matrices(
     loads (row, load) are the directions of contacts and forces, outputs those that are only reported; `ends`
     is the range of angular frequencies.
     """
-    few = outputs[:, :MOST_OUTPUTS] if outputs.shape[1] <= MOST_OUTPUTS else outputs[:, :0]
-    directions = np.concatenate((loads, few), axis=1)
+    directions, others = split(loads, outputs)
     top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
     try:
         found = reduced(
-            matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility
+            matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility, others
         )
         ratio, said = damping_of(matrices, found, loads, outputs, ends)
     except StructureError as error:
@@ -45,7 +44,34 @@ def modal_of_matrices(
         "complete": not np.isfinite(found.beyond),
     }
     said += of_rounding([found.rounding], ratio[found.rigid :])
-    return draft, found.modes.shapes, [_kept(matrices, found, ends), *_warnings(found, ends), *said]
+    return (
+        draft,
+        found.modes.shapes,
+        [
+            _kept(matrices, found, ends),
+            *at_many(matrices, outputs.shape[1], found.aside),
+            *_warnings(found, ends),
+            *said,
+        ],
+    )
+
+
+def split(loads: FloatArray, outputs: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Directions whose flexibility is kept, and outputs that are too many for that."""
+    few = outputs.shape[1] if outputs.shape[1] <= MOST_OUTPUTS else 0
+    return np.concatenate((loads, outputs[:, :few]), axis=1), outputs[:, few:]
+
+
+def at_many(matrices: Matrices, count: int, aside: tuple[float, float]) -> list[str]:
+    """What is to be said of outputs whose own flexibility is not kept, where some is."""
+    if not (count > MOST_OUTPUTS and any(aside)):
+        return []
+    most = aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
+    off = f"are off by at most {_upwards(most)}" if np.isfinite(most) else "are off by what cannot be told"
+    return [
+        f"structure: the {count} outputs are more than {MOST_OUTPUTS}, so that their own flexibility is not "
+        f"kept: receptances from contacts and forces to them {off}"
+    ]
 
 
 def of_rounding(frequencies: list[float], ratios: FloatArray) -> list[str]:

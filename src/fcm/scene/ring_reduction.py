@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.reduction import MOST_OUTPUTS, damping_of, how_far_off, of_rounding
+from fcm.scene.reduction import at_many, damping_of, how_far_off, of_rounding, split
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
@@ -61,7 +61,14 @@ def modal_of_ring(
         "diameter": np.repeat([one.number for one in diameters], counts),
         "flexible": np.concatenate(flexible),
     }
-    return draft, _notes(matrices, diameters, ends)
+    first, *others = _notes(matrices, diameters, ends)
+    return draft, [first, *at_many(matrices, outputs.shape[1], _aside(diameters)), *others]
+
+
+def _aside(diameters: list[Diameter]) -> tuple[float, float]:
+    """The greatest of all diameters."""
+    own, damped = zip(*(one.found.aside for one in diameters), strict=True)
+    return max(own), max(damped)
 
 
 def _at_diameter(matrices: Matrices, turn: complex) -> Matrices:
@@ -83,10 +90,9 @@ def _plain(matrices: Matrices, loads: ComplexArray, standing: bool) -> tuple[Mat
 def _modes(
     matrices: Matrices, loads: Any, number: int, outputs: FloatArray, ends: tuple[float, float]
 ) -> Diameter:
-    few = outputs[:, :MOST_OUTPUTS] if outputs.shape[1] <= MOST_OUTPUTS else outputs[:, :0]
-    directions = np.concatenate((loads, few), axis=1)
+    directions, others = split(loads, outputs)
     top = ends[1] if np.isfinite(ends[1]) else 0.0
-    found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility)
+    found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility, others)
     ratio, said = damping_of(matrices, found, loads, outputs, ends)
     return Diameter(number, found, ratio, said)
 

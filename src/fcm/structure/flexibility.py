@@ -40,6 +40,7 @@ ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
 MOST_BLOCKS = 4  # of vectors, each by a further solution with the stiffness
 INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
 NEAR = 1e-6  # of lambda_h: so near to zero the displacements are static ones
+TOGETHER = 200  # displacements, for which as many numbers as rows are held at a time
 FAR = 1e3  # times the frequencies of interest and those kept: where nothing that has no mass is noticed
 
 
@@ -93,6 +94,41 @@ def error_bound(
     error = np.einsum("ij,ij->j", residual.conj(), _orthogonal(system, kept, system.solve(residual)))
     farther = (beyond - system.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
     return float((np.abs(error) * farther / static_receptance(system, kept, loads)).max())
+
+
+def bound_aside(
+    system: System,
+    kept: Modes,
+    found: Flexibility,
+    loads: FloatArray,
+    others: FloatArray,
+    omega: float,
+    beyond: float,
+) -> tuple[float, float]:
+    """How far the displacement along others, under the loads, is off, and the part of it by damping.
+
+    Of the two static receptances the geometric mean; the second is to be multiplied by the loss factor. Their
+    own flexibility is not among the modes: Galerkin's solution errs at them by more, and the part m_3 of what
+    is left out is only known to be at most m_2 over the first frequency left out, here and in the modes.
+    """
+    if omega**2 >= beyond:
+        return np.inf, np.inf
+    system = nearer(system, -NEAR * beyond)
+    own, share = 0.0, 0.0
+    for first in range(0, others.shape[1], TOGETHER):
+        some = others[:, first : first + TOGETHER]
+        own = max(own, error_bound(system, kept, found.modes, some, omega, beyond))
+        share = max(share, _share(system, kept, some))
+    share *= _share(system, kept, loads)
+    slow = omega / np.sqrt(beyond)
+    return float(np.sqrt(own * found.bound)), float(2.0 * slow * np.sqrt(share) / (1.0 - slow**2) ** 2)
+
+
+def _share(system: System, kept: Modes, loads: FloatArray) -> float:
+    """The greatest part of a load's static receptance that the kept modes leave out."""
+    outer = _without(system, kept, loads)
+    rest = np.einsum("ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))).real
+    return float((rest / static_receptance(system, kept, loads)).max(initial=0.0))
 
 
 def _damping_off(modes: Modes, outer: FloatArray, beyond: float, sixth: bool) -> FloatArray:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, system_of
-from fcm.structure.flexibility import flexibility
+from fcm.structure.flexibility import bound_aside, flexibility
 from fcm.structure.rigid_body import rigid_by_energy
 from fcm.structure.rounding import of_frequencies, of_receptances
 
 FEWEST = 10  # modes that are kept at least, where none are asked for
 ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
+STIFFEST = 50  # of other displacements: rounding is greatest beside what moves little
 WHOLE = 30  # rows up to which all modes are kept
 
 
@@ -29,19 +30,29 @@ class Reduced:
     missed: int | None  # modes that the eigensolver has missed; None where it cannot be told
     damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
     rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
+    aside: tuple[float, float] = (0.0, 0.0)  # see `flexibility.bound_aside`, with rounding
 
 
-def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | None, rest: bool) -> Reduced:
+def reduced(
+    K: Matrix,
+    M: Matrix,
+    loads: FloatArray,
+    top: float,
+    count: int | None,
+    rest: bool,
+    others: FloatArray | None = None,
+) -> Reduced:
     """Modes of a structure for loads (row, load) up to the angular frequency top.
 
     count is how many modes are kept, None for all up to some times the top; rest is whether the flexibility
-    of the others is kept as well.
+    of the others is kept as well, under the loads; along others (row, displacement) it is told how far what
+    that leaves out is off.
     """
     system = system_of(K, M)
     found = _enough(lambda n: modes_of(system, n), system.rows, top, count)
     rigid = rigid_by_energy(K, found)
     if rigid == found.count < system.rows:  # all of them are kept
-        return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest)
+        return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest, others)
     wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
@@ -56,8 +67,21 @@ def reduced(K: Matrix, M: Matrix, loads: FloatArray, top: float, count: int | No
         np.concatenate((kept.stiffness, more.modes.stiffness)),
         np.concatenate((kept.shapes, more.modes.shapes), axis=1),
     )
-    bound = more.bound + of_receptances(K, M, both, loads)
-    return Reduced(both, wanted, rigid, float(np.sqrt(beyond)), bound, lost, more.damping, off)
+    bound, first = more.bound + of_receptances(K, M, both, loads), float(np.sqrt(beyond))
+    aside = (0.0, 0.0)
+    if others is not None and others.shape[1] and loads.shape[1]:
+        own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
+        aside = own + of_receptances(K, M, both, _stiffest(both, others)), damped
+    return Reduced(both, wanted, rigid, first, bound, lost, more.damping, off, aside)
+
+
+def _stiffest(modes: Modes, others: FloatArray) -> FloatArray:
+    """Those that move least under a load along themselves."""
+    elastic = modes.stiffness > 0.0
+    seen = np.abs(modes.shapes[:, elastic].conj().T @ others) ** 2
+    order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
+    some: FloatArray = others[:, order[:STIFFEST]]
+    return some
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:
