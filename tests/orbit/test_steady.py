@@ -62,10 +62,10 @@ def test_shares_of_the_time():
 
 def test_an_irregular_motion_has_an_extent():
     """Neighbouring motions part, so that it repeats after no number of periods; a longer one stays inside."""
-    found = found_at(IRREGULAR, 1.3)
+    found = found_at(IRREGULAR, 1.4)
     assert found.periods == 0 and np.isnan(found.error)
     near = replace(found.state, q=found.state.q * (1.0 + 1e-9))
-    one, other = (simulate(IRREGULAR, 1.3, 300, state) for state in (found.state, near))
+    one, other = (simulate(IRREGULAR, 1.4, 300, state) for state in (found.state, near))
     apart = [
         np.abs(a.amplitude - b.amplitude).max() for a, b in zip(one.measures(), other.measures(), strict=True)
     ]
@@ -73,6 +73,14 @@ def test_an_irregular_motion_has_an_extent():
     amplitude = np.array([measure.amplitude for measure in other.measures()])
     assert (amplitude.max(axis=0) < 1.2 * found.greatest).all()
     assert (amplitude.min(axis=0) > 0.5 * found.least).all()
+
+
+def test_an_irregular_motion_that_lingers_has_an_extent():
+    """Each start leads elsewhere; some of them to where hardly anything changes for hundreds of periods."""
+    rest = State.rest(IRREGULAR)
+    for k in range(6):
+        found = steady(System(IRREGULAR, 1.3), replace(rest, q=rest.q + 1e-12 * k))
+        assert isinstance(found, Steady) and found.periods == 0
 
 
 @pytest.mark.parametrize("damping", [0.0, 1e-5])

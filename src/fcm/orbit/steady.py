@@ -25,7 +25,8 @@ from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray
 
-FREE_CYCLES = (20, 40, 80, 160, 320, 640)  # simulated before each look whether the motion is steady
+FREE_CYCLES = (20, 40, 80, 160, 320, 640, 640, 640)  # simulated before each look whether it is steady
+MANY = 640  # of them tell how far a motion ranges; one that lingers, and then bursts out, is looked at again
 MOST_PERIODS = 8  # of the force, after which a steady motion may repeat
 NEAR = 0.1  # distance, relative to the motion, of a simulated state from the steady one that it belongs to
 NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
@@ -66,9 +67,8 @@ def steady(system: System, state: State) -> Steady | State:
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
-    cycles: list[Cycle] = []
     for count in FREE_CYCLES:
-        ends, cycles = deque([state], MOST_PERIODS + 1), []
+        ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
             ends.append(end)
             cycles.append(cycle)
@@ -77,7 +77,10 @@ def steady(system: System, state: State) -> Steady | State:
             found = _repeating(system, state, periods)
             if found is not None:
                 return found
-    return _ranging(cycles) or state
+        ranging = _ranging(cycles) if count >= MANY else None
+        if ranging is not None:
+            return ranging
+    return state
 
 
 def _candidates(ends: Sequence[State]) -> list[int]:
