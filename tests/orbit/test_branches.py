@@ -166,6 +166,25 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
             assert last.amplitude == pytest.approx(jump.after, rel=1e-2)
 
 
+def test_jumps_that_the_balance_does_not_have_at_folds_are_found_with_peaks_alone():
+    """Simulated beyond the one fold the motion comes to where it jumps; elsewhere its multipliers pass 1."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/lost_stability.toml")
+    alone = curve_of(scene, only="peaks")
+    first, second = (jump for jump in alone.jumps() if jump.sweep == "up")
+    assert alone.complete and first.frequency in alone.folds and second.frequency not in alone.folds
+    whole = curve_of(replace(scene, max_step=0.3 * scene.max_step))
+    assert alone.folds == pytest.approx(whole.folds, rel=1e-9) and alone.points < 0.1 * whole.points
+    for one, other in zip(alone.jumps(), whole.jumps(), strict=True):
+        assert (one.sweep, one.frequency) == (other.sweep, pytest.approx(other.frequency, rel=1e-8))
+        assert one.after == pytest.approx(other.after, rel=1e-4, nan_ok=True)
+    (last,) = simulate(scene, first.frequency + 1e-4, 600).measures(last=1)
+    assert last.amplitude == pytest.approx(first.after, rel=1e-2)
+    for omega, stable in ((second.frequency - 1e-4, True), (second.frequency + 1e-4, False)):
+        orbit = periodic(scene, omega, simulate(scene, 1.226, 600).end)
+        assert orbit.stable == stable
+    assert np.isnan(second.after).all()
+
+
 @pytest.mark.parametrize("loads", [[], [{"dof": "y", "force": 0.4}]], ids=["none", "static"])
 def test_a_peak_that_the_balance_has_exactly_is_that_of_its_own_dof(loads):
     """There the contact sticks, and the guess is the peak; close to it is one of the other dof."""

@@ -12,6 +12,7 @@ from fcm.continuation.newton import Newton
 from fcm.motion.state import State
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled
+from fcm.orbit.start import held
 from fcm.scene.model import FloatArray
 
 WINDOWS = (0.005, 0.02, 0.08)  # of the frequency, to either side of a guess: the next where one has nothing
@@ -53,7 +54,7 @@ def located(problem: OrbitProblem, guess: Guess, known: list[Sample]) -> Sample 
 
 
 def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
-    """The point of the curve in the plane through a guess, across the curve."""
+    """The point of the curve in the plane through a guess, across the curve; else at its frequency."""
     z = problem.z(guess.state, guess.frequency)
     other = problem.z(guess.beside[1], guess.beside[0])
     newton = Newton(problem)
@@ -63,7 +64,7 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
     size = float(np.linalg.norm(row))
     np.asarray(newton.scale)[:], np.asarray(newton.z)[:] = scale, z
     np.asarray(newton.row)[:] = row / size if size > 0.0 else np.eye(z.size)[-1]
-    if newton.correct(1.0) and newton.moved < ASTRAY:
+    if (newton.correct(1.0) or held(newton, z)) and newton.moved < ASTRAY:
         return np.array(newton.z)
     return None
 

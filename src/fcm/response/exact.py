@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.continuation import Path as Followed
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.problem import OrbitProblem
@@ -22,7 +23,7 @@ from fcm.response.around import refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import LEGS, Legs, TimeOver
-from fcm.response.only_peaks import peaks_alone
+from fcm.response.only_peaks import peaks_alone, peaks_of
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.trace import ResponseError
 from fcm.response.trace import traced_curve as balance_of
@@ -174,7 +175,8 @@ class ExactWork:
 
     def _made(self, scene: Scene, report: Report) -> Curve:
         if self.only_peaks:
-            return peaks_alone(scene, report)
+            alone = peaks_alone(scene, report)
+            return peaks_of(*_followed(scene, report, self.limit)) if alone is None else alone
         if self.at is None and (self.whole or len(scene.contacts) < FEWEST):
             return _traced(scene, report, self.limit)
         if self.at is None:
@@ -206,6 +208,11 @@ def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, limit: f
 
 
 def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
+    return orbit_curve(*_followed(scene, report, limit))
+
+
+def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitProblem, list[Followed], str]:
+    """All branches, and why they are not complete, else ''."""
     problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
     try:
         paths, without = explore(problem, legs)
@@ -218,7 +225,7 @@ def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
             f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
         )
         reason = over + where
-    return orbit_curve(problem, paths, reason)
+    return problem, paths, reason
 
 
 def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:

@@ -1,49 +1,77 @@
-"""``--only peaks``: of exact curves the peaks, folds and jumps alone, sought near those of the balance."""
+"""``--only peaks``: of exact curves the peaks, folds and jumps alone, sought near those of the balance.
+
+Where these are not the same one by one, the whole curve is followed, and the rest of it left out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from fcm.continuation import Mark
+from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
-from fcm.orbit.branch import shown
 from fcm.orbit.harmonic import state_of
-from fcm.orbit.located import Guess, located
+from fcm.orbit.located import SAME, Guess, located
 from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample
+from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
-from fcm.response.orbit_curve import curve_of_points
+from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.trace import ACCURACY, Wanted, traced_curve
 from fcm.results.jumps import Jump
 from fcm.results.result import Curve
 from fcm.run import Report
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
-NEAR = 0.05  # of the frequency of a jump of the balance: the exact fold that belongs to it
 
 
-def peaks_alone(scene: Scene, report: Report) -> Curve:
-    """The curve of a scene with its peaks, folds and jumps alone; not complete if one was not found."""
+def peaks_alone(scene: Scene, report: Report) -> Curve | None:
+    """The curve of a scene with its peaks, folds and jumps alone; None where the balance has others."""
     balanced = traced_curve(scene, Wanted(None, ACCURACY))
-    problem, known, missing = OrbitProblem(scene), list[Sample](), list[str]()
+    if not balanced.complete:
+        return None
+    problem, known, folds = OrbitProblem(scene), list[Sample](), dict[float, Sample]()
     guesses = list(_guesses(scene, balanced))
     for number, guess in enumerate(guesses):
         report(number / len(guesses), f"{number} of {len(guesses)} peaks and folds")
-        if located(problem, guess, known) is None:
-            what = "fold" if guess.dof is None else f"peak of {scene.modal.dofs[guess.dof]}"
-            missing.append(f"no exact {what} was found near {shown(scene, guess.frequency)}")
+        found = located(problem, guess, known)
+        if found is None:
+            return None
+        if guess.dof is None:
+            folds[guess.frequency] = found
     points = sorted(known, key=lambda one: one.frequency)
-    reason = "; ".join(dict.fromkeys(missing)) or balanced.reason
+    if not _paired(folds, points):
+        return None
+    jumps = [_jump(scene, jump, folds.get(jump.frequency)) for jump in balanced.jumps()]
+    there = [jump for jump in jumps if jump is not None]
+    return None if len(there) < len(jumps) else _curve(scene, points, there, problem.periods)
+
+
+def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
+    """The peaks, folds and jumps of a curve that was followed."""
+    whole = orbit_curve(problem, paths, reason)
+    tops = {peak.frequency for peak in whole.peaks.values()}
+    points = [one for path in paths for one in samples(problem, path)]
+    points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
+    return _curve(problem.scene, points, whole.jumps(), problem.periods, reason)
+
+
+def _curve(scene: Scene, points: list[Sample], jumps: list[Jump], periods: int, reason: str = "") -> Curve:
     curve = curve_of_points(scene, points, reason)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
     if curve.orbits is not None:
-        curve.orbits.span, curve.orbits.periods = scene.frequency_range, problem.periods
-        curve.orbits.jumps = list(_jumps(scene, balanced, points))
+        curve.orbits.span, curve.orbits.periods = scene.frequency_range, periods
+        curve.orbits.jumps = jumps
     return curve
+
+
+def _paired(folds: dict[float, Sample], points: list[Sample]) -> bool:
+    """Whether each fold of the balance is one of the motion, and the motion has no other."""
+    theirs = sorted(one.frequency for one in folds.values())
+    own = sorted(one.frequency for one in points if one.mark & Mark.FOLD)
+    return len(theirs) == len(own) and np.allclose(theirs, own, rtol=SAME, atol=0.0)
 
 
 def _guesses(scene: Scene, curve: Curve) -> Iterator[Guess]:
@@ -74,20 +102,16 @@ def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> Guess:
     return Guess(float(curve.frequency[k]), one, (float(curve.frequency[beside]), other), dof)
 
 
-def _jumps(scene: Scene, balanced: Curve, points: list[Sample]) -> Iterator[Jump]:
-    """The jumps of the balance at the exact folds that belong to them."""
-    folds = [one for one in points if one.mark & Mark.FOLD and one.stable]
-    for jump in balanced.jumps():
-        near = [one for one in folds if abs(one.frequency - jump.frequency) < NEAR * jump.frequency]
-        if not near:
-            continue
-        fold = min(near, key=lambda one: float(np.abs(one.measure.amplitude - jump.before).max()))
-        before = fold.measure.amplitude
-        yield Jump(jump.sweep, fold.frequency, before, _landed(scene, fold, jump.after))
+def _jump(scene: Scene, jump: Jump, fold: Sample | None) -> Jump | None:
+    """The jump of the balance at the exact fold that belongs to it; None where there is no such jump."""
+    if fold is None or not fold.stable:  # it jumps where it loses its stability, which is not looked for
+        return None
+    after = _landed(scene, fold, jump.after)
+    return None if after is None else Jump(jump.sweep, fold.frequency, fold.measure.amplitude, after)
 
 
-def _landed(scene: Scene, fold: Sample, wanted: np.ndarray) -> np.ndarray:
-    """The amplitude of the other stable motion at a fold, the nearest to the one of the balance."""
+def _landed(scene: Scene, fold: Sample, wanted: FloatArray) -> FloatArray | None:
+    """The amplitude of the other stable motion at a fold, the nearest to the balance's, if any is."""
     try:
         found = [one.measure.amplitude for one in near_balance(scene, fold.frequency) if one.stable]
     except SimulationError:
@@ -95,5 +119,5 @@ def _landed(scene: Scene, fold: Sample, wanted: np.ndarray) -> np.ndarray:
     size = fold.measure.amplitude.max()
     others = [one for one in found if np.abs(one - fold.measure.amplitude).max() > 1e-3 * size]
     if not others or not np.isfinite(wanted).all():
-        return np.full_like(fold.measure.amplitude, np.nan)
+        return None
     return min(others, key=lambda one: float(np.abs(one - wanted).max()))
