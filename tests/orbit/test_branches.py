@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -135,6 +136,28 @@ def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):
 def test_a_limit_of_time_is_said():
     curve = curve_of(between(yang(), 1.15, 1.27), limit=1e-9)
     assert not curve.complete and curve.reason.startswith("not finished in 1e-09 s of processor time, at ")
+
+
+def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do(monkeypatch):
+    """Without a limit of one's own, too; with what is said the curve is there, and nothing is said of it."""
+    bundled = fcm.load_scene("den-hartog").each_curve()[0]
+
+    def of(k_u):
+        return replace(bundled, contacts=(replace(bundled.contacts[0], k_u=k_u),))
+
+    monkeypatch.setattr("fcm.response.exact.ENOUGH", 1e-9)
+    curve = curve_of(of(1e12))
+    said = re.fullmatch(
+        r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "
+        r"as stiff as the structure there, so .*: try (\S+), nearly rigid; half of that tells how nearly",
+        curve.reason,
+    )
+    assert said and not curve.complete and not curve.points
+    enough = of(float(said[1]))
+    nearly, half = curve_of(enough), curve_of(of(0.5 * float(said[1])))
+    assert nearly.complete and half.complete
+    assert nearly.peaks["x"][0] == pytest.approx(half.peaks["x"][0], rel=1e-3)
+    assert "stiff" not in curve_of(enough, limit=1e-9).reason
 
 
 def test_sharp_resonances_take_few_periods_and_no_step_limit_changes_them():

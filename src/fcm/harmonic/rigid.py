@@ -18,8 +18,12 @@ TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
 ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth
 
 
-def too_stiff(system: System) -> str:
-    """Which contact's stiffness leaves no digits, and what to take instead; empty if none does."""
+def too_stiff(system: System, moves: bool = False) -> str:
+    """Which contact's stiffness leaves no digits, and what to take instead; empty if none does.
+
+    moves: whether what is said is of the motion in time, which has the digits, but of which every vibration
+    on a contact that sticks is followed.
+    """
     springs = system.springs(stuck=True)
     if not springs.size:
         return ""
@@ -30,9 +34,12 @@ def too_stiff(system: System) -> str:
         return ""
     contact, key = system.scene.contacts[worst // 2], ("k_u", "k_v")[worst % 2]
     instead = ENOUGH / receptance[worst]
+    why = "rounding decides when it slips or opens"
+    if moves:
+        why = f"a period may have {np.sqrt(ratio):.0e} vibrations on it, each with slip of its own"
     return (
         f"; the {key} of contact {contact.name} is {ratio:.0e} times as stiff as the structure there, so "
-        f"that rounding decides when it slips or opens: try {instead:.0e}, nearly rigid; "
+        f"that {why}: try {instead:.0e}, nearly rigid; "
         "half of that tells how nearly"
     )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.motion.errors import SimulationError
-from fcm.orbit.periodic import Orbit, periodic
+from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import first_point, starts
@@ -85,10 +85,12 @@ def trace_orbits(
     return branch_of(problem, follow(problem, z, span, forward, longest, (), said))
 
 
-def explore(problem: OrbitProblem, along: Follow = follow) -> tuple[list[Path], str]:
+def explore(
+    problem: OrbitProblem, along: Follow = follow, look: Look = without_end
+) -> tuple[list[Path], str]:
     """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
-    found, missed = starts(problem)
+    found, missed = starts(problem, look)
     paths = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along).paths
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join(missed[end] for end in ends)

@@ -16,7 +16,7 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.orbit.periodic import converged
+from fcm.orbit.periodic import Look, converged, without_end
 from fcm.orbit.residual_friction import always_stuck, resting_at, rooms
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
@@ -155,7 +155,7 @@ class _Way:
         return new
 
 
-def chosen(shot: Shot, wanted: FloatArray) -> Shot | None:
+def chosen(shot: Shot, wanted: FloatArray, look: Look = without_end) -> Shot | None:
     """The member that a scene chooses of the family that a motion belongs to, in as many steps as it takes.
 
     Parameters
@@ -169,7 +169,7 @@ def chosen(shot: Shot, wanted: FloatArray) -> Shot | None:
     done, share = 0.0, 1.0
     while done < 1.0 and share > SHORTEST:
         reach = min(done + share, 1.0)
-        new = _moved(shot, begin + reach * (end - begin))
+        new = _moved(shot, begin + reach * (end - begin), look=look)
         if new is None:
             share *= 0.25
         else:
@@ -177,7 +177,9 @@ def chosen(shot: Shot, wanted: FloatArray) -> Shot | None:
     return shot if done == 1.0 else None
 
 
-def _moved(shot: Shot, force: FloatArray, guess: FloatArray | None = None) -> Shot | None:
+def _moved(
+    shot: Shot, force: FloatArray, guess: FloatArray | None = None, look: Look = without_end
+) -> Shot | None:
     """The motion near another whose contacts rest where they would have the friction forces k_u w."""
     system, x = shot.system, shot.x.copy() if guess is None else guess
     change = -(force + _residual(shot))
@@ -186,7 +188,7 @@ def _moved(shot: Shot, force: FloatArray, guess: FloatArray | None = None) -> Sh
             x[system.f.start + choice.contact] += change[choice.contact]
     w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
     try:
-        found = converged(Shot(system, x, w, shot.periods), ITERATIONS)
+        found = converged(Shot(system, x, w, shot.periods), ITERATIONS, look)
     except SimulationError:
         return None
     return None if found is None else found[0]

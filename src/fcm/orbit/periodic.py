@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,7 +24,12 @@ TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
 MOST_ITERATIONS = 25  # of Newton's method
 RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
 STABLE = 1e-7  # by which a multiplier may exceed 1
+Look = Callable[[], None]  # called now and then; raises what ends the search
 FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess
+
+
+def without_end() -> None:
+    """A `Look` that lets the search take as long as it does."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,7 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
                 "and start from their end, or from a solution at a frequency nearby"
             )
         return orbit
-    return _approached(system)
+    return approached(system)
 
 
 def unloaded(scene: Scene) -> State:
@@ -113,12 +119,20 @@ def unloaded(scene: Scene) -> State:
     return State(rest.q, rest.velocity, friction)
 
 
-def _approached(system: System) -> Orbit:
-    """The periodic solution that a simulation from rest comes near to."""
+def approached(system: System, look: Look = without_end) -> Orbit:
+    """The periodic solution that a simulation from rest comes near to.
+
+    Raises
+    ------
+    SimulationError
+        If there is none.
+    """
     state, unstable = unloaded(system.scene), 0
     for cycles in FREE_CYCLES:
-        *_, (_, state) = cycles_from(system, cycles, state)
-        orbit = shoot(system, state)
+        for _, end in cycles_from(system, cycles, state):
+            look()
+            state = end
+        orbit = shoot(system, state, look)
         unstable += orbit is not None and not orbit.stable
         # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
         if orbit is not None and (orbit.stable or unstable > 1):
@@ -129,15 +143,17 @@ def _approached(system: System) -> Orbit:
     )
 
 
-def shoot(system: System, guess: State) -> Orbit | None:
+def shoot(system: System, guess: State, look: Look = without_end) -> Orbit | None:
     """Newton's method from a state at the forces' angle 0; None when it does not converge."""
-    found = converged(Shot(system, np.concatenate((guess.q, guess.velocity, guess.friction))))
+    x = np.concatenate((guess.q, guess.velocity, guess.friction))
+    found = converged(Shot(system, x), look=look)
     return None if found is None else closed(*found)
 
 
-def converged(shot: Shot, most: int = MOST_ITERATIONS) -> tuple[Shot, int] | None:
+def converged(shot: Shot, most: int = MOST_ITERATIONS, look: Look = without_end) -> tuple[Shot, int] | None:
     """The shot that closes, by Newton's method from one that does not, and the number of steps it took."""
     for iteration in range(most):
+        look()
         if shot.residual <= TOLERANCE:
             return shot, iteration
         better = _improved(shot)

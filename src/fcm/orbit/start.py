@@ -15,7 +15,7 @@ from fcm.motion.system import System
 from fcm.orbit.apart import Place, states_along
 from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
-from fcm.orbit.periodic import Orbit, periodic, shoot
+from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
@@ -25,42 +25,45 @@ ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then 
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
-def starts(problem: OrbitProblem) -> tuple[list[FloatArray], dict[float, str]]:
+def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatArray], dict[float, str]]:
     """Points z from which all branches are followed, and of ends of the range why one was not found there.
 
     At both ends, and at the resonances inside, near every solution of the balance, and where that has more
     than the motion, also beside the tops of its branches; where that leads to no
     stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
     the first solution of the balance of one harmonic that leads to a motion, anywhere in the range.
+    look is called now and then.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside, apart = inner_resonances(scene), False
     for omega in (*scene.frequency_range, *inside):
         guesses, before = balanced_states(scene, omega), len(found)
-        orbits = list(_shot(scene, omega, guesses))
+        orbits = list(_shot(scene, omega, guesses, look))
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
-                orbits += _from_rest(scene, omega, bool(orbits))
+                orbits += _from_rest(scene, omega, bool(orbits), look)
         except SimulationError as error:
             missed[omega] = str(error)
         for orbit in orbits:
             try:
-                _add(problem, found, first_point(problem, orbit))
+                _add(problem, found, first_point(problem, orbit, look))
             except SimulationError as error:
                 missed[omega] = str(error)
         apart = apart or len(found) - before < len(guesses)
     if apart and found:
-        found += _beside_tops(problem, found)
-    return found or _anywhere(problem), {omega: missed[omega] for omega in missed if omega not in inside}
+        found += _beside_tops(problem, found, look)
+    return found or _anywhere(problem, look), {
+        omega: missed[omega] for omega in missed if omega not in inside
+    }
 
 
-def _beside_tops(problem: OrbitProblem, known: list[FloatArray]) -> list[FloatArray]:
+def _beside_tops(problem: OrbitProblem, known: list[FloatArray], look: Look) -> list[FloatArray]:
     """Points beside the tops of the balance's branches, where it has more solutions than there are motions:
     a branch on which it leads away from an end of the range may be closed.
     """
     found = list(known)
-    for places in states_along(problem.scene):
-        there = [z for place in places[:TRIED] for z in _points(problem, place)]
+    for places in states_along(problem.scene, look):
+        there = [z for place in places[:TRIED] for z in _points(problem, place, look)]
         if there:  # some may lead to a lower branch
             _add(problem, found, max(there, key=lambda z: _height(problem, z)))
     return found[len(known) :]
@@ -72,21 +75,21 @@ def _height(problem: OrbitProblem, z: FloatArray) -> float:
     return 0.0 if shot is None else float(measure(shot.cycle).amplitude.max())
 
 
-def _points(problem: OrbitProblem, place: Place) -> Iterator[FloatArray]:
+def _points(problem: OrbitProblem, place: Place, look: Look) -> Iterator[FloatArray]:
     """The motion near a guess."""
     omega, guess = place
-    for orbit in _shot(problem.scene, omega, [guess]):
+    for orbit in _shot(problem.scene, omega, [guess], look):
         with suppress(SimulationError):
-            yield first_point(problem, orbit)
+            yield first_point(problem, orbit, look)
 
 
-def _anywhere(problem: OrbitProblem) -> list[FloatArray]:
+def _anywhere(problem: OrbitProblem, look: Look) -> list[FloatArray]:
     """The first point that the balance leads to, at frequencies across the range."""
     scene = problem.scene
     for omega in np.linspace(*scene.frequency_range, PLACES + 1)[::-1].tolist():
-        for orbit in _shot(scene, omega, _corrected_states(scene, omega)):
+        for orbit in _shot(scene, omega, _corrected_states(scene, omega), look):
             try:
-                return [first_point(problem, orbit)]
+                return [first_point(problem, orbit, look)]
             except SimulationError:
                 continue
     return []
@@ -128,21 +131,21 @@ def near_balance(scene: Scene, omega: float) -> Iterator[Orbit]:
     return _shot(scene, omega, balanced_states(scene, omega))
 
 
-def _shot(scene: Scene, omega: float, guesses: Iterable[State]) -> Iterator[Orbit]:
+def _shot(scene: Scene, omega: float, guesses: Iterable[State], look: Look = without_end) -> Iterator[Orbit]:
     """The motions that shooting finds from guesses."""
     for guess in guesses:
         try:
-            orbit = shoot(System(scene, omega), guess)
+            orbit = shoot(System(scene, omega), guess, look)
         except SimulationError:
             continue
         if orbit is not None:
             yield orbit
 
 
-def _from_rest(scene: Scene, omega: float, others: bool) -> list[Orbit]:
+def _from_rest(scene: Scene, omega: float, others: bool, look: Look = without_end) -> list[Orbit]:
     """The motion that one from rest comes to; none if there are others and this cannot be had."""
     try:
-        return [periodic(scene, omega)]
+        return [approached(System(scene, omega), look)]
     except SimulationError:
         if others:
             return []
@@ -165,7 +168,7 @@ def _add(problem: OrbitProblem, found: list[FloatArray], z: FloatArray) -> None:
         found.append(z)
 
 
-def first_point(problem: OrbitProblem, orbit: Orbit) -> FloatArray:
+def first_point(problem: OrbitProblem, orbit: Orbit, look: Look = without_end) -> FloatArray:
     """The point z of a solution, its stuck contacts as little stressed as can be, or as the scene starts.
 
     Raises
@@ -175,7 +178,7 @@ def first_point(problem: OrbitProblem, orbit: Orbit) -> FloatArray:
     """
     z = problem.z(orbit.state, orbit.frequency)
     near = problem.shot(z)
-    member = None if near is None else chosen(near, problem.shooting.resting)
+    member = None if near is None else chosen(near, problem.shooting.resting, look)
     if member is not None:
         z = np.append(member.x[problem.free], orbit.frequency)
     newton = Newton(problem)

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from fcm.continuation import Path as Followed
+from fcm.harmonic.rigid import too_stiff
+from fcm.harmonic.system import System
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.problem import OrbitProblem
@@ -37,6 +39,7 @@ METHOD = "exact"
 ONLY = "of the exact curves all points but their peaks, folds and jumps, sought near those of the balance"
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
+ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 
 
@@ -130,7 +133,8 @@ class _Run:
         return response
 
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
-        mark, batches = fingerprint(METHOD, self.work), [(one,) for one in scenes]
+        mark = fingerprint(METHOD, replace(self.work, limit=None))
+        batches = [(one,) for one in scenes]
         curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, *LEGS))
         contacts = tuple(contact.name for contact in scenes[0].contacts)
         return Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
@@ -212,10 +216,15 @@ def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
 
 
 def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitProblem, list[Followed], str]:
-    """All branches, and why they are not complete, else ''."""
+    """All branches, and why they are not complete, else ''.
+
+    Where a contact is too stiff for that to end, it is said after so long; a limit of one's own is kept.
+    """
+    stiff = _too_stiff(scene)
+    limit = ENOUGH if limit is None and stiff else limit
     problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
     try:
-        paths, without = explore(problem, legs)
+        paths, without = explore(problem, legs, legs.look)
         reason = incomplete(scene, paths, without)
     except (KeyboardInterrupt, TimeOver) as stop:
         legs.keep()
@@ -225,7 +234,14 @@ def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitP
             f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
         )
         reason = over + where
-    return problem, paths, reason
+    return problem, paths, reason + stiff if reason else ""
+
+
+def _too_stiff(scene: Scene) -> str:
+    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''."""
+    whole = scene.whole()
+    resists = whole.contacts and whole.modal.frequency.all()
+    return too_stiff(System(whole, (1,)), moves=True) if resists else ""
 
 
 def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:

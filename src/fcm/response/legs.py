@@ -88,6 +88,10 @@ class Legs:
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
         self.report(covered, f"{stage.kept.number} points")
+        self.look()
+
+    def look(self) -> None:
+        """Raise `TimeOver` when it is."""
         if self.end is not None and time.monotonic() > self._ask:
             if time.process_time() > self.end:
                 raise TimeOver
