@@ -32,8 +32,7 @@ NEAR = 0.1  # distance, relative to the motion, of a simulated state from the st
 NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
 AGAIN = 1e-6  # difference of two states, relative to the motion, below which they are the same
 DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
-PARTS = 4  # of the cycles, from one to the next of which the spread of amplitudes grows or decays throughout
-LASTING = 0.5  # if the motion does: then the least spread is less than this part of the greatest
+LASTING = 0.5  # part of the spread of cycle amplitudes in the one half that the other must have
 REACHES = (
     0.03,
     0.1,
@@ -156,9 +155,8 @@ def _ranging(cycles: Sequence[Cycle]) -> Steady | None:
     drift = np.abs(second.mean(axis=0) - first.mean(axis=0))
     if (drift > DRIFT * np.ptp(amplitude, axis=0)).any():
         return None
-    spread = np.array([part.std(axis=0) for part in np.array_split(amplitude, PARTS)])
-    one_way = np.abs(np.sign(np.diff(spread, axis=0)).sum(axis=0)) == PARTS - 1  # not so in single bursts
-    if (one_way & (spread.min(axis=0) < LASTING * spread.max(axis=0))).any():
+    spreads = first.std(axis=0), second.std(axis=0)
+    if (np.minimum(*spreads) < LASTING * np.maximum(*spreads)).any():
         return None
     start, none = cycles[0], np.zeros(0, dtype=np.complex128)
     system, y = start.system, np.asarray(start.segments.y)[0]
