@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 
 import netCDF4
 import numpy as np
@@ -11,7 +12,10 @@ import pytest
 import fcm as package
 from fcm.response import trace
 from fcm.response.exact import trace_exact
+from fcm.response.groups import KINDS
+from fcm.results.gist import without_points
 from fcm.results.jumps import swept
+from fcm.run.records import unpacked
 
 SCENE = """
 [modal]
@@ -78,6 +82,26 @@ def test_at_the_peak_no_motion_stays(scene, curve):
     assert peak.stable == 0.0
     (exact,) = trace_exact(package.load_scene(scene), (peak.frequency,)).curves
     assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * peak.amplitude
+
+
+def test_of_peaks_alone_a_loss_of_stability_is_said_to_be_somewhere(scene):
+    """No fold tells where: the whole curve has it, and those of its peaks the way on which it is."""
+    loaded = package.load_scene(scene)
+    (whole,), (alone,) = (trace_exact(loaded, only=only).curves for only in (None, "peaks"))
+    assert not whole.folds and alone.jumps() == []
+    assert {jump.sweep for jump in whole.jumps()} == {"up", "down"}
+    for jump in whole.jumps():
+        ways = [sorted((one.start, one.end)) for one in alone.swept().untold if one.sweep == jump.sweep]
+        assert any(low < jump.frequency < high for low, high in ways)
+
+
+def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
+    """Of a curve without its points, and of exact peaks alone: what sweeps meet is kept with them."""
+    (alone,) = trace_exact(package.load_scene(scene), only="peaks").curves
+    for one, said in ((without_points(curve), lambda c: c.gist.swept), (alone, lambda c: c.swept())):
+        (kept,) = unpacked(pickle.dumps([one]), KINDS)
+        ways, found = said(one).untold, said(kept).untold
+        assert ways and [(w.start, w.end) for w in ways] == [(w.start, w.end) for w in found]
 
 
 def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):

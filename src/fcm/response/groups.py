@@ -12,7 +12,7 @@ import numpy as np
 from fcm.harmonic.proportion import forget
 from fcm.response.trace import Wanted, traced_curve
 from fcm.results.gist import Gist, without_points
-from fcm.results.jumps import Jump
+from fcm.results.jumps import Jump, Swept, Untold
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits
 from fcm.results.peak import Peak
@@ -24,7 +24,7 @@ Group = Sequence[Scene]
 SLOW = (
     1.0  # [s] after which finished curves are saved before their group is: no more is lost to an interruption
 )
-KINDS = (Curve, Gist, Orbits, Jump, Peak, NonlinearMode, Resonance)  # what results consist of
+KINDS = (Curve, Gist, Orbits, Swept, Jump, Untold, Peak, NonlinearMode, Resonance)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
     *("table_error", "error", "truncation_error"),

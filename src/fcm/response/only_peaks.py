@@ -19,7 +19,7 @@ from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.trace import ACCURACY, Wanted, traced_curve
-from fcm.results.jumps import Jump
+from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.scene.model import FloatArray, Scene
@@ -44,9 +44,12 @@ def peaks_alone(scene: Scene, report: Report) -> Curve | None:
     points = sorted(known, key=lambda one: one.frequency)
     if not _paired(folds, points):
         return None
-    jumps = [_jump(scene, jump, folds.get(jump.frequency)) for jump in balanced.jumps()]
+    swept = balanced.swept()
+    jumps = [_jump(scene, jump, folds.get(jump.frequency)) for jump in swept.jumps]
     there = [jump for jump in jumps if jump is not None]
-    return None if len(there) < len(jumps) else _curve(scene, points, there, problem.periods)
+    if swept.untold or len(there) < len(jumps):
+        return None
+    return _curve(scene, points, Swept(there, []), problem.periods)
 
 
 def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
@@ -55,15 +58,15 @@ def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve
     tops = {peak.frequency for peak in whole.peaks.values()}
     points = [one for path in paths for one in samples(problem, path)]
     points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
-    return _curve(problem.scene, points, whole.jumps(), problem.periods, reason)
+    return _curve(problem.scene, points, whole.swept(), problem.periods, reason)
 
 
-def _curve(scene: Scene, points: list[Sample], jumps: list[Jump], periods: int, reason: str = "") -> Curve:
+def _curve(scene: Scene, points: list[Sample], swept: Swept, periods: int, reason: str = "") -> Curve:
     curve = curve_of_points(scene, points, reason)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
     if curve.orbits is not None:
         curve.orbits.span, curve.orbits.periods = scene.frequency_range, periods
-        curve.orbits.jumps = jumps
+        curve.orbits.swept = swept
     return curve
 
 

@@ -20,6 +20,7 @@ from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.visit import Visitor
+from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
@@ -73,7 +74,8 @@ def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
     """The points at which sweeps were steady, in order; complete without a reason, its own or that one."""
     curve = _curve(scene, visitor.points, reason or visitor.reason, everywhere=True)
     if curve.orbits is not None:
-        curve.orbits.sweep, curve.orbits.jumps = np.array(visitor.sweep, dtype="<U4"), visitor.jumps
+        curve.orbits.sweep = np.array(visitor.sweep, dtype="<U4")
+        curve.orbits.swept = Swept(visitor.jumps, [])
     return curve
 
 

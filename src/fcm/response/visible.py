@@ -44,8 +44,8 @@ def visible(response: Response, scene: Scene) -> Response:
 
 def _curve(curve: Curve, shown: Any, dofs: tuple[str, ...]) -> Curve:
     orbits = None if curve.orbits is None else _at(curve.orbits, ORBITS, shown)
-    if orbits is not None and orbits.jumps is not None:
-        orbits = replace(orbits, jumps=[_at(jump, ("before", "after"), shown) for jump in orbits.jumps])
+    if orbits is not None and orbits.swept is not None:
+        orbits = replace(orbits, swept=orbits.swept.at(shown))
     found: Curve = _at(curve, POINTS, shown)
     harmonic = None if curve.harmonic is None else curve.harmonic[..., shown]
     if (by := curve.sensitivity) is not None:

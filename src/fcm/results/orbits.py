@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.jumps import Jump
+from fcm.results.jumps import Swept
 
 
 @dataclass
@@ -22,7 +22,7 @@ class Orbits:
     cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
     family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
     family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
-    jumps: list[Jump] | None = None  # that the sweeps met; None where the curve itself tells
+    swept: Swept | None = None  # what slow sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
     # left out keep of their slip limits, or of their gaps; nan where computed, no contacts where none was

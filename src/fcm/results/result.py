@@ -84,8 +84,8 @@ class Curve:
 
     def swept(self) -> Swept:
         """What a slow upward and a slow downward sweep of the frequency meet."""
-        if self.orbits is not None and self.orbits.jumps is not None:
-            return Swept(self.orbits.jumps, [])
+        if self.orbits is not None and self.orbits.swept is not None:
+            return self.orbits.swept
         if self.level is not None or self.mode is not None:
             return Swept([], [])
         return swept(self.frequency, self.amplitude, self.stable)
