@@ -91,12 +91,14 @@ def _sweep(
     bears = stable != 0.0
     usable = bears[:-1] & bears[1:] & (rises != 0.0) & np.isfinite(rises)
     onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
+    unsure = bool(np.isnan(stable).any())
     visited: set[int] = set()
     start, told = (float(frequency[at]), amplitude[at]), bool(stable[at] == 1.0)
     while at not in visited:
         walked = _walked(at, onwards)
         visited.update(walked)
-        _note_untold(sweep, (frequency, amplitude, stable), walked, start, told, found)
+        if unsure:
+            _note_untold(sweep, (frequency, amplitude, stable), walked, start, told, found)
         at = walked[-1]
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
@@ -135,7 +137,7 @@ def _note_untold(
 ) -> None:
     """Note the ways on which stability is not told, of a walk that begins before its first point."""
     frequency, amplitude, stable = curve
-    unknown = np.concatenate(([not told], np.isnan(stable[walked])))
+    unknown = np.array([not told, *np.isnan(stable[walked]).tolist()])
     if stable[walked[0]] == 0.0 or not unknown.any():
         return
     edges = np.diff(unknown.astype(int), prepend=0, append=0)

@@ -27,8 +27,10 @@ def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
     >>> stability_at_top(np.array([[1.0, 1.0], [2.0, 0.5], [2.0, 2.0]]), np.array([np.nan, 1.0, 0.0]))
     array([1., 0.])
     """
-    if not np.isfinite(amplitude).any():
-        return np.full(amplitude.shape[1], np.nan)
-    there = amplitude >= (1.0 - SAME) * np.nanmax(amplitude, axis=0)
-    told, untold = ((there & one[:, None]).any(axis=0) for one in (stable == 1.0, np.isnan(stable)))
+    top = np.fmax.reduce(amplitude, axis=0, initial=np.nan)  # NaN where there is no amplitude
+    there = amplitude >= (1.0 - SAME) * top
+    told = (there & (stable == 1.0)[:, None]).any(axis=0)
+    if told.all():
+        return told.astype(np.float64)
+    untold = (there & np.isnan(stable)[:, None]).any(axis=0) | np.isnan(top)
     return np.where(told, 1.0, np.where(untold, np.nan, 0.0))
