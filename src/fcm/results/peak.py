@@ -31,6 +31,6 @@ def stability_at_top(amplitude: FloatArray, stable: FloatArray) -> FloatArray:
     there = amplitude >= (1.0 - SAME) * top
     told = (there & (stable == 1.0)[:, None]).any(axis=0)
     if told.all():
-        return told.astype(np.float64)
+        return np.ones(told.size)
     untold = (there & np.isnan(stable)[:, None]).any(axis=0) | np.isnan(top)
     return np.where(told, 1.0, np.where(untold, np.nan, 0.0))
