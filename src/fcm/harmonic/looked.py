@@ -34,8 +34,13 @@ class Looked:
         self._places: list[float] = []  # with a verdict, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
         self.fold = (path.mark & Mark.FOLD) != 0
-        self.length, self.turned = _lengths(path), _turned(system, path)
+        self.turned = _turned(system, path)
         self._system, self._seen, self._apart = system, dict[float, Seen](), dict[float, float]()
+
+    @cached_property
+    def length(self) -> FloatArray:
+        """Way along the path up to each point, which only where a window may be hidden is asked for."""
+        return _lengths(self.path)
 
     def verdict(self, i: int) -> Verdict:
         """Of a point."""

@@ -77,7 +77,7 @@ def _followed(system: System, omega: float, linear: float, top: float) -> Found:
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
     found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
-    complete = path.status in (Status.COMPLETE, Status.RETURNED) and not _lost(path, (1.0,))
+    complete = path.status in (Status.COMPLETE, Status.RETURNED)
     return Found(omega, found, complete, _reach(path.status, path.parameter), _turns(path.parameter))
 
 
@@ -113,13 +113,13 @@ def _hasty(system: System, omega: float, linear: float, top: float, stations: tu
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
         if path.status is not Status.STALLED:
             break
-    return path
+    return replace(path, status=Status.STALLED) if _lost(path, stations) else path
 
 
 def _lost(path: Path, stations: tuple[float, ...]) -> bool:
     """Whether a curve leads across one of its stations without a point there."""
-    before, after = path.parameter[:-1], path.parameter[1:]
-    return any(bool(((before - one) * (after - one) < 0.0).any()) for one in stations)
+    offs = [path.parameter - one for one in stations]
+    return any(bool((off[:-1] * off[1:] < 0.0).any()) for off in offs)
 
 
 def few_of(system: System) -> int:
