@@ -13,6 +13,7 @@ from scipy.optimize import minimize_scalar
 import fcm
 from fcm.continuation import Status, follow
 from fcm.motion import State, simulate
+from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic
 from fcm.orbit.branch import incomplete
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
@@ -117,6 +118,28 @@ def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said()
     assert off_after_a_period(scene, z) < 1e-9
     piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), True, scene.max_step)
     assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""
+
+
+def test_of_an_end_without_a_start_it_is_said_what_the_motion_does_there():
+    """Simulated for thousands of periods it ranges as it did; the other rests on a friction of its own."""
+    scene = lightly_damped(13)
+    omega = scene.frequency_range[1]
+    with pytest.raises(SimulationError) as error:
+        periodic(scene, omega)
+    said = re.search(
+        r"last 160 lies between (\S+) and (\S+), and neither .*: it is irregular", str(error.value)
+    )
+    assert said and "settles only in some 2e+04 cycles" in str(error.value)
+    later = [one.amplitude.max() for one in simulate(scene, omega, 4000).measures(last=160)]
+    least, greatest = float(said[1]), float(said[2])
+    assert np.ptp(later) > 0.5 * (greatest - least) and least < np.mean(later) < greatest
+    scene = lightly_damped(22)
+    (orbit,) = near_balance(scene, scene.frequency_range[1])
+    with pytest.raises(SimulationError, match=r"the contact c2 always sticks, on a residual friction"):
+        first_point(OrbitProblem(scene), orbit)
+    contact, at = scene.contacts[2], scene.modal.shapes.T @ orbit.state.q
+    assert set(orbit.states[2]) == {"E"}
+    assert abs(orbit.state.friction[2] - contact.k_u * (contact.tangential @ at)) > 1.0
 
 
 def test_an_interrupted_curve_goes_on_from_its_last_point(tmp_path):

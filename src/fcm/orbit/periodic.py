@@ -24,6 +24,8 @@ TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
 MOST_ITERATIONS = 25  # of Newton's method
 RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
 STABLE = 1e-7  # by which a multiplier may exceed 1
+DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
+LEFT = 0.01  # part of a disturbance that damping leaves of it, when it has settled
 Look = Callable[[], None]  # called now and then; raises what ends the search
 FREE_CYCLES = (10, 20, 40, 80, 160)  # run before each attempt when there is no guess
 
@@ -129,8 +131,10 @@ def approached(system: System, look: Look = without_end) -> Orbit:
     """
     state, unstable = unloaded(system.scene), 0
     for cycles in FREE_CYCLES:
-        for _, end in cycles_from(system, cycles, state):
+        amplitudes = list[float]()
+        for cycle, end in cycles_from(system, cycles, state):
             look()
+            amplitudes.append(float(measure(cycle).amplitude.max(initial=0.0)))
             state = end
         orbit = shoot(system, state, look)
         unstable += orbit is not None and not orbit.stable
@@ -139,7 +143,23 @@ def approached(system: System, look: Look = without_end) -> Orbit:
             return orbit
     raise SimulationError(
         f"the motion from rest at {system.omega:g} rad/s has not become periodic in {sum(FREE_CYCLES)} "
-        "cycles; it may grow without end, repeat only after several periods, or need a guess"
+        f"cycles; {_neither(system, np.array(amplitudes))}"
+    )
+
+
+def _neither(system: System, amplitude: FloatArray) -> str:
+    """What a motion does that has not become periodic, by the greatest amplitudes of its last cycles."""
+    first, second = np.array_split(amplitude, 2)
+    if abs(second.mean() - first.mean()) > DRIFT * np.ptp(amplitude):
+        return "it may grow without end, repeat only after several periods, or need a guess"
+    modal = system.scene.modal
+    rate = float((modal.damping * modal.frequency).min())
+    last = -np.log(LEFT) / rate / system.period if rate > 0.0 else np.inf
+    slow = f", or settles only in some {last:.1g} cycles" if last > sum(FREE_CYCLES) else ""
+    return (
+        f"the amplitude of its last {amplitude.size} lies between {amplitude.min():.4g} and "
+        f"{amplitude.max():.4g}, and neither grows nor decays: it is irregular, or repeats only after "
+        f"several periods{slow}; --at has the extent of such a motion"
     )
 
 

@@ -17,6 +17,7 @@ from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
 
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
@@ -183,11 +184,23 @@ def first_point(problem: OrbitProblem, orbit: Orbit, look: Look = without_end) -
         z = np.append(member.x[problem.free], orbit.frequency)
     newton = Newton(problem)
     if not held(newton, z):
+        if near is not None and member is None and any(choice.gap for choice in near.chosen):
+            raise SimulationError(_elsewhere(problem.scene, orbit, near))
         raise SimulationError(
             f"the solution at {orbit.frequency:g} rad/s to start from is not determined: a mode is free to "
             "drift, or resonates without damping; add damping, or try another range"
         )
     return np.array(newton.z)
+
+
+def _elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
+    """What is said of a solution whose contacts cannot rest where the scene starts."""
+    names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
+    return (
+        f"of the solution found at {orbit.frequency:g} rad/s the contact {names} always sticks, on a "
+        "residual friction of its own, and with that of [start] there is none near it; give [start] another "
+        "friction"
+    )
 
 
 def held(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
