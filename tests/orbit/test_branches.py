@@ -16,6 +16,7 @@ from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic
 from fcm.orbit.branch import incomplete
+from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
 from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
@@ -118,6 +119,19 @@ def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said()
     assert off_after_a_period(scene, z) < 1e-9
     piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), True, scene.max_step)
     assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""
+
+
+def test_a_motion_is_reached_from_one_with_more_damping():
+    scene = lightly_damped(22)
+    easier, factor = more_damped(scene)
+    assert easier.modal.damping == pytest.approx(factor * scene.modal.damping) and factor > 100.0
+    low, high = scene.frequency_range
+    omega = low + 5.0 / 12.0 * (high - low)
+    z = first_point(OrbitProblem(easier), next(near_balance(easier, omega)))
+    assert off_after_a_period(scene, z) > 1e-3
+    reached = less_damped(scene, z, factor)
+    assert reached[-1] == omega and off_after_a_period(scene, reached) < 1e-9
+    assert more_damped(easier) is None  # it has enough
 
 
 def test_of_an_end_without_a_start_it_is_said_what_the_motion_does_there():

@@ -8,9 +8,9 @@ import numpy as np
 
 from fcm.continuation import Mark
 from fcm.continuation.newton import Newton
+from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled
-from fcm.orbit.start import held
 from fcm.scene.model import FloatArray
 
 

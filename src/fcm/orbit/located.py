@@ -10,9 +10,9 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Path, follow
 from fcm.continuation.newton import Newton
 from fcm.motion.state import State
+from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled
-from fcm.orbit.start import held
 from fcm.scene.model import FloatArray
 
 WINDOWS = (0.005, 0.02, 0.08)  # of the frequency, to either side of a guess: the next where one has nothing

@@ -13,8 +13,10 @@ from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.apart import Place, states_along
+from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
+from fcm.orbit.held import held
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
@@ -22,6 +24,7 @@ from fcm.scene.model import FloatArray, Scene
 
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
+FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
 ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
@@ -32,7 +35,8 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatA
     At both ends, and at the resonances inside, near every solution of the balance, and where that has more
     than the motion, also beside the tops of its branches; where that leads to no
     stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
-    the first solution of the balance of one harmonic that leads to a motion, anywhere in the range.
+    the first solution of the balance of one harmonic that leads to a motion, anywhere in the range; else from
+    the first motion with more damping that leads to one without.
     look is called now and then.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
@@ -93,7 +97,23 @@ def _anywhere(problem: OrbitProblem, look: Look) -> list[FloatArray]:
                 return [first_point(problem, orbit, look)]
             except SimulationError:
                 continue
-    return []
+    return next(_by_damping(problem, look), [])
+
+
+def _by_damping(problem: OrbitProblem, look: Look) -> Iterator[list[FloatArray]]:
+    """The points that motions with more damping lead to, at frequencies across the range."""
+    scene = problem.scene
+    more = more_damped(scene)
+    if more is None:
+        return
+    easier, factor = more
+    for omega in np.linspace(*scene.frequency_range, FEWER + 1).tolist():
+        for orbit in near_balance(easier, omega):
+            look()
+            with suppress(SimulationError):
+                z = less_damped(scene, first_point(OrbitProblem(easier), orbit, look), factor)
+                if z is not None:
+                    yield [z]
 
 
 def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
@@ -201,16 +221,3 @@ def _elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
         "residual friction of its own, and with that of [start] there is none near it; give [start] another "
         "friction"
     )
-
-
-def held(newton: Newton, z: FloatArray, reach: float = 1.0) -> bool:
-    """Whether Newton's method comes to the curve from near z, with the frequency held."""
-    newton.problem.measure(z)
-    np.asarray(newton.scale)[:] = newton.problem.scale
-    np.asarray(newton.z)[:] = z
-    row = np.asarray(newton.row)
-    row[:-1], row[-1] = 0.0, 1.0
-    if not newton.correct(reach):
-        return False
-    newton.z[-1] = z[-1]
-    return True

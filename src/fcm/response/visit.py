@@ -21,10 +21,11 @@ from fcm.motion.measure import Measure
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.branch import shown
+from fcm.orbit.held import held
 from fcm.orbit.periodic import shoot
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled, settled
-from fcm.orbit.start import first_point, held, solution_at
+from fcm.orbit.start import first_point, solution_at
 from fcm.orbit.steady import FREE_CYCLES, steady
 from fcm.results.jumps import Jump
 from fcm.run import Report
