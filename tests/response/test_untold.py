@@ -84,15 +84,13 @@ def test_at_the_peak_no_motion_stays(scene, curve):
     assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * peak.amplitude
 
 
-def test_of_peaks_alone_a_loss_of_stability_is_said_to_be_somewhere(scene):
-    """No fold tells where: the whole curve has it, and those of its peaks the way on which it is."""
+def test_of_peaks_alone_a_loss_of_stability_is_where_the_whole_curve_has_it(scene):
+    """No fold tells where, and the balance does not know: the whole curve is followed."""
     loaded = package.load_scene(scene)
     (whole,), (alone,) = (trace_exact(loaded, only=only).curves for only in (None, "peaks"))
-    assert not whole.folds and alone.jumps() == []
-    assert {jump.sweep for jump in whole.jumps()} == {"up", "down"}
-    for jump in whole.jumps():
-        ways = [sorted((one.start, one.end)) for one in alone.swept().untold if one.sweep == jump.sweep]
-        assert any(low < jump.frequency < high for low, high in ways)
+    assert not whole.folds and alone.points < whole.points
+    jumps = [[(jump.sweep, jump.frequency) for jump in one.jumps()] for one in (whole, alone)]
+    assert jumps[0] == jumps[1] and {sweep for sweep, _ in jumps[0]} == {"up", "down"}
 
 
 def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
@@ -100,8 +98,11 @@ def test_what_is_kept_of_an_interrupted_run_is_read_again(scene, curve):
     (alone,) = trace_exact(package.load_scene(scene), only="peaks").curves
     for one, said in ((without_points(curve), lambda c: c.gist.swept), (alone, lambda c: c.swept())):
         (kept,) = unpacked(pickle.dumps([one]), KINDS)
-        ways, found = said(one).untold, said(kept).untold
-        assert ways and [(w.start, w.end) for w in ways] == [(w.start, w.end) for w in found]
+        met, found = (
+            ([w.start for w in of.untold], [jump.frequency for jump in of.jumps])
+            for of in (said(one), said(kept))
+        )
+        assert any(met) and met == found
 
 
 def test_it_begins_at_the_last_point_that_is_known_to_be_stable(curve):
