@@ -127,6 +127,17 @@ def test_unstable_parts_are_dashed_and_join_the_stable_ones():
     assert np.flatnonzero(np.isfinite(dashed.get_ydata())).tolist() == list(range(79, 91))
 
 
+def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so():
+    stable, untold = np.ones((2, 201), bool)
+    stable[80:90], untold[:] = False, False
+    untold[120:140] = True
+    figure = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable, untold=untold)))
+    solid, dashed, dotted = figure.axes[0].lines
+    assert np.isnan(solid.get_ydata()).sum() == 30 and np.isfinite(dashed.get_ydata()).sum() == 12
+    assert np.flatnonzero(np.isfinite(dotted.get_ydata())).tolist() == list(range(119, 141))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["whether it is stable is not told"]
+
+
 @pytest.mark.parametrize(
     ("least", "log", "scale"),
     [(6.0, None, "linear"), (4.0, None, "log"), (4.0, False, "linear"), (6.0, True, "log")],

@@ -51,6 +51,14 @@ def test_curves_come_without_their_padding(path):
     assert first.regimes == {"E", "EPEN"} and second.regimes == {"S"}
 
 
+def test_what_is_not_told_is_not_stable(path):
+    """Neither is it unstable; padding is no point of which anything could be told."""
+    with netCDF4.Dataset(path, "a") as data:
+        data["stable"][1, 0] = NAN
+    first, second = read_response(path).curves
+    assert first.untold.tolist() == [False] * 3 and second.untold.tolist() == [True, False]
+
+
 def test_its_unstable_part_is_drawn_dashed(path):
     (axes,) = draw_response(read_response(path)).axes
     assert [line.get_linestyle() for line in axes.lines] == ["-", "--", "-"]

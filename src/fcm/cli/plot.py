@@ -68,7 +68,8 @@ def response(
 ) -> None:
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
-    Unstable parts are dashed, and the errors of the curves drawn below them, where the file knows them.
+    Unstable parts are dashed, those of which that is not told dotted, and the errors of the curves drawn
+    below them, where the file knows them.
     """
     from fcm.plot import draw_response, read_points, read_response
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 SHARES = (3.1, 1.0)  # heights of the curves and of the panel
 HEIGHT = 4.9  # [inch] of a figure with both
 RANGE = (1e-8, 1.0)  # of errors; the same in every picture, so that pictures can be compared
-FADED = "may err by more than 20 %"  # what is faded
-ALPHA = 0.3  # how much of it is left
 _BINS = 120  # over the frequencies
 _LEAST = 1e-30  # drawn in the place of 0, far below the panel
 _GREY = "0.8"
@@ -44,28 +42,24 @@ def draw_errors(
 
 
 def name_errors(
-    figure: Figure, curves: Sequence[DrawnCurve], colours: Sequence[str], width: float, faded: bool
+    figure: Figure,
+    curves: Sequence[DrawnCurve],
+    colours: Sequence[str],
+    width: float,
+    notes: Mapping[str, Line2D],
 ) -> None:
-    """What the lines and the area of the panel are, and why a part of a curve is faded."""
+    """What the lines and the area of the panel are, and notes of lines of the curves."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
     names: dict[str, Line2D | Patch] = {
         "higher harmonics left out": Line2D([], [], color=colours[0], linewidth=width)
     }
-    if faded:
-        names[FADED] = faded_line(colours[0], width)
+    names |= notes
     if (_largest(curves)[1] > 0.0).any():
         of_all = " (largest of all)" if len(curves) > 1 else ""
         names[f"table, before correction{of_all}"] = Patch(color=_GREY)
     figure.legend(names.values(), names.keys(), loc="outside lower center", ncols=2)
-
-
-def faded_line(colour: str, width: float) -> Line2D:
-    """As parts of curves are drawn whose error may be large."""
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], color=colour, linewidth=width, alpha=ALPHA)
 
 
 def _finish(axes: Axes) -> None:

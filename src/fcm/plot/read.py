@@ -33,7 +33,8 @@ class DrawnCurve:
     parameters: dict[str, float]
     frequency: FloatArray  # (point,) in the file's unit, or the level of the forces
     amplitude: FloatArray  # (point, dof)
-    stable: BoolArray | None = None  # (point,)
+    stable: BoolArray | None = None  # (point,) where that is not told, too
+    untold: BoolArray | None = None  # (point,) where it is not, though elsewhere it is
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative
@@ -148,11 +149,13 @@ def _curve(
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
     judged = stable is not None and bool(np.isfinite(stable[there]).any())
+    untold = None if stable is None else np.isfinite(frequency[there]) & np.isnan(stable[there])
     return DrawnCurve(
         parameters,
         frequency[there],
         amplitude[there],
-        stable[there] != 0 if stable is not None and judged else None,  # unknown points count as stable
+        stable[there] != 0 if stable is not None and judged else None,
+        untold if judged else None,
         frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
         *(None if error is None else error[there] for error in errors),
     )

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.error_panel import (
-    ALPHA,
-    FADED,
     HEIGHT,
     SHARES,
     draw_errors,
-    faded_line,
     has_errors,
     name_errors,
 )
@@ -28,11 +25,18 @@ from fcm.rotation import unit_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _HEADROOM = 1.05  # at least, above the highest amplitude
 _DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
-_DASHES = (0, (3, 1.6))
+LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
+_LINE: LineStyle = "-"
+_DASHES: LineStyle = (0, (3.0, 1.6))
+_DOTS: LineStyle = (0, (1.0, 1.0))
+_FADED = "may err by more than 20 %"  # what is faded,
+_ALPHA = 0.3  # and how much of it is left
+_UNTOLD = "whether it is stable is not told"  # what is dotted
 _MOST_TICKS = 9  # of a colour bar
 _DOUBTFUL = 0.2  # estimated error beyond which a curve is faded
 _UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
@@ -46,7 +50,8 @@ def draw_response(
     errors: bool = True,
     points: DrawnPoints | None = None,
 ) -> Figure:
-    """The figure of one degree of freedom (the first by default); unstable parts are dashed.
+    """The figure of one degree of freedom (the first by default); unstable parts are dashed, those of which
+    that is not told dotted.
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves.
@@ -76,11 +81,11 @@ def draw_response(
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
         _name_curves(figure, axes, curves, column)
-        faded = any(doubtful(curve).any() for curve in curves)
+        notes = _notes(curves, colours[0], width)
         if below is not None:
-            name_errors(figure, curves, colours, width, faded)
-        elif faded:
-            figure.legend([faded_line(colours[0], width)], [FADED], loc="outside lower center")
+            name_errors(figure, curves, colours, width, notes)
+        elif notes:
+            figure.legend(notes.values(), notes.keys(), loc="outside lower center")
     return figure
 
 
@@ -100,26 +105,40 @@ def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
 
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> None:
-    """A solid line where the curve is stable or its stability unknown, a dashed one elsewhere.
+    """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
+    unstable, a dotted one where that is not told.
 
     Faded is what may err by more than a fifth.
     """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
-    solid, dashed = _split(amplitude, unstable)
+    told, dashed = _split(amplitude, unstable)
+    solid, dotted = _split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
     trusted, faded = _split(solid, doubtful(curve))
     alone = "." if len(amplitude) == 1 else ""
     (line,) = axes.plot(curve.frequency, trusted, linewidth=width, marker=alone)
-    others = [(faded, "-", ALPHA), (dashed, _DASHES, 1.0)]
-    if unstable.any():
-        sure, unsure = _split(dashed, doubtful(curve))
-        others = [(faded, "-", ALPHA), (sure, _DASHES, 1.0), (unsure, _DASHES, ALPHA)]
+    others = [(faded, _LINE, _ALPHA)]
+    for values, style in ((dashed, _DASHES), (dotted, _DOTS)):
+        sure, unsure = _split(values, doubtful(curve))
+        others += [(sure, style, 1.0), (unsure, style, _ALPHA)]
     for values, style, alpha in others:
         if np.isfinite(values).any():
             axes.plot(
                 curve.frequency, values, color=line.get_color(), linewidth=width, linestyle=style,
                 alpha=alpha, label=_UNSTABLE,
             )  # fmt: skip
+
+
+def _notes(curves: list[DrawnCurve], colour: str, width: float) -> dict[str, Line2D]:
+    """Why parts of curves are faded or dotted: lines like theirs, by what is to be said of them."""
+    from matplotlib.lines import Line2D
+
+    notes = {}
+    if any(doubtful(curve).any() for curve in curves):
+        notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=_ALPHA)
+    if any(curve.untold is not None and curve.untold.any() for curve in curves):
+        notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=_DOTS)
+    return notes
 
 
 def doubtful(curve: DrawnCurve) -> BoolArray:
