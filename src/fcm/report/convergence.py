@@ -19,7 +19,8 @@ from fcm.files import replacing
 from fcm.plot.convergence import Balanced, Line, draw_convergence
 from fcm.plot.style import save
 from fcm.response.sweep import trace
-from fcm.response.trace import Wanted, traced_curve
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
 from fcm.scene.model import Scene

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fcm.response.sweep import trace
-from fcm.response.trace import METHODS, ResponseError
+from fcm.response.trace import METHODS
+from fcm.response.wanted import ResponseError
 from fcm.results.result import Curve, Response
 from fcm.run import Factory, place_of
 from fcm.scene.model import Scene

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fcm.harmonic.further import HIGHEST
-from fcm.response.trace import ResponseError, Wanted
+from fcm.response.wanted import ResponseError, Wanted
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.model import Scene
 

@@ -27,9 +27,9 @@ from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import LEGS, Legs, TimeOver
 from fcm.response.only_peaks import peaks_alone, peaks_of
 from fcm.response.orbit_curve import orbit_curve, visited_curve
-from fcm.response.trace import ResponseError
 from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import STATES, Visitor
+from fcm.response.wanted import ResponseError
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Checkpoint, Factory, Interrupted, Progress, Report, fingerprint
 from fcm.scene.model import Held, Scene

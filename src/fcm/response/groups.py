@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from fcm.harmonic.proportion import forget
-from fcm.response.trace import Wanted, traced_curve
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
 from fcm.results.gist import Gist, without_points
 from fcm.results.jumps import Jump, Swept, Untold
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance

@@ -10,8 +10,8 @@ import numpy as np
 from fcm.harmonic.choice import enlarged, estimated
 from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.system import System
-from fcm.response.trace import ResponseError
 from fcm.response.tracked_work import as_curve
+from fcm.response.wanted import ResponseError
 from fcm.results.tracked import Optimal, TrackedCurve
 from fcm.run import Progress
 from fcm.run.progress import part

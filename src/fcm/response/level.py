@@ -22,7 +22,8 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.trace import BEYOND, ResponseError, Rows, Wanted, pick, wanted_of
+from fcm.response.trace import BEYOND, Rows, pick
+from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve, Response
 from fcm.scene.model import Scene

@@ -15,7 +15,8 @@ from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_l
 from fcm.harmonic.record import cycles, loops, states
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
-from fcm.response.trace import ResponseError, Wanted, pick, wanted_of
+from fcm.response.trace import pick
+from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray, Scene

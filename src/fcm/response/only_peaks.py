@@ -18,7 +18,8 @@ from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
-from fcm.response.trace import ACCURACY, Wanted, traced_curve
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import ACCURACY, Wanted
 from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
 from fcm.run import Report

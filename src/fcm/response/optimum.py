@@ -12,7 +12,7 @@ import numpy as np
 from fcm.response.around import check_no_ring
 from fcm.response.least import Found, Task, optimum, with_the_same, with_values
 from fcm.response.sweep import trace
-from fcm.response.trace import wanted_of
+from fcm.response.wanted import wanted_of
 from fcm.results.result import Response
 from fcm.results.tracked import Optimal, Tracking
 from fcm.run import Progress

@@ -14,7 +14,8 @@ from fcm.reduction.put_back import EACH_CHECKED, checked, restored
 from fcm.response.around import check_modes, unknown
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
-from fcm.response.trace import METHODS, ResponseError, Wanted, wanted_of
+from fcm.response.trace import METHODS
+from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part

@@ -16,8 +16,8 @@ from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.curve_sweep import checkpoint_of
-from fcm.response.trace import ResponseError, Wanted, wanted_of
 from fcm.response.tracked_work import KINDS, STATES, STOPPED, Followed, TrackedWork
+from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
 from fcm.results.tracked import Tracking
 from fcm.run import (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fcm.harmonic.rest import ADRIFT, pushed_adrift
-from fcm.response.trace import ResponseError
+from fcm.response.wanted import ResponseError
 from fcm.results.result import Curve, Response
 from fcm.scene.model import Scene
 from fcm.structure.linear import linear_of

@@ -13,7 +13,8 @@ from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.matrix_file import is_matrix_file, read_matrix
-from fcm.scene.names import Names, RowNames, checked_names
+from fcm.scene.names import Names
+from fcm.scene.row_names import row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
 from fcm.scene.symmetry import check_symmetric, symmetric
@@ -58,7 +59,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     if K is not None and M is not None and M.shape[0] != rows:
         section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
     sound = top.mistakes.count == read
-    dofs = _row_names(section, files, rows)
+    dofs = row_names(section, files, rows)
     read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
         check_symmetric(section, key, matrix, dofs)
@@ -152,39 +153,6 @@ def _from_rows(section: Section, key: str, value: Any) -> Any:
             f"{key}[{index}]", f"has {len(good[index])} numbers, but the first row has {len(good[0])}"
         )
     return None if uneven else scipy.sparse.csc_array(np.array(good))
-
-
-def _row_names(section: Section, files: Files, rows: int | None) -> Names | None:
-    """The names of the rows: a list, or a file with one on each line."""
-    value = section.data.get("dofs", section.data.get("file"))
-    if "dofs" in section.data and "file" in section.data:
-        section.wrong("", "has both dofs and file; give the names of the rows once")
-        return None
-    if value is None:
-        section.wrong("dofs", 'missing; give a list of the names of the rows, or a file such as "dofs.txt"')
-        return None
-    if isinstance(value, str):
-        key = "dofs" if "dofs" in section.data else "file"
-        try:
-            with files.opened(value) as path:
-                value = names_of(path.read_text("utf-8-sig"))
-        except DataFileError as error:
-            section.wrong(key, str(error))
-            return None
-    names = checked_names(section, value)
-    if names is not None and rows is not None and len(names) != rows:
-        section.wrong("dofs", f"names {len(names)} rows, but the stiffness has {rows}")
-    return None if names is None else RowNames(names)
-
-
-def names_of(text: str) -> list[str]:
-    """Names, one on each line; a node and a direction beside each other are one name.
-
-    >>> names_of("40x  # tip\\n40 y\\n\\n41:3\\n41 1")
-    ['40x', '40y', '41:3', '41:1']
-    """
-    lines = (line.partition("#")[0].replace(",", " ").split() for line in text.splitlines())
-    return [(":" if words[-1].isdecimal() else "").join(words) for words in lines if words]
 
 
 def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[str] | None) -> dict[str, Any]:
