@@ -11,6 +11,7 @@ import pytest
 from fcm.cli import COMMANDS
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
+from fcm.continuation import dense
 
 from ..program import AS_A_MODULE, python, shell
 
@@ -42,6 +43,16 @@ def test_what_only_few_commands_need_is_imported_by_them():
     imported = python("-c", code).out.split()
     heavy = {"scipy.optimize", "scipy.linalg", "scipy.sparse", "scipy.stats", "xarray", "distributed"}
     assert "fcm.response.sweep" in imported and not set(imported) & heavy
+
+
+@pytest.mark.skipif(
+    dense.__file__.endswith(".py"), reason="interpreted, LAPACK is faster from few unknowns on"
+)
+def test_the_curves_of_the_paper_are_traced_without_lapack():
+    """Its import takes longer than all of them."""
+    run = "from fcm.cli import main; main(['respond', 'yang1998'], standalone_mode=False)"
+    done = python("-c", f"import sys\n{run}\nprint(*sys.modules)")
+    assert "fcm.harmonic.corrected" in done.out.split() and "scipy.linalg" not in done.out.split()
 
 
 def test_drawing_and_xarray_are_not_imported_by_respond(scene):

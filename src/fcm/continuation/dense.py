@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs
 
-LARGE = cython.declare(cython.int, 80 if cython.compiled else 40)  # from here on LAPACK
+LARGE = cython.declare(cython.int, 120 if cython.compiled else 40)  # from here on LAPACK
 
 
 @cython.cclass
