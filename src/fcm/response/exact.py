@@ -36,7 +36,7 @@ from fcm.scene.model import Held, Scene
 from fcm.units import UNIT
 
 METHOD = "exact"
-ONLY = "of the exact curves all points but their peaks, folds and jumps, sought near those of the balance"
+ONLY = "of the exact curves all points but their peaks, folds and jumps"
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished

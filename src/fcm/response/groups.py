@@ -22,9 +22,7 @@ from fcm.run import Interrupted, Lost, Report
 from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
-SLOW = (
-    1.0  # [s] after which finished curves are saved before their group is: no more is lost to an interruption
-)
+SLOW = 1.0  # [s] after which finished curves are saved before their group is, and no kill can lose them
 KINDS = (Curve, Gist, Orbits, Swept, Jump, Untold, Peak, NonlinearMode, Resonance)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
