@@ -103,7 +103,7 @@ class Corrected:
         they were found, and so do those that settling leads away from.
         """
         d, amplitude = np.arange(len(places)), found.copy()
-        for group in _within(np.unique(places), ALONE if self.corrector.cheap else TOGETHER):
+        for group in _within(np.unique(places), ALONE if self.corrector.ranking.cheap else TOGETHER):
             i = int(group[len(group) // 2])
             if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
                 continue
@@ -123,7 +123,7 @@ class Corrected:
     def sets(self, places: Indices) -> tuple[int, ...]:
         """The harmonics of a corrected curve beside all of some places."""
         share = self.corrector.further.shares(self.path.z[places], self.amplitude[places])
-        return self.corrector.enough_of(share.max(axis=0))
+        return self.corrector.ranking.enough_of(share.max(axis=0))
 
     def bridge(self, place: int) -> None:
         """Where the corrected curve is missed, as at a corner that has moved: the mean of those beside it."""

@@ -8,17 +8,11 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
-from fcm.harmonic.further import Further
 from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.ranking import Ranking
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
-FURTHER = 8  # harmonics beyond those of the balance: those that would do most
-FEWEST = 3  # where there are so many contacts that those would be more than
-UNKNOWNS = 240  # unknowns
-LEAST = cython.declare(cython.double, 0.01)  # of what the first of them would do; less is not taken
-COVERED = 0.98  # of what the best of them do, by which a set that is there already is good enough
-ENOUGH_COVERED = cython.declare(cython.double, COVERED**2)
 LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from which it is corrected once more
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
@@ -37,13 +31,8 @@ class Corrector:
 
     def __init__(self, system: System, again: bool = True, enough: float = ENOUGH) -> None:
         self.again, self.enough = again, enough
-        contacts = max(len(system.scene.contacts), 1)
-        self.count = min(FURTHER, max(FEWEST, UNKNOWNS // (4 * contacts)))  # of further harmonics
-        self.further = Further(system)
-        # whether a point takes no more than a few milliseconds
-        self.cheap = 4 * contacts * (len(system.harmonics) + self.count) <= UNKNOWNS
-        # the greatest squares of what harmonics would do, and where they are
-        self.top, self.place, self.among = np.zeros(self.count), np.zeros(self.count, dtype=np.intp), 0
+        self.ranking = Ranking(system)
+        self.further = self.ranking.further
         self.found = np.zeros(1 + system.linear.dofs.shape[1])
         self.spare: dict[tuple[int, ...], Lifted] = {}  # made for systems that were taken before,
         self.spares: dict[tuple[int, ...], Corrector] = {}  # as these were
@@ -52,11 +41,8 @@ class Corrector:
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others; no set is known."""
         self.system = system
-        self.further.take(system)
-        self.known: dict[tuple[int, ...], Lifted] = {}
-        self.lifts: list[Lifted] = []  # the same,
-        self.sets: list[tuple[int, ...]] = []  # their harmonics,
-        self.covers = np.zeros((FURTHER, self.further.highest), dtype=np.uint8)  # and which these are
+        self.ranking.take(system)
+        self.lifts: list[Lifted] = []  # of the sets of the ranking
         self.second: dict[tuple[int, ...], Corrector] = {}
 
     def move(
@@ -88,7 +74,7 @@ class Corrector:
                 continue
             known[i] = 1
             self.further.at(z[i], amplitude[i])
-            k: cython.Py_ssize_t = self.choose(best)
+            k: cython.Py_ssize_t = self.ranking.choose(best)
             if k >= 0:
                 self.put(k, z[i], direction[i], amplitude[i])
                 change[i, 0] = (self.found[0] - z[i, n]) / z[i, n]
@@ -105,7 +91,7 @@ class Corrector:
         amplitude: cython.double[::1],
     ) -> cython.bint:
         """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there."""
-        lifted: Lifted = self.lifts[k]
+        lifted: Lifted = self.of_set(k)
         d: cython.Py_ssize_t
         if not lifted.beside(z, direction):
             self.found[:] = NAN
@@ -125,11 +111,11 @@ class Corrector:
     def twice(self, k: cython.Py_ssize_t) -> cython.int:
         """The point just found corrected."""
         lifted: Lifted = self.lifts[k]
-        corrector: Corrector = self.of(self.sets[k])
+        corrector: Corrector = self.of(self.ranking.sets[k])
         z = np.array(lifted.newton.z)
         direction = np.asarray(lifted.newton.tangent) * lifted.newton.scale
         corrector.further.at(z, self.found[1:])
-        j: cython.Py_ssize_t = corrector.choose(False)
+        j: cython.Py_ssize_t = corrector.ranking.choose(False)
         if j >= 0:
             corrector.put(j, z, direction, self.found[1:])
             self.found[:] = corrector.found
@@ -137,17 +123,16 @@ class Corrector:
 
     def lifted(self, more: tuple[int, ...]) -> Lifted:
         """The balance of more harmonics."""
-        if more not in self.known:
-            made = self._lifted(more)
-            self.known[more] = made
-            self.lifts.append(made)
-            self.sets.append(more)
-            covers = np.asarray(self.covers)
-            if len(self.sets) > len(covers):
-                covers = np.concatenate((covers, np.zeros_like(covers)))
-            covers[len(self.sets) - 1, np.array(more) - 1] = 1
-            self.covers = covers
-        return self.known[more]
+        found: Lifted = self.of_set(self.ranking.number(more))
+        return found
+
+    @cython.cfunc
+    def of_set(self, k: cython.Py_ssize_t) -> Lifted:
+        """The balance of a set of the ranking."""
+        while len(self.lifts) <= k:
+            self.lifts.append(self._lifted(self.ranking.sets[len(self.lifts)]))
+        found: Lifted = self.lifts[k]
+        return found
 
     def _lifted(self, more: tuple[int, ...]) -> Lifted:
         """The same as if it were new."""
@@ -182,7 +167,7 @@ class Corrector:
         for _ in range(ROUNDS):
             corrector = self.of(harmonics)
             corrector.further.at(z, now)
-            more = corrector.most()
+            more = corrector.ranking.most()
             if more == harmonics:
                 break
             lifted = corrector.lifted(more)
@@ -193,78 +178,6 @@ class Corrector:
             if (np.abs(now - before) <= SETTLED * np.abs(now - amplitude)).all():
                 break
         return now
-
-    def best(self, share: cython.double[::1]) -> tuple[int, ...]:
-        """The harmonics of the system and those that would do most, for the shares (harmonic,) of a point;
-        those beyond the last given are not taken."""
-        self.further.share[:] = 0.0
-        self.further.share[: share.shape[0]] = share
-        return self.most()
-
-    def enough_of(self, share: cython.double[::1]) -> tuple[int, ...]:
-        """The same, or a set that is there already and covers nearly as much."""
-        self.further.share[:] = share
-        k = self.choose(False)
-        harmonics: tuple[int, ...] = self.sets[k] if k >= 0 else self.system.harmonics
-        return harmonics
-
-    def most(self) -> tuple[int, ...]:
-        """The best for the point that `further` was at last."""
-        self.rank()
-        more = [1 + int(self.place[k]) for k in range(self.among)]
-        return tuple(sorted({*self.system.harmonics, *more}))
-
-    @cython.cfunc
-    @cython.exceptval(-2, check=False)
-    def choose(self, best: cython.bint) -> cython.Py_ssize_t:
-        """The number of the set for the point that `further` was at last; -1 where nothing is left out."""
-        self.rank()
-        k: cython.Py_ssize_t = -1 if best else self.covering()
-        if k >= 0 or self.among == 0:
-            return k
-        more = self.most()
-        self.lifted(more)
-        return self.sets.index(more)
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def covering(self) -> cython.Py_ssize_t:
-        """The first set that covers nearly as much as the best, -1 if there is none."""
-        share: cython.double[::1] = self.further.share
-        wanted: cython.double = 0.0
-        k: cython.Py_ssize_t
-        h: cython.Py_ssize_t
-        for k in range(self.among):
-            wanted += self.top[k]
-        for k in range(len(self.sets)):
-            covered: cython.double = 0.0
-            for h in range(share.shape[0]):
-                if self.covers[k, h]:
-                    covered += share[h] * share[h]
-            if covered >= ENOUGH_COVERED * wanted:
-                return k
-        return -1
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def rank(self) -> cython.void:
-        """The harmonics that would do most, and the squares of what they would do, the greatest first."""
-        share: cython.double[::1] = self.further.share
-        h: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        self.among = 0
-        for h in range(share.shape[0]):
-            square: cython.double = share[h] * share[h]
-            if self.among == self.count and not square > self.top[self.count - 1]:
-                continue
-            j = min(self.among, self.count - 1)
-            while j > 0 and self.top[j - 1] < square:
-                self.top[j], self.place[j] = self.top[j - 1], self.place[j - 1]
-                j -= 1
-            self.top[j], self.place[j] = square, h
-            self.among = min(self.among + 1, self.count)
-        while self.among and not self.top[self.among - 1] > LEAST * LEAST * self.top[0]:
-            self.among -= 1
 
 
 class _Kept(threading.local):

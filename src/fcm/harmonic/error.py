@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import FARTHER, Corrected, Indices
-from fcm.harmonic.corrector import COVERED
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
+from fcm.harmonic.ranking import COVERED
 from fcm.harmonic.shifted import Beside
 from fcm.harmonic.stretch import heights
 from fcm.harmonic.system import System

@@ -15,10 +15,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.corrector import ENOUGH, Corrector
+from fcm.harmonic.corrector import ENOUGH
 from fcm.harmonic.error import RIVAL
 from fcm.harmonic.further import HIGHEST, Further, padded
 from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.ranking import Ranking
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -114,7 +115,7 @@ def _ahead(
     begin = places = [one[0] for one in tops]
     many, told = system, True
     for stage in range(STAGES):
-        more = Corrector(many).best(_share(many, places, height, many.harmonics))
+        more = Ranking(many).best(_share(many, places, height, many.harmonics))
         if more == many.harmonics:
             break
         if stage == 0:

@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.further import Further, padded
 from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.ranking import Ranking
 from fcm.harmonic.record import recorded_at_levels
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -50,7 +50,7 @@ def errors_at_levels(
     if not bent.size:
         return error
     share = further.shares(z[bent], amplitude[bent]).max(axis=0)
-    more = Corrector(system).best(share)
+    more = Ranking(system).best(share)
     if more == system.harmonics:
         return error
     there = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.harmonic.corrector import ROUNDS, SETTLED, Corrector
+from fcm.harmonic.corrector import ROUNDS, SETTLED
 from fcm.harmonic.further import Further
+from fcm.harmonic.ranking import Ranking
 from fcm.track.curve import Track, is_top
 from fcm.track.follow import follow, land
 from fcm.track.lowest import lifted
@@ -108,7 +109,7 @@ def _more(found: _Found) -> tuple[int, ...]:
     problem = found.way.tracked(Condition(Kind.FOLD))
     problem.measure(z)
     amplitude = problem.along(z)[1]
-    return Corrector(system).best(further.shares(y, amplitude[None])[0])
+    return Ranking(system).best(further.shares(y, amplitude[None])[0])
 
 
 def _landed(
