@@ -115,7 +115,7 @@ class RingMultipliers(Multipliers):
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
         found = Multipliers.verdict(self, z, turning, enough)
-        return found._replace(turn=min(found.turn * self.ring.period, np.pi))
+        return found._replace(before_flip=min(found.before_flip * self.ring.period, np.pi))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""

@@ -28,7 +28,7 @@ class Verdict(NamedTuple):
     stable: float  # 1, 0, or nan where it cannot be told
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
     kind: Kind  # of what grows most
-    turn: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
+    before_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
     passive: bool = False  # no contact slips or opens
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
     values: tuple[complex, ...] = ()  # the multipliers
@@ -45,13 +45,13 @@ class Spectrum:
     positive: list[float]  # of the real ones above 0, which leave at folds
     other: float  # greatest of the others, -inf if there is none
     kind: Kind  # of that
-    turn: float  # as in `Verdict`
+    before_flip: float  # as in `Verdict`
     values: tuple[complex, ...] = ()
 
     @classmethod
     def of(cls, values: list[complex]) -> Spectrum:
         """All multipliers of a solution."""
-        positive, other, kind, turn = [], 0.0, Kind.PAIR, math.pi
+        positive, other, kind, before_flip = [], 0.0, Kind.PAIR, math.pi
         for value in values:
             size = abs(value)
             if value.imag == 0.0 and value.real > 0.0:
@@ -60,9 +60,9 @@ class Spectrum:
             if size > other:
                 other, kind = size, Kind.PAIR if value.imag else Kind.FLIP
             if size > SMALL and value.imag != 0.0:
-                turn = min(turn, math.pi - abs(cmath.phase(value)))
+                before_flip = min(before_flip, math.pi - abs(cmath.phase(value)))
         size = math.log(other) if other > 0.0 else -math.inf
-        return cls(positive, size, kind, turn, tuple(values))
+        return cls(positive, size, kind, before_flip, tuple(values))
 
     @property
     def odd(self) -> bool:
@@ -81,7 +81,7 @@ class Spectrum:
             real = sorted(self.positive, key=abs)[without_nearest:]
             most = max((size for size in real if size > STABLE), default=most)
         growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.REAL)
-        return Verdict(float(growth <= STABLE), growth, kind, self.turn, values=self.values)
+        return Verdict(float(growth <= STABLE), growth, kind, self.before_flip, values=self.values)
 
 
 def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:

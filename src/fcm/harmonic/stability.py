@@ -19,10 +19,10 @@ import numpy.typing as npt
 from fcm.continuation import Path
 from fcm.continuation.secants import Secants
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
-from fcm.harmonic.looked import Looked
 from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.spectrum import Kind, Verdict
 from fcm.harmonic.system import System
+from fcm.harmonic.verdicts import Verdicts
 from fcm.harmonic.windows import MANY, dip
 from fcm.scene.model import FloatArray
 
@@ -32,7 +32,7 @@ __all__ = ["Crossing", "Inserted", "Kind", "Stability", "multipliers", "stabilit
 
 SPAN = 16  # points between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
-TURN = 0.4  # [rad] from -1 within which a multiplier is followed as it passes: there modes flip
+FLIP_NEAR = 0.4  # [rad] from -1 within which a multiplier is followed as it passes: there modes flip
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
 FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO
@@ -70,7 +70,7 @@ def stability(system: System, path: Path) -> Stability:
 
 class _Along:
     def __init__(self, system: System, path: Path) -> None:
-        self.path, self.looked = path, Looked(system, path)
+        self.path, self.verdicts = path, Verdicts(system, path)
 
     def run(self) -> Stability:
         stable = np.zeros(self.path.z.shape[0])
@@ -78,35 +78,35 @@ class _Along:
         for first, last in _runs(self._even()):
             self._look(first, last)
             self._hidden(first, last)
-            places = self.looked.among(first, last)
+            places = self.verdicts.among(first, last)
             at = np.array([int(t) for t in places if t == int(t)])
-            known = np.array([self.looked.verdicts[i].stable for i in at.tolist()])
+            known = np.array([self.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
             stable[first : last + 1] = known[_nearer(at, first, last)]
             crossings += self._crossings(places)
-        return Stability(stable, tuple(crossings), self.looked.evaluations, tuple(self._inside(stable)))
+        return Stability(stable, tuple(crossings), self.verdicts.evaluations, tuple(self._inside(stable)))
 
     def _even(self) -> npt.NDArray[np.bool_]:
         """Whether the number of real multipliers above 1 is even, folds included on that side."""
         sign = self.path.orientation * np.sign(self.path.direction[:, -1])
-        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.looked.fold
+        even: npt.NDArray[np.bool_] = (sign > 0.0) | self.verdicts.fold
         return even
 
     def _look(self, first: int, last: int) -> None:
         """Enough points of a run."""
         parts = max(-(-(last - first) // SPAN), 1)
-        turned = self.looked.turned[first : last + 1]
-        turns = np.floor((turned - turned[0]) / PHASE)
+        angle = self.verdicts.rotation[first : last + 1]
+        passed = np.floor((angle - angle[0]) / PHASE)
         some = np.linspace(first, last, parts + 1).astype(int)
-        nodes = sorted({*some.tolist(), *(first + 1 + np.flatnonzero(np.diff(turns))).tolist()})
+        nodes = sorted({*some.tolist(), *(first + 1 + np.flatnonzero(np.diff(passed))).tolist()})
         for i in nodes:
-            self.looked.verdict(i)
+            self.verdicts.at(i)
         for a, b in itertools.pairwise(nodes):
             self._between(a, b)
 
     def _hidden(self, first: int, last: int) -> None:
         """Look where a window may be hidden between two places of a run that were looked at."""
-        places = self.looked.among(first, last)
+        places = self.verdicts.among(first, last)
         for k, (a, b) in enumerate(itertools.pairwise(places)):
             self._dips(places[max(k - 1, 0) : k], (a, b), places[k + 2 : k + 3], 0)
 
@@ -115,12 +115,12 @@ class _Along:
         t = self._doubtful(before, ends, after, divided) if divided < DIPS else None
         if t is None or not ends[0] < t < ends[1]:
             return
-        one, found, other = (self.looked.verdicts[place].stable for place in (ends[0], t, ends[1]))
+        one, found, other = (self.verdicts[place].stable for place in (ends[0], t, ends[1]))
         if found in (one, other) or math.isnan(found):
             self._dips(before, (ends[0], t), [ends[1]], divided + 1)
             self._dips([ends[0]], (t, ends[1]), after, divided + 1)
             return
-        self.looked.verdict(int(t)), self.looked.verdict(math.ceil(t))
+        self.verdicts.at(int(t)), self.verdicts.at(math.ceil(t))
         self._between(math.ceil(ends[0]), int(t))
         self._between(math.ceil(t), int(ends[1]))
 
@@ -128,7 +128,7 @@ class _Along:
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
-        one, other = (self.looked.verdicts[t] for t in ends)
+        one, other = (self.verdicts[t] for t in ends)
         if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
             return None
         if max(len(one.values), len(other.values)) > MANY:
@@ -137,28 +137,28 @@ class _Along:
             return self._edge(*ends)
         if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(ends)):
             return None
-        verdicts, seen = self.looked.verdicts, self.looked.seen
+        verdicts, seen = self.verdicts, self.verdicts.seen
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
         low, high = (seen(t) for t in ends)
         length = dip(low, high, [seen(t) for t in alike if not verdicts[t].passive], divided)
         # a place like its ends is no window, whatever the balanced harmonics say of it
-        return None if length is None else self.looked.put(length, enough=(one.stable,))
+        return None if length is None else self.verdicts.put(length, enough=(one.stable,))
 
     def _edge(self, a: float, b: float) -> float | None:
         """A place between one that is told and one that is not: this may be the edge of a window."""
-        looked = self.looked
-        if looked.grows(a) == looked.grows(b) or not EDGE < b - a <= 1.0 or not looked.framed(a, b):
+        verdicts = self.verdicts
+        if verdicts.grows(a) == verdicts.grows(b) or not EDGE < b - a <= 1.0 or not verdicts.framed(a, b):
             return None
-        return looked.put(0.5 * (looked.seen(a).length + looked.seen(b).length))
+        return verdicts.put(0.5 * (verdicts.seen(a).length + verdicts.seen(b).length))
 
     def _may_meet(self, ends: tuple[float, float]) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
-        nearest = sum(self.looked.apart(t) for t in ends)
-        return nearest < AHEAD * self.looked.way(*ends) + ABOUT
+        nearest = sum(self.verdicts.apart(t) for t in ends)
+        return nearest < AHEAD * self.verdicts.way(*ends) + ABOUT
 
     def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
         """The places between points that are stable where both neighbours are not, or the other way round."""
-        for t, one in self.looked.between.items():
+        for t, one in self.verdicts.between.items():
             before, after = stable[int(t) : int(t) + 2].tolist()
             if before == after != one.stable and not math.isnan(one.stable):
                 yield one
@@ -167,21 +167,21 @@ class _Along:
         """Look between two points until neither the verdict nor a change of its sign can hide there."""
         if b - a < 2:
             return
-        one, other = self.looked.verdict(a), self.looked.verdict(b)
+        one, other = self.verdicts.at(a), self.verdicts.at(b)
         if one.passive and other.passive:
             return
         middle = (a + b) // 2
-        if not _straight(one, self.looked.verdict(middle), other):
+        if not _straight(one, self.verdicts.at(middle), other):
             self._between(a, middle)
             self._between(middle, b)
 
     def _crossings(self, places: list[float]) -> Iterator[Crossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""
-        known = [t for t in places if not math.isnan(self.looked.verdicts[t].growth)]
-        told = [k for k, t in enumerate(known) if not math.isnan(self.looked.verdicts[t].stable)]
+        known = [t for t in places if not math.isnan(self.verdicts[t].growth)]
+        told = [k for k, t in enumerate(known) if not math.isnan(self.verdicts[t].stable)]
         for first, last in itertools.pairwise(told):
             ways = itertools.pairwise(known[first : last + 1])
-            changes = [(a, b) for a, b in ways if self.looked.grows(a) != self.looked.grows(b)]
+            changes = [(a, b) for a, b in ways if self.verdicts.grows(a) != self.verdicts.grows(b)]
             if len(changes) == 1 and math.ceil(changes[0][1]) == int(changes[0][0]) + 1:
                 found = self._crossing(*changes[0])
                 if found is not None:
@@ -190,15 +190,15 @@ class _Along:
     def _crossing(self, a: float, b: float) -> Crossing | None:
         """Where the growth changes sign between two places."""
         first, found = int(a), None
-        curve = self.looked.curve(first)
-        before, after = (max(self.looked.verdicts[t].growth, ENOUGH) for t in (a, b))
-        kind = self.looked.verdicts[a if before > 0.0 else b].kind
+        curve = self.verdicts.curve(first)
+        before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
+        kind = self.verdicts[a if before > 0.0 else b].kind
         sides = Secants(a - first, b - first, before, after, may_jump=True)
         for _ in range(LOOKS):
             at = sides.at
             if sides.width < FINE or not curve.put(at):
                 break
-            verdict = self.looked.judge(curve.z)
+            verdict = self.verdicts.judge(curve.z)
             now = max(verdict.growth, ENOUGH)
             if math.isnan(now):
                 break
@@ -225,7 +225,7 @@ def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
     if not one.stable == middle.stable == other.stable:
         return False
     # what is unstable is no less so by a flip besides
-    if one.stable == 1.0 and min(v.turn for v in verdicts) < TURN:
+    if one.stable == 1.0 and min(v.before_flip for v in verdicts) < FLIP_NEAR:
         return False
     safe = max(v.growth for v in verdicts) < SAFE
     if not safe and not one.held == middle.held == other.held:

@@ -1,4 +1,4 @@
-"""The places of a path at which multipliers were looked at: points, by their numbers, and places between.
+"""What multipliers say of places of a path: of points, by their numbers, and of places between these.
 
 A place between is the number of the point that it follows, and the part of the way to the next.
 """
@@ -24,17 +24,20 @@ from fcm.scene.model import FloatArray
 EITHER = (0.0, 1.0)
 
 
-class Looked:
-    """The verdicts of places, those between the points of the path, and how many were calculated."""
+class Verdicts:
+    """The verdicts of places, those between the points of the path, and how many were calculated.
+
+    rotation (point,) [rad]: by how much multipliers that are not small have turned up to each point, about.
+    """
 
     def __init__(self, system: System, path: Path) -> None:
         self.path, self.evaluations = path, 0
-        self.verdicts: dict[float, Verdict] = {}
+        self._verdicts: dict[float, Verdict] = {}
         self.between: dict[float, Inserted] = {}
         self._places: list[float] = []  # with a verdict, in order
         self.multipliers = multipliers_of(system, float(path.parameter.max(initial=0.0)))
         self.fold = (path.mark & Mark.FOLD) != 0
-        self.turned = _turned(system, path)
+        self.rotation = _rotation(system, path)
         self._system, self._seen, self._apart = system, dict[float, Seen](), dict[float, float]()
 
     @cached_property
@@ -42,17 +45,20 @@ class Looked:
         """Way along the path up to each point, which only where a window may be hidden is asked for."""
         return _lengths(self.path)
 
-    def verdict(self, i: int) -> Verdict:
-        """Of a point."""
-        if i not in self.verdicts:
+    def __getitem__(self, t: float) -> Verdict:
+        return self._verdicts[t]
+
+    def at(self, i: int) -> Verdict:
+        """Of a point, which has it then."""
+        if i not in self._verdicts:
             self.evaluations += 1
             self._keep(i, self.multipliers.verdict(self.path.z[i], bool(self.fold[i])))
-        return self.verdicts[i]
+        return self._verdicts[i]
 
     def _keep(self, t: float, verdict: Verdict) -> Verdict:
-        if t not in self.verdicts:
+        if t not in self._verdicts:
             insort(self._places, t)
-        self.verdicts[t] = verdict
+        self._verdicts[t] = verdict
         return verdict
 
     def judge(self, z: FloatArray, enough: Sequence[float] = EITHER) -> Verdict:
@@ -71,32 +77,32 @@ class Looked:
         after = next((t for t in self._places[k + 1 :] if self._told(t)), None)
         if before is None or after is None:
             return False
-        return self.verdicts[before].stable == self.verdicts[after].stable
+        return self._verdicts[before].stable == self._verdicts[after].stable
 
     def _told(self, t: float) -> bool:
-        return not math.isnan(self.verdicts[t].stable)
+        return not math.isnan(self._verdicts[t].stable)
 
     def grows(self, t: float) -> bool:
         """Whether a disturbance does at a place with a verdict."""
-        return self.verdicts[t].growth > 0.0
+        return self._verdicts[t].growth > 0.0
 
     def seen(self, t: float) -> Seen:
         """What is known of a place with a verdict."""
         if t not in self._seen:
             k, part = int(t), t - int(t)
             length = self.length[k] + (part * (self.length[k + 1] - self.length[k]) if part else 0.0)
-            self._seen[t] = seen(float(length), self.verdicts[t])
+            self._seen[t] = seen(float(length), self._verdicts[t])
         return self._seen[t]
 
     def apart(self, t: float) -> float:
         """[rad] by which multipliers at a place with a verdict have to turn until two of them meet."""
         if t not in self._apart:
-            self._apart[t] = apart(self.verdicts[t])
+            self._apart[t] = apart(self._verdicts[t])
         return self._apart[t]
 
     def way(self, a: float, b: float) -> float:
         """[rad] by how much multipliers turn, about, between points around two places."""
-        return float(self.turned[math.ceil(b)] - self.turned[int(a)])
+        return float(self.rotation[math.ceil(b)] - self.rotation[int(a)])
 
     @cached_property
     def _balance(self) -> Balance:
@@ -126,11 +132,8 @@ def _lengths(path: Path) -> FloatArray:
     return np.concatenate(([0.0], np.cumsum(steps)))
 
 
-def _turned(system: System, path: Path) -> FloatArray:
-    """[rad] by how much multipliers that are not small have turned up to each point, about.
-
-    0 where there are so many that two are always about to meet.
-    """
+def _rotation(system: System, path: Path) -> FloatArray:
+    """As of `Verdicts`; 0 where there are so many multipliers that two are always about to meet."""
     linear, omega = system.linear, path.parameter
     near = ~far_above(linear.natural, float(omega.max(initial=0.0)), [int(h) for h in system.harmonics])
     lasting = np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf)) > SMALL
