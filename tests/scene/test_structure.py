@@ -254,6 +254,34 @@ def test_entries_that_are_not_symmetric_are_named():
     assert '("1x", "3x") is 0, ("3x", "1x") is 0.25' in message
 
 
+@pytest.mark.parametrize("half, name", [(np.tril, "lower"), (np.triu, "upper")])
+def test_one_triangle_is_not_the_matrix(half, name):
+    assert f"only its {name} triangle is there: give both" in refused(stiffness=half(K).tolist())
+    skew = K + 0.5 * np.eye(3, k=1)
+    assert "triangle" not in refused(stiffness=skew.tolist())
+
+
+def test_entries_that_are_no_numbers_are_named(tmp_path):
+    broken = K.copy()
+    broken[2, 1], broken[0, 0] = np.nan, 1e200
+    np.savez(tmp_path / "K.npz", K=broken)
+    said = refused(tmp_path, stiffness="K.npz")
+    assert "[2][1] must be finite, is nan" in said and "[0][0] 1e+200 is too large" in said
+    write_npz(tmp_path / "K.npz", np.full((3, 3), np.inf))
+    assert "structure.stiffness: entry [0][0] must be finite" in (
+        said := refused(tmp_path, stiffness="K.npz")
+    )
+    assert said.endswith("; 9 such entries in all")
+
+
+def test_complex_numbers_without_imaginary_parts_are_real(tmp_path):
+    write_npz(tmp_path / "K.npz", K + 0j)
+    assert read(tmp_path, stiffness="K.npz").modal.frequency == pytest.approx(EXACT, rel=1e-12)
+    write_npz(tmp_path / "K.npz", K * (1 + np.diag([0, 0, 0.02j])))
+    said = refused(tmp_path, stiffness="K.npz")
+    assert "holds numbers that are not real (1 of 7)" in said and "structure.damping" in said
+
+
 def test_rounding_is_no_asymmetry():
     nearly = K.copy()
     nearly[0, 1] *= 1 + 1e-10

@@ -117,8 +117,13 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
         raise DataFileError(f"{quoted(path)} holds a matrix of {found.dtype}, not of numbers")
     files.check_size(Path(path), 8 * max(found.shape))  # a sparse array has a number for each row or column
     matrix = scipy.sparse.csc_array(found)
-    if matrix.dtype.kind not in "biuf":
-        raise DataFileError(f"{quoted(path)} holds numbers that are not real")
+    if matrix.dtype.kind == "c":
+        if count := int(np.count_nonzero(matrix.data.imag)):
+            raise DataFileError(
+                f"{quoted(path)} holds numbers that are not real ({count} of {matrix.nnz}); "
+                "damping within a stiffness belongs in structure.damping"
+            )
+        matrix = matrix.real
     return matrix.astype(np.float64)
 
 

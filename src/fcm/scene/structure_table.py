@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from fcm.scene.entries import check_numbers, check_symmetric, symmetric
 from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
@@ -17,7 +18,6 @@ from fcm.scene.names import Names
 from fcm.scene.row_names import row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
-from fcm.scene.symmetry import check_symmetric, symmetric
 from fcm.structure.eigen import StructureError, system_of
 
 
@@ -126,10 +126,7 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
     if matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
         section.wrong(key, f"must be square, has {matrix.shape[0]} rows and {matrix.shape[1]} columns")
         return None
-    for fault in filter(None, map(ANY.fault, matrix.data[ANY.faulty(matrix.data)[:, 0]][:1].tolist())):
-        section.wrong(key, f"has an entry that {fault}")
-        return None
-    return matrix
+    return matrix if check_numbers(section, key, matrix) else None
 
 
 def _from_rows(section: Section, key: str, value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Whether a matrix of a structure is symmetric, and which of its entries are not."""
+"""The entries of a matrix of a structure: numbers to calculate with, symmetric; which of them are not."""
 
 from __future__ import annotations
 
@@ -9,11 +9,25 @@ import numpy as np
 import scipy.sparse
 
 from fcm.scene.errors import quoted, shown
+from fcm.scene.rules import ANY
 from fcm.scene.section import Section
 
 ASYMMETRY = 1e-8  # relative difference of two entries that ought to be equal
 NEGLIGIBLE = 1e-12  # of the largest entry: differences this small are rounding
-MOST_SHOWN = 3  # entries that are not symmetric, named in a message
+MOST_SHOWN = 3  # entries named in a message
+
+
+def check_numbers(section: Section, key: str, matrix: Any) -> bool:
+    """Whether all entries are finite and not too large; note those that are not, as [row][column]."""
+    entries = scipy.sparse.coo_array(matrix)
+    wrong = ANY.faulty(entries.data)[:, 0].tolist()
+    if not wrong:
+        return True
+    row, column = entries.coords
+    each = [f"[{row[k]}][{column[k]}] {ANY.fault(float(entries.data[k]))}" for k in wrong[:MOST_SHOWN]]
+    rest = f"; {len(wrong)} such entries in all" if len(wrong) > MOST_SHOWN else ""
+    section.wrong(key, f"entry {'; '.join(each)}{rest}")
+    return False
 
 
 def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str] | None) -> None:
@@ -41,7 +55,14 @@ def check_symmetric(section: Section, key: str, matrix: Any, dofs: Sequence[str]
     entries = "; ".join(f"{entry(row[k], column[k])}, {entry(column[k], row[k])}" for k in worst)
     count = int(wrong.sum())
     differ = "a pair of entries differs" if count == 1 else f"{count} pairs of entries differ"
-    section.wrong(key, f"is not symmetric: {differ}; {entries}")
+    section.wrong(key, f"is not symmetric: {differ}; {entries}{_one_triangle(matrix)}")
+
+
+def _one_triangle(matrix: Any) -> str:
+    """A remark for a matrix of which one half is not there, as programs write symmetric ones."""
+    halves = {"lower": scipy.sparse.tril(matrix, -1), "upper": scipy.sparse.triu(matrix, 1)}
+    there = [name for name, half in halves.items() if half.count_nonzero()]
+    return f"; only its {there[0]} triangle is there: give both" if len(there) == 1 else ""
 
 
 def symmetric(matrix: Any) -> Any:
