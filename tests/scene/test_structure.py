@@ -144,6 +144,24 @@ def test_names_from_a_text_file(tmp_path, key, text):
     assert scene_from_dict(one, "test.toml", tmp_path).forces[0].direction.tolist() == [0, 0, 1]
 
 
+@pytest.mark.parametrize(
+    "content, words",
+    [
+        ("1x, 2x, 3x\n", "line 1 has 3 words: write one name on each line"),
+        ("1x\n2x\ntip of blade\n", "line 3 has 3 words"),
+        ("1x\n2x\n3\xe9\n", "it is no text in UTF-8"),
+    ],
+)
+def test_a_text_file_that_has_no_names(tmp_path, content, words):
+    (tmp_path / "dofs.txt").write_bytes(content.encode("latin-1"))
+    assert f'dofs.txt" cannot be read: {words}' in refused(tmp_path, dofs="dofs.txt")
+
+
+def test_one_motion_has_one_name():
+    assert 'structure.dofs: "1x" and "1:1" are the same' in refused(dofs=["1x", "1:1", "3x"])
+    assert read(dofs=["1x", "1:2", "3x"]).modal.dofs == ("1x", "1:2", "3x")
+
+
 @pytest.mark.parametrize("name", ["3x", "3:x", "3 X", "3:1", "31"])
 def test_a_node_and_a_direction_in_several_ways(name):
     assert read(top={"force": [{"dof": name, "amplitude": 1.0}]}).forces[0].direction.tolist() == [0, 0, 1]
@@ -367,6 +385,13 @@ def test_a_matrix_that_says_it_is_larger_than_its_file(tmp_path):
     parts = {"row": [0], "col": [0], "data": [1.0], "format": "coo", "shape": [900_000_000] * 2}
     np.savez(tmp_path / "K.npz", **parts)
     assert "--largest-file" in refused(tmp_path, stiffness="K.npz")
+
+
+def test_equal_frequencies_are_all_found():
+    """Of masses alike, each on its spring, no mode has been missed, whatever the rounding."""
+    scene = read(stiffness=[3.3, 3.3, 3.3], mass=[0.7, 0.7, 0.7], damping=0.0)
+    assert scene.modal.frequency == pytest.approx(np.sqrt(3.3 / 0.7), rel=1e-12)
+    assert not any("missed" in note or "rounding" in note for note in scene.notes)
 
 
 def test_one_mode_is_said_to_be_one():

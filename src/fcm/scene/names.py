@@ -78,6 +78,8 @@ def checked_names(section: Section, names: object) -> tuple[str, ...] | None:
     for name, group in same_names(words):
         what = f"{quoted(name)} is there {len(group)} times{otherwise_written(group)}"
         section.wrong("dofs", f"{what}; each must be there once")
+    for one, other in same_motions(words):
+        section.wrong("dofs", f"{quoted(one)} and {quoted(other)} are the same; each must be there once")
     return tuple(words) if len(words) == len(names) else None
 
 
@@ -103,6 +105,17 @@ def same_names(names: Iterable[str]) -> list[tuple[str, list[str]]]:
     for name in names:
         groups.setdefault(name if name.isascii() else normalize("NFC", name), []).append(name)
     return [(name, group) for name, group in groups.items() if len(group) > 1]
+
+
+def same_motions(names: Iterable[str]) -> list[tuple[str, str]]:
+    """Different names of one motion of a node, of which a contact would get either.
+
+    >>> same_motions(["40x", "40:2", "40:1", "tip"])
+    [('40x', '40:1')]
+    """
+    first: dict[str, str] = {}
+    motions = [(motion, name) for name in names if (motion := motion_of(name))]
+    return [(one, name) for motion, name in motions if (one := first.setdefault(motion, name)) != name]
 
 
 def otherwise_written(group: list[str]) -> str:

@@ -16,6 +16,7 @@ from fcm.structure.reduced import Reduced, reduced
 
 MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
 WORTH_SAYING = 1e-4  # relative change of the response by damping between modes
+UNDAMPED = 1e-12  # of a frequency without damping: rounding that nobody would notice
 
 
 def modal_of_matrices(
@@ -77,7 +78,7 @@ def at_many(matrices: Matrices, count: int, aside: tuple[float, float]) -> list[
 def of_rounding(frequencies: list[float], ratios: FloatArray) -> list[str]:
     """What is to be said of frequencies that are off by that much: at resonance it is more than that."""
     off = max(frequencies, default=0.0)
-    if not off > WORTH_SAYING * float(ratios.min(initial=1.0)):
+    if not off > max(WORTH_SAYING * float(ratios.min(initial=1.0)), UNDAMPED):
         return []
     return [
         f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "

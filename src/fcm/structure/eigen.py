@@ -27,6 +27,7 @@ Matrix = Any  # scipy sparse array or matrix
 DENSE = 600  # rows up to which all modes are computed at once
 SHIFT = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
 NO_MASS = 1e-13  # relative: below it, an eigenvalue of the inverse problem is no mode, but a row without mass
+NEAR = 1e-9  # relative: squares of frequencies so near to each other are one, beside rounding
 NEGATIVE = 1e-9  # of the largest mass: less negative than that is rounding
 
 
@@ -176,9 +177,12 @@ def missed(system: System, modes: Modes) -> int | None:
         return None
     gaps = np.diff(modes.stiffness)
     at = int(np.argmax(gaps[-min(8, gaps.size) :])) + max(0, gaps.size - 8)
-    between = float(modes.stiffness[at : at + 2].mean())
+    below, above = modes.stiffness[at : at + 2]
+    if above - below <= NEAR * above:
+        return None  # all of them are one frequency: none is between
+    between = float(below + above) / 2.0
     try:
-        below = _negative(_factor(system.K - between * system.M, "no matter"))
+        count = _negative(_factor(system.K - between * system.M, "no matter"))
     except StructureError:
         return None
-    return None if below is None else below - (at + 1)
+    return None if count is None else count - (at + 1)
