@@ -94,6 +94,17 @@ def test_numbers_from_a_file_can_be_swept(tmp_path):
     assert [curve.modal.shapes[1, 2] for curve in curves] == [3, 4]
 
 
+def test_arrays_under_names_that_are_no_keys_are_named_where_one_lacks(tmp_path):
+    other = {"f_n": MODES["frequency"], **{key: MODES[key] for key in ("dofs", "damping", "shapes")}}
+    for save, name in WRITERS:
+        save(tmp_path / name, other)
+        with pytest.raises(
+            ValueError, match=rf'modal\.file: "f_n" of {name} is not used, but there is no freq'
+        ):
+            scene_of(tmp_path, name)
+    assert scene_of(tmp_path, "m.npz", frequency=[1.0, 2.0]).notes == ('modal: "f_n" of m.npz is not used',)
+
+
 def test_a_universal_file_is_in_hertz(tmp_path):
     shutil.copy(HERE / "two_modes.uff", tmp_path)
     force = [{"dof": "12x", "amplitude": 1.0}]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import kind
+from fcm.scene.errors import choices, kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray, Modal
@@ -18,6 +18,7 @@ from fcm.scene.rules import RULES, as_float
 from fcm.scene.section import Section
 
 KEYS = ("dofs", "mass", "frequency", "damping", "shapes", "participation", "diameter")
+NEEDED = ("dofs", "frequency", "damping", "shapes")  # of these: in the scene or in its file
 UNITS = {"rad/s": 1.0, "Hz": 2 * pi}  # rad/s in one of the unit
 
 
@@ -83,12 +84,23 @@ def _with_file(section: Section, files: Files, unit: str, waves: bool) -> tuple[
             section.wrong("file", fault)
         _check_inline(section)
         return None, []
-    notes = found.pop("notes")
+    notes, unused = found.pop("notes"), found.pop("unused")
     if "angular_frequency" in found:
         found["frequency"] = found.pop("angular_frequency") / UNITS[unit]
+    notes += _unused(section, found, unused, name)
     if "mass" not in found and "mass" not in section.data and "shapes" in found:
         notes += note_of_scale(name, found["shapes"])
     return Section({**found, **section.data}, section.path, section.mistakes), notes
+
+
+def _unused(section: Section, found: Mapping[str, Any], unused: Sequence[str], name: str) -> list[str]:
+    """A note on arrays that no key takes; a mistake where one lacks that may be among them."""
+    if not unused:
+        return []
+    said = f"{choices(unused)} of {name} {'is' if len(unused) == 1 else 'are'} not used"
+    if lacking := [key for key in NEEDED if key not in found and key not in section.data]:
+        section.wrong("file", f"{said}, but there is no {' and no '.join(lacking)}")
+    return [f"modal: {said}"]
 
 
 def _check_inline(section: Section) -> None:

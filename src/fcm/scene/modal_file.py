@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
-from fcm.scene.errors import choices, kind, quoted
+from fcm.scene.errors import kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.uff import read_uff
 
@@ -29,6 +29,8 @@ LARGEST_VALUE = 1e-6  # relative: how near to 1 the largest value of a shape is 
 
 def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, Any]:
     """What a file of modes holds of dofs, mass, frequency, damping and shapes, and "notes" on it.
+
+    "unused" are the names of its other arrays.
 
     waves : whether shapes may be complex, as those of travelling waves are.
 
@@ -55,7 +57,8 @@ def read_modal_file(name: str, files: Files, waves: bool = False) -> dict[str, A
         found = {key: _plain(key, value, kinds.get(key, "iuf"), faults) for key, value in found.items()}
         if faults:
             raise DataFileError(*faults, *_lengths(found))
-        return found | {"notes": notes}
+        unused = [one for one in others if one not in WANTED and not one.startswith("__")]
+        return found | {"notes": notes, "unused": unused}
 
 
 def note_of_scale(name: str, shapes: Any) -> list[str]:
@@ -88,9 +91,6 @@ def _by_keys(
     if unknown and "mass" not in arrays:
         may_be = f"{quoted(name)} has {quoted(unknown[0])}, which may be the modal mass"
         faults.append(f"{may_be}: name it mass, or leave it out")
-    unused = [one for one in others if one not in WANTED and not one.startswith("__")]
-    if unused:
-        notes.append(f"modal: {choices(unused)} of {name} {'is' if len(unused) == 1 else 'are'} not used")
     if "frequency" in arrays and "angular_frequency" in arrays:
         faults.append(f"{quoted(name)} has frequency and angular_frequency; keep one")
     return arrays

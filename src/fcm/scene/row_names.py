@@ -51,6 +51,7 @@ def names_of(text: str) -> list[str]:
     for number, words in enumerate(lines, 1):
         if len(words) > 2:
             raise ValueError(
-                f"line {number} has {len(words)} words: write one name on each line, or a node and a direction"
+                f"line {number} has {len(words)} words: write one name on each line, "
+                "or a node and a direction"
             )
     return [(":" if words[-1].isdecimal() else "").join(words) for words in lines if words]
