@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from fcm import load_scene
 from fcm.motion import simulate
 from fcm.response.exact import trace_exact
 
 from ..motion.cases import one_mode, two_contacts, yang
+
+SCENES = Path(__file__).parent / "scenes"
 
 
 def visited(scene, at):
@@ -51,12 +55,44 @@ def test_the_same_as_long_simulations(scene):
 def test_a_motion_of_two_periods():
     """n_0 = 0 at 0.74: every second cycle is larger, and the extremes are those of both."""
     curve, u = visited(yang(0.0), [0.71, 0.74, 0.78])
-    assert curve.complete and len(curve.jumps()) == 2
+    assert curve.complete
     two = simulate(yang(0.0), 0.74, 300).measures(last=2)
     assert abs(two[0].amplitude[0] - two[1].amplitude[0]) > 0.1
     span = max(m.greatest[0] for m in two) - min(m.least[0] for m in two)
     assert u["up", 0.74] == pytest.approx(0.5 * span, rel=1e-4)
     assert u["down", 0.74] == pytest.approx(0.5 * span, rel=1e-4)
+
+
+def test_where_the_period_doubles_nothing_jumps():
+    """Just beyond 0.7282 a simulation repeats after two periods, and hardly differs from the motion below."""
+    curve, _ = visited(yang(0.0), [0.71, 0.74, 0.78])
+    assert curve.jumps() == []
+    (below,) = simulate(yang(0.0), 0.728, 1000).measures(last=1)
+    two = [one.amplitude[0] for one in simulate(yang(0.0), 0.728215, 3000).measures(last=2)]
+    assert min(two) < 0.99 * max(two)
+    assert two == pytest.approx([below.amplitude[0]] * 2, rel=0.02)
+
+
+def test_jumps_do_not_hang_on_the_frequencies_that_are_visited():
+    """Two are far from the ends of both branches; there is one motion beyond each, which is simulated."""
+    curve, _ = visited(yang(), [1.0, 1.6])
+    for jump, beyond, end in zip(curve.jumps(), (1.23984, 1.19355), (1.239829, 1.193559), strict=True):
+        assert jump.frequency == pytest.approx(end, abs=2e-6)
+        (there,) = simulate(yang(), beyond, 800).measures(last=1)
+        assert jump.after == pytest.approx(there.amplitude, rel=2e-3)
+
+
+def test_a_corner_is_no_jump():
+    """The motion changes quickly below the resonance: it is followed by a simulation in small steps."""
+    scene = load_scene(SCENES / "sharp_corner.toml")
+    curve, _ = visited(scene, [1.0, 1.5])
+    assert curve.complete and curve.jumps() == []
+    state, before = simulate(scene, 1.236, 400).end, None
+    for omega in np.linspace(1.236, 1.238, 11):
+        motion = simulate(scene, float(omega), 150, state)
+        now, state = motion.measures(last=1)[0].amplitude, motion.end
+        assert before is None or now == pytest.approx(before, rel=0.03)
+        before = now
 
 
 def test_frequencies_without_steady_motion_are_named():

@@ -34,7 +34,7 @@ from fcm.scene.model import FloatArray, Scene
 FAR = 0.5  # distance along the curve, in units of the motion, that is not continued at once
 ASTRAY = 0.6  # distance from what the direction foretells, relative to the way, beyond which a solution
 CLOSE = 0.05  # is another branch; but never within this distance
-SMALLEST = 1e-3  # part of the way between two frequencies that is not divided further
+SMALLEST = 1e-6  # part of the way between two frequencies that is not divided further: jumps are known to it
 BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
 MOST_NAMED = 5  # frequencies in a sentence
 JUMP = 0.01  # relative change of an amplitude that is one
@@ -158,9 +158,24 @@ class Visitor:
 
     def _note_jump(self, sweep: str, at: float, before: Sample | None, after: Sample | None) -> None:
         if before is not None and after is not None:
-            old, new = before.measure.amplitude, after.measure.amplitude
+            old, new = before.measure.amplitude, self._brought_back(after, at).measure.amplitude
             if (np.abs(new - old) > JUMP * np.maximum(new, old)).any():
                 self.jumps.append(Jump(sweep, at, old, new))
+
+    def _brought_back(self, after: Sample, at: float) -> Sample:
+        """The motion beyond the end of a branch at the frequency of the end itself, or as near as it goes.
+
+        It is the one before where there was no jump: where the period doubles, or a corner was in the way.
+        """
+        kept = self._here, self._sample, self._state
+        if after.steady is None:
+            self._here = self._sample = after
+            self._continue(at)
+        else:
+            self._settle(after.state, at)
+        there = self._sample or after
+        self._here, self._sample, self._state = kept
+        return there
 
     def _continue(self, omega: float) -> bool:
         """Follow the periodic solution to a frequency, or as near as it is stable."""
