@@ -7,6 +7,7 @@ from typing import Any
 
 from fcm.cli.terminal import plain
 
+UNSTABLE = "!"  # beside a peak where the motion is not stable
 UNKNOWN = "?"  # beside that of which it is not told whether it is stable
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fcm.cli.columns import UNKNOWN, aligned, number, ranges, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, short, swept
 from fcm.cli.jump_table import jump_table
 from fcm.rotation import is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_UNSTABLE = "!"  # beside a peak where the motion is not stable
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
 _OF_LEVELS = "- not told: along levels of the forces what harmonics leave out is not estimated"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
@@ -85,8 +84,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
     marks = {_stability(curve, dof) for curve in curves for dof in dofs}
-    if _UNSTABLE in marks:
-        lines.append(f"{_UNSTABLE} the motion is not stable there: none stays at this peak")
+    if UNSTABLE in marks:
+        lines.append(f"{UNSTABLE} the motion is not stable there: none stays at this peak")
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} whether the motion is stable there is not told")
     if any(_untold(curve, dof) for curve in curves for dof in dofs):
@@ -109,7 +108,7 @@ def _stability(curve: Curve, dof: str) -> str:
     peak = curve["peak"].get(dof) or {}
     if peak.get("amplitude") is None or "stable" not in peak or peak["stable"]:
         return ""
-    return UNKNOWN if peak["stable"] is None else _UNSTABLE
+    return UNKNOWN if peak["stable"] is None else UNSTABLE
 
 
 def _untold(curve: Curve, dof: str) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.columns import aligned, short, swept
+from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, short, swept
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
+_SAID = {
+    UNSTABLE: f"\n{UNSTABLE} the motion is not stable there: none stays at this peak",
+    UNKNOWN: f"\n{UNKNOWN} whether the motion is stable there is not told",
+}
 OF_NO_USE = {  # beside --track, and why
     "level": "give --over level instead",
     "at": "every frequency of the range is looked at",
@@ -106,7 +110,7 @@ def as_table(result: Mapping[str, Any], unit: str) -> str:
     parts = [_optimum(one, unit) for one in result.get("optimum", [])]
     tracked = result["tracked"]
     if tracked["what"] != "optimum":
-        parts += [_curves(tracked, unit), _turns(tracked, unit), _errors(tracked, unit)]
+        parts += [one(tracked, unit) for one in (_curves, _turns, _unstable, _errors)]
     return "\n\n".join(filter(None, parts))
 
 
@@ -122,11 +126,19 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     if one["between"]:
         ends = "{:.6g} and {:.6g}".format(*one["between"])
         kind += f"; known by trials alone, between {ends}, as not all peaks could be followed"
-    at = " and ".join(f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}" for place in one["at"])
+    at = " and ".join(
+        f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}{_mark(place)}" for place in one["at"]
+    )
+    said = "".join(text for mark, text in _SAID.items() if mark in map(_mark, one["at"]))
     least = (
         f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g} (error {short(one['error'])})"
     )
-    return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}"
+    return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}{said}"
+
+
+def _mark(place: Mapping[str, Any]) -> str:
+    """Beside a peak of which it is not known that it is stable."""
+    return {True: "", False: UNSTABLE, None: UNKNOWN}[place["stable"]]
 
 
 def _curves(tracked: Mapping[str, Any], unit: str) -> str:
@@ -157,6 +169,19 @@ def _turns(tracked: Mapping[str, Any], unit: str) -> str:
             where = [f"{turn['number']:.8g}", f"{turn['frequency']:.8g}"]
             rows.append([*swept(curve), *where, turn["kind"]])
     return aligned(rows, left=1) if len(rows) > 1 else ""
+
+
+def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
+    """Between which numbers no motion stays at what is tracked, or none may."""
+    over = plain(tracked["over"])
+    rows = [[*_swept(tracked), "what", f"{over} from", "to", f"{unit} from", "to", "motion"]]
+    for curve in tracked["curves"]:
+        for key, said in (("not_stable", "not stable"), ("stability_untold", "stability not told")):
+            for one in curve.get(key, ()):
+                ends = [f"{value:.6g}" for value in (*one["number"], *one["frequency"])]
+                rows.append([*swept(curve), plain(curve["what"]), *ends, said])
+    title = "where no motion stays, or it is not told whether one does:"
+    return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
 
 
 def _errors(tracked: Mapping[str, Any], unit: str) -> str:

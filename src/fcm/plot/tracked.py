@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,6 +33,7 @@ class DrawnTrack:
     amplitude: FloatArray  # (point, dof)
     turn: FloatArray  # (point,) 1 where the number turns back
     trough: FloatArray  # (point,) 1 where a peak is none
+    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that is not told
 
 
 @dataclass(frozen=True)
@@ -60,11 +62,12 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             return None
         names = (*_NEEDED[:4], "tracked_trough")
         number, frequency, amplitude, turn, trough = (floats(variables[name]) for name in names)
+        stable = floats(variables["tracked_stable"]) if "tracked_stable" in variables else np.ones_like(turn)
         whats = [str(one) for one in np.atleast_1d(variables["track_what"][:])]
         tracks = []
         for i, what in enumerate(whats):
             there = np.isfinite(number[i])
-            columns = (one[i][there] for one in (number, frequency, amplitude, turn, trough))
+            columns = (one[i][there] for one in (number, frequency, amplitude, turn, trough, stable))
             tracks.append(DrawnTrack(what, *columns))
         optimum = None
         if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
@@ -97,12 +100,13 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
         for track in tracks:
             # an open curve ends at an end of the range: the window goes on beyond it
             axes.fill(track.number, track.frequency, color=_SHADE, linewidth=0.0, zorder=0)
-            axes.plot(track.number, track.frequency, color="black", linewidth=1.0)
+            _line(axes, track, track.frequency, "black")
             at = track.turn == 1.0
             axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
         axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
         _name_number(axes, drawn.key)
         axes.set_title("shaded: several solutions", loc="right", fontsize=8)
+        _say_unstable(axes, tracks)
     return figure
 
 
@@ -122,8 +126,8 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
             label = track.what if track.what in names else None  # once for all its curves
             names = [one for one in names if one != label]
-            upper.plot(track.number, height, color=colours[track.what], linewidth=1.1, label=label)
-            lower.plot(track.number, frequency, color=colours[track.what], linewidth=1.1)
+            for axes, values, text in ((upper, height, label), (lower, frequency, None)):
+                _line(axes, track, values, colours[track.what], text)
         upper.set_ylabel(with_unit("Peak amplitude", drawn.length), parse_math=False)
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
         low, high = upper.get_ylim()
@@ -131,9 +135,31 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
             logarithmic_axis(upper)
         if len(colours) > 1:
             upper.legend()
+        _say_unstable(lower, wanted)
         _name_number(lower, drawn.key)
         _mark_optimum(upper, lower, drawn)
     return figure
+
+
+def _line(axes: Axes, track: DrawnTrack, y: FloatArray, colour: str, label: str | None = None) -> None:
+    """Solid where the motion is stable, dashed where it is not, dotted where that is not told."""
+    stable = track.stable == 1.0
+    axes.plot(track.number, np.where(stable, y, np.nan), color=colour, linewidth=1.1, label=label)
+    for there, style in ((track.stable == 0.0, "--"), (np.isnan(track.stable), ":")):
+        reach = there.copy()  # to the neighbours, so that no gap is left
+        reach[1:] |= there[:-1]
+        reach[:-1] |= there[1:]
+        if there.any():
+            axes.plot(track.number, np.where(reach, y, np.nan), style, color=colour, linewidth=1.1)
+
+
+def _say_unstable(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
+    """What dashed and dotted lines mean, where there are some."""
+    stable = np.concatenate([track.stable[track.trough != 1.0] for track in tracks])
+    said = ["dashed: no motion stays there"] if (stable == 0.0).any() else []
+    said += ["dotted: not told whether one does"] if np.isnan(stable).any() else []
+    if said:
+        axes.set_title("; ".join(said), loc="left", fontsize=8)
 
 
 def _name_number(axes: Axes, key: str) -> None:

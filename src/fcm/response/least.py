@@ -20,6 +20,7 @@ from fcm.scene.model import FloatArray, Scene
 from fcm.track.descent import Valley, descend
 from fcm.track.envelope import Least, Target
 from fcm.track.lowest import Lowest, Search
+from fcm.track.stability import stability_along
 from fcm.track.trials import by_trials
 from fcm.track.varied import along
 
@@ -130,7 +131,8 @@ def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
     """Of one number, by the curves of the peaks."""
     if found.best is None:
         raise ResponseError(_nothing(task))
-    curves = [as_curve(task.scene, one) for one in found.curves]
+    way = _search(task, harmonics).way
+    curves = [as_curve(task.scene, one, stability_along(way, one)) for one in found.curves]
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 

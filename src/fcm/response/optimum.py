@@ -13,7 +13,8 @@ from fcm.response.around import check_no_ring
 from fcm.response.least import Found, Task, optimum, with_the_same, with_values
 from fcm.response.sweep import trace
 from fcm.response.wanted import wanted_of
-from fcm.results.result import Response
+from fcm.results.peak import stability_at_top
+from fcm.results.result import Curve, Response
 from fcm.results.tracked import Optimal, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
@@ -23,6 +24,7 @@ from fcm.scene.model import Optimum, Scene
 from fcm.track.lowest import HIGHER
 
 SEEKING = 0.8  # share of the bar that is over when the optimum is found
+SAME_PLACE = 1e-6  # relative difference of frequencies at which a peak was tracked and traced
 
 
 def optimise(
@@ -114,10 +116,19 @@ def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
     return replace(free, curves=tuple(curves))
 
 
-def _with_error(found: Optimal, curve: Any) -> Optimal:
-    """With the estimated error of the peaks that are greatest."""
+def _with_error(found: Optimal, curve: Curve) -> Optimal:
+    """With the estimated error of the peaks that are greatest, and whether the motion is stable there."""
     errors = [curve.peaks[dof].error for dof, _ in found.active]
-    return replace(found, error=float(np.max(errors)) if errors else np.nan)
+    stable = tuple(_stability(curve, dof, omega) for dof, omega in found.active)
+    return replace(found, error=float(np.max(errors)) if errors else np.nan, stable=stable)
+
+
+def _stability(curve: Curve, dof: str, omega: float) -> float:
+    """Of the peak of a degree of freedom at a frequency, which need not be its greatest; as of a `Peak`."""
+    d, there = list(curve.peaks).index(dof), np.abs(curve.frequency - omega) <= SAME_PLACE * omega
+    if there.any():
+        return float(stability_at_top(curve.amplitude[there], curve.stable[there])[d])
+    return curve.peaks[dof].stable  # of a curve of which no more points are kept
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:

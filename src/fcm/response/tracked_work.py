@@ -20,12 +20,13 @@ from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
 from fcm.run import Interrupted, Report
 from fcm.scene.draft import Number
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 from fcm.track.curve import Track
 from fcm.track.curves import tracks
 from fcm.track.error import change, places
 from fcm.track.onset import KINDS as ONSETS
 from fcm.track.spot import Ending, Spot, Way
+from fcm.track.stability import stability_along
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
@@ -65,11 +66,13 @@ class TrackedWork:
         stopped = found.interrupted
         for one in found.curves:  # after an interruption nothing is estimated any more
             told: tuple[TrackedError, ...] = ()
+            stable: FloatArray | None = None
             try:
+                stable = None if stopped else once(partial(stability_along, way, one))
                 told = () if stopped else once(partial(errors, way, one))
             except KeyboardInterrupt:
                 stopped = True
-            followed.curves.append(as_curve(scene, one, told))
+            followed.curves.append(as_curve(scene, one, stable, told))
         if not stopped:
             return followed
         followed.problems.append(STOPPED)
@@ -115,8 +118,10 @@ def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
     return tuple(told)
 
 
-def as_curve(scene: Scene, one: Track, told: tuple[TrackedError, ...] = ()) -> TrackedCurve:
-    """A track in the words of its scene, with its errors as far as they were estimated."""
+def as_curve(
+    scene: Scene, one: Track, stable: FloatArray | None, told: tuple[TrackedError, ...] = ()
+) -> TrackedCurve:
+    """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
     corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
     stopped = [ending for ending in one.endings if not ending.whole]
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
@@ -129,6 +134,7 @@ def as_curve(scene: Scene, one: Track, told: tuple[TrackedError, ...] = ()) -> T
         corner=np.array(corners, dtype=str),
         turn=np.array([bool(spot.turn) for spot in one.spots]),
         trough=~one.greatest,
+        stable=np.full(one.s.size, np.nan) if stable is None else stable,
         closings=tuple(one.turns()),
         complete=one.whole,
         reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",

@@ -38,6 +38,7 @@ class TrackedCurve:
     corner: npt.NDArray[np.str_]  # (point,) where the point is a corner of the response: of what
     turn: npt.NDArray[np.bool_]  # (point,) where the number turns back
     trough: npt.NDArray[np.bool_]  # (point,) of a peak that is none, but a least amplitude
+    stable: FloatArray  # (point,) 1 where the motion is, 0 where not, NaN where that cannot be told
     closings: tuple[tuple[int, str], ...]  # points where it turns, and what they are
     complete: bool
     reason: str
@@ -70,9 +71,26 @@ class TrackedCurve:
                 }
                 for one in self.errors
             ],
+            **self._stability(unit),
             "complete": self.complete,
             **({} if self.complete else {"reason": self.reason}),
         }
+
+    def _stability(self, unit: str) -> dict[str, Any]:
+        """Stretches of the curve on which the motion is not stable, or not known to be; troughs apart."""
+        verdicts = {"not_stable": self.stable == 0.0, "stability_untold": np.isnan(self.stable)}
+        out = {}
+        for name, where in verdicts.items():
+            edges = np.flatnonzero(np.diff(where & ~self.trough, prepend=False, append=False))
+            stretches = [slice(*ends) for ends in edges.reshape(-1, 2).tolist()]
+            out[name] = [
+                {
+                    "number": [float(self.number[there].min()), float(self.number[there].max())],
+                    "frequency": in_unit(np.sort(self.frequency[there])[[0, -1]], unit).tolist(),
+                }
+                for there in stretches
+            ]
+        return {name: found for name, found in out.items() if found}
 
 
 @dataclass(frozen=True)
@@ -88,6 +106,7 @@ class Optimal:
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
+    stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
@@ -96,7 +115,14 @@ class Optimal:
             "values": self.values,
             "minimise": list(self.minimised),
             "value": self.value,
-            "at": [{"dof": dof, "frequency": float(in_unit(omega, unit))} for dof, omega in self.active],
+            "at": [
+                {
+                    "dof": dof,
+                    "frequency": float(in_unit(omega, unit)),
+                    "stable": None if np.isnan(stable) else bool(stable),
+                }
+                for (dof, omega), stable in zip(self.active, self.stable, strict=True)
+            ],
             "kind": self.kind,
             "harmonics": list(self.harmonics),
             "error": self.error,

@@ -20,6 +20,7 @@ MEANINGS = {  # of what is known of each point of a tracked curve
     "amplitude": "half the peak-to-peak displacement at the tracked point",
     "turn": "1 where the number turns back: a window of several solutions opens or closes",
     "trough": "1 where a tracked peak is a least amplitude, between two peaks",
+    "stable": "1 where small disturbances of the motion there die out, 0 where not",
     "corner": "onset at which the response has a corner there, if it has",
 }
 
@@ -125,6 +126,11 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
             ("optimum", "equal"),
             in_unit(_padded(places), response.frequency_unit),
             {"long_name": "excitation frequency of that peak, or of those that are equal"},
+        ),
+        "optimum_stable": (
+            ("optimum", "equal"),
+            _padded([np.array(one.stable) for one in optima]),
+            {"long_name": "1 where the motion at that peak, or those, is stable, 0 where not", "units": "1"},
         ),
         "optimum_kind": (
             ("optimum",),
