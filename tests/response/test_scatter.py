@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,7 @@ from fcm.plot.read import DrawnCurve, read_response
 from fcm.response.sweep import trace
 from fcm.results.bands import bands_of, greatest_at
 from fcm.results.output import summary, write_netcdf
+from fcm.results.scatter import scatter, summary_of
 from fcm.scene import scene_from_dict
 
 COUNT = 12
@@ -80,6 +83,79 @@ def test_the_dataset_holds_them(response):
     one = summary(response)["scatter"][1]
     assert data.peak_percentile.sel(percent=5.0, dof="u").values[1] == one["peak"]["u"]["amplitude"]["5"]
     assert data.jump_percentile.values[1, 0, 0] == one["jumps"]["up"]["frequency"]["5"]
+
+
+def curve_with(stable, tail=()):
+    """Along 1 to 4 rad/s at amplitude 1, and tail: (frequency, amplitude, stable) of more points."""
+    more = np.array(tail, dtype=float).reshape(-1, 3)
+    frequency = np.concatenate((np.linspace(1.0, 4.0, len(stable)), more[:, 0]))
+    amplitude = np.concatenate((np.ones(len(stable)), more[:, 1]))[:, None]
+    kept = trace(fcm.load_scene("yang1998-n5"), "closed-form").curves[0]
+    peaks = {"u": kept.peaks["u"]}
+    told = np.concatenate((np.array(stable, dtype=float), more[:, 2]))
+    return replace(kept, frequency=frequency, amplitude=amplitude, stable=told, peaks=peaks, gist=None)
+
+
+def test_a_first_jump_that_is_not_known_is_none_of_the_percentiles(scatter_of):
+    """Of seven points 0.5 apart, by hand: upwards one jumps at 2.5, one at 3, of one it is not known, as
+    it may do so from 1.5 on, of one not whether it does; one is stable, and one begins where nothing is."""
+    nan = np.nan
+    given = [
+        [1, 1, 1, 1, 0, 0, 1],
+        [1, 1, 1, 1, 1, 0, 1],
+        [1, 1, nan, 1, 0, 0, 1],
+        [1, 1, nan, nan, 1, 1, 1],
+        [1, 1, 1, 1, 1, 1, 1],
+        [0, 1, 1, 1, 1, 1, 1],
+    ]
+    up = scatter_of([curve_with(stable) for stable in given])["jumps"]["up"]
+    assert (up["share"], up["untold"]) == (pytest.approx(2 / 6), pytest.approx(2 / 6))
+    assert up["frequency"]["50"] == pytest.approx(2.75)
+    assert up["frequency"]["5"] == pytest.approx(2.525)
+
+
+def test_a_jump_before_stability_is_untold_is_known(scatter_of):
+    """Downwards from 4 the motion is lost at 3, and is not told to be stable from 2 down."""
+    (one, other) = ([1, nan_, nan_, 0, 1, 1, 1] for nan_ in (np.nan, 1.0))
+    down = scatter_of([curve_with(one), curve_with(other)])["jumps"]["down"]
+    assert (down["share"], down["untold"], down["frequency"]["5"]) == (1.0, 0.0, 3.0)
+
+
+def test_a_jump_that_may_be_a_little_earlier_is_known(scatter_of):
+    """Lost at 2.5 in any case, and not told to be stable from 2.49, 0.4 %, or 2.45, 2 %, on."""
+    for untold, expected in ((2.49, (1.0, 0.0)), (2.45, (0.0, 1.0))):
+        curve = curve_with([1, 1, 1, 1, 0, 0, 1])
+        place = [1.0, 1.5, untold, 0.5 * (untold + 2.5), 2.5, 3.0, 4.0]
+        told = np.array([1, 1, 1, np.nan, 1, 0, 1])
+        up = scatter_of([replace(curve, frequency=np.array(place), stable=told)])["jumps"]["up"]
+        assert (up["share"], up["untold"]) == expected
+
+
+@pytest.fixture
+def scatter_of(response):
+    """Of curves that differ in drawn numbers alone."""
+
+    def made(curves):
+        numbers = [{"contact.c.n_0": float(i)} for i, _ in enumerate(curves)]
+        own = [replace(curve, parameters=one) for curve, one in zip(curves, numbers, strict=True)]
+        (found,) = scatter(replace(response, curves=own, dofs=("u",)))
+        return summary_of(found, ("u",), "rad/s")
+
+    return made
+
+
+def test_what_is_not_known_is_printed_and_written(scatter_of, response):
+    from fcm.cli.curves import as_table
+    from fcm.results.curve_fields import scatter_fields
+
+    told = [[1, 1, np.nan, 1, np.nan, 1, 1], [1, 1, 1, 1, 1, 1, 1]]
+    curves = [curve_with(stable) for stable in told]
+    one = scatter_of(curves)
+    printed = summary(response) | {"scatter": [one | {"peak": {d: one["peak"]["u"] for d in "uv"}}]}
+    assert "of 0% of the curves; 50% may jump, as stability is not told" in as_table(printed, "rad/s")
+    own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
+    fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
+    assert fields["jump_untold_share"].values.tolist() == [[0.5, 0.5]]
 
 
 def test_nothing_is_said_where_nothing_is_drawn():

@@ -38,14 +38,17 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
 
 def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     """Percentiles over the curves of random draws, a line for each quantity."""
-    jumps = {f"jump {sweep} at {unit}": one for sweep, one in found["jumps"].items() if one["share"]}
+    jumps = {
+        f"jump {sweep} at {unit}": one
+        for sweep, one in found["jumps"].items()
+        if one["share"] or one["untold"]
+    }
     rows = []
     for dof in dofs if found["peak"] else ():
         for name, kind in ((f"peak {dof}", "amplitude"), (f"at {unit}", "frequency")):
             rows.append([name, *map(number, found["peak"][dof][kind].values()), ""])
     rows += [
-        [name, *map(number, one["frequency"].values()), f"of {one['share']:.0%} of the curves"]
-        for name, one in jumps.items()
+        [name, *map(number, one["frequency"].values()), _of_how_many(one)] for name, one in jumps.items()
     ]
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found["parameters"].items())
     head = f"percentiles of {found['curves']} curves{f' with {given}' if given else ''}"
@@ -53,6 +56,12 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
         return head
     percents = next(iter(found["jumps"].values()))["frequency"]
     return f"{head}\n" + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
+
+
+def _of_how_many(jump: Mapping[str, Any]) -> str:
+    """Of how many curves the percentiles of a jump are, and of how many it is not known."""
+    untold = f"; {jump['untold']:.0%} may jump, as stability is not told" if jump["untold"] else ""
+    return f"of {jump['share']:.0%} of the curves{untold}"
 
 
 def _greatest(curves: Sequence[Curve]) -> list[str]:

@@ -97,6 +97,11 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
             np.stack([one.jumping for one in found]),
             {"long_name": "share of curves that jump", "units": "1"},
         ),
+        "jump_untold_share": Field(
+            ("scatter", "sweep_direction"),
+            np.stack([one.untold for one in found]),
+            {"long_name": "share of curves that may jump, as stability is not told", "units": "1"},
+        ),
     }
 
 

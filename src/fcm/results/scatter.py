@@ -16,6 +16,8 @@ from fcm.units import in_unit
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 SWEEPS = ("up", "down")  # directions of a slow sweep of the frequency
+NONE = np.inf  # the frequency of a jump that does not occur
+NEAR = 1e-2  # relative: the default accuracy, to which a jump is known that is one or may be so much earlier
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,8 @@ class Scatter:
     """Of the curves that differ in drawn numbers alone; incomplete curves do not count.
 
     Frequencies in rad/s. Of a jump, the first that a slow sweep in the direction meets, over those curves
-    that have one: their share, (sweep,).
+    that have one: their share, (sweep,). Where the sweep may have jumped before, as stability is not told,
+    that is not known: the share of such curves, too.
     """
 
     parameters: dict[str, float]  # the swept values that are not drawn
@@ -32,6 +35,7 @@ class Scatter:
     frequency: FloatArray  # (percent, dof)
     jump: FloatArray  # (percent, sweep); NaN where no curve jumps
     jumping: FloatArray  # (sweep,)
+    untold: FloatArray  # (sweep,)
 
 
 def scatter(response: Response) -> list[Scatter]:
@@ -52,21 +56,28 @@ def scatter(response: Response) -> list[Scatter]:
 def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
     peaks = np.array([[peak[:2] for peak in curve.peaks.values()] for curve in curves])
     heights, frequencies = (peaks[..., i] if curves else np.full((1, 1), np.nan) for i in range(2))
-    jumps = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves] or [[np.nan] * len(SWEEPS)]
+    each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
+    jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
         parameters, len(curves), _percentiles(heights), _percentiles(frequencies),
-        _percentiles(np.array(jumps)), np.isfinite(jumps).mean(axis=0),
+        _percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
     )  # fmt: skip
 
 
 def _first(curve: Curve, sweep: str) -> float:
-    """The first jump in a direction that lands on another part of the curve; NaN if there is none."""
-    landing = (
-        one
-        for one in (curve.gist or gist_of(curve)).swept.jumps
-        if one.sweep == sweep and np.isfinite(one.after).any()
-    )
-    return next((one.frequency for one in landing), np.nan)
+    """Frequency of the first jump in a direction; NONE if there is none, NaN where it may be an earlier one.
+
+    That no motion is stable where the sweep begins is no jump.
+    """
+    gist, ahead = curve.gist or gist_of(curve), 1.0 if sweep == "up" else -1.0
+    met, begin = gist.swept, gist.ends[0 if sweep == "up" else 1]
+    jumps = [ahead * one.frequency for one in met.jumps if one.sweep == sweep and one.frequency != begin]
+    untold = [ahead * one.start for one in met.untold if one.sweep == sweep]
+    first = min(jumps, default=NONE)
+    if first == NONE:
+        return np.nan if untold else NONE
+    known = first - min(untold, default=first) <= NEAR * abs(first)
+    return ahead * first if known else np.nan
 
 
 def _percentiles(values: npt.NDArray[np.float64]) -> FloatArray:
@@ -95,7 +106,11 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
             if one.curves
         },
         "jumps": {
-            sweep: {"share": float(one.jumping[i]), "frequency": by_percent(jump[:, i])}
+            sweep: {
+                "share": float(one.jumping[i]),
+                "untold": float(one.untold[i]),
+                "frequency": by_percent(jump[:, i]),
+            }
             for i, sweep in enumerate(SWEEPS)
         },
     }
