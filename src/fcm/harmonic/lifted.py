@@ -15,6 +15,10 @@ SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no f
 FAR = cython.declare(cython.double, 0.5)  # a displacement of this part of the solution's size is not believed
 TURNED = cython.declare(cython.double, 0.7)  # nor a curve that goes another way, by the cosine of the angle
 GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where at once is too much
+# unknowns from which on what is not found at once is given up: there it is dear, and hundreds of such ways by
+# parts have led nowhere
+DEAR = cython.declare(cython.int, 240)
+TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
 
 
 @cython.cclass
@@ -26,7 +30,7 @@ class Lifted:
     """
 
     def __init__(self, balance: Balance, fewer: list[int], more: list[int], enough: cython.double) -> None:
-        self.balance, self.enough = balance, enough
+        self.balance, self.enough, self.dear = balance, enough, balance.unknowns >= DEAR
         self.homotopy = Homotopy(balance)
         self.newton = Newton(self.homotopy)
         width, wide = 2 + 4 * len(fewer), 2 + 4 * len(more)
@@ -77,6 +81,8 @@ class Lifted:
         self.newton.z[:] = self.guess
         if self.nearly() and self.newton.moved <= FAR and self.onward():
             return True
+        if self.dear:
+            return False
         self.newton.z[:] = self.guess
         self.homotopy.evaluate(self.guess)
         self.homotopy.removed[:] = self.homotopy.residual
@@ -112,6 +118,8 @@ class Lifted:
                 return False
             step = newton.step()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
+                return False
+            if self.dear and step > (before if count else TWICE * FAR):
                 return False
             for i in range(self.guess.shape[0]):
                 newton.z[i] += newton.scale[i] * newton.delta[i]

@@ -25,6 +25,7 @@ EFFORT = (
     8e7  # evaluations times the square of the unknowns, some second of work, before a stretch is given up
 )
 DEAR = 100  # unknowns from which on corners are passed by short steps: so many contacts have many, and slight
+LONGER = 4.0  # times what is left of that: a stretch that took more is not followed with more harmonics
 SAME = 0.02  # relative difference of amplitudes, up to which the curve has come to the other side
 BEYOND = 1.0  # times the width of a stretch, how far beyond it the curve is followed
 TRIES = 8  # points at an end of a stretch, from which it is sought
@@ -96,7 +97,8 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
 
     These are the last points before and behind a stretch at which it was found; one of them may be beyond an
     end of the path. Where the corrected curve does not lead from one to the other, it is what hangs on both,
-    as far as that stays near the stretch. None if that is nothing, or too long.
+    as far as that stays near the stretch. None if that is nothing, or too long, which is foreseen from how many
+    evaluations the stretch itself took.
     """
     path = corrected.path
     inside = np.linspace(max(first, 0), min(last, len(path.z) - 1), 5)
@@ -106,6 +108,8 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
     span = _span(corrected, before, behind)
     balance = corrected.corrector.system.with_harmonics(more).balance()
     budget = _Budget(balance.unknowns)
+    if path.evaluations * (last - first) / len(path.z) > LONGER * budget.left:
+        return None
     pieces = []
     for begin, end in ((before, behind), (behind, before)):
         if begin is None:
