@@ -97,8 +97,8 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
 
     These are the last points before and behind a stretch at which it was found; one of them may be beyond an
     end of the path. Where the corrected curve does not lead from one to the other, it is what hangs on both,
-    as far as that stays near the stretch. None if that is nothing, or too long, which is foreseen from how many
-    evaluations the stretch itself took.
+    as far as that stays near the stretch. None if that is nothing, or too long, which is foreseen from
+    how many evaluations the stretch itself took.
     """
     path = corrected.path
     inside = np.linspace(max(first, 0), min(last, len(path.z) - 1), 5)
