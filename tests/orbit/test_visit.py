@@ -52,6 +52,18 @@ def test_the_same_as_long_simulations(scene):
             assert curve.fundamental[point] == pytest.approx(last.fundamental, rel=1e-7)
 
 
+def test_a_contact_a_hundred_thousand_times_as_stiff_as_the_structure_that_sticks():
+    """Its motion is that of the structure with its springs; what closes it has 5 digits less than all."""
+    scene, omega = yang(k_u=1e5), 1.3
+    (curve,) = trace_exact(scene, [omega]).curves
+    shapes, modal = scene.modal.shapes, scene.modal  # on u and v, of modes of unit mass
+    own = modal.frequency**2 - omega**2 + 2j * omega * modal.damping * modal.frequency
+    dynamic = np.diag(own) + shapes @ np.diag([1e5, 1.0]) @ shapes.T
+    amplitude = np.abs(shapes.T @ np.linalg.solve(dynamic, shapes.sum(axis=1)))
+    assert curve.complete and set(curve.regime[:, 0]) == {"E"}
+    assert curve.amplitude == pytest.approx(np.tile(amplitude, (2, 1)), rel=1e-6)
+
+
 def test_a_motion_of_two_periods():
     """n_0 = 0 at 0.74: every second cycle is larger, and the extremes are those of both."""
     curve, u = visited(yang(0.0), [0.71, 0.74, 0.78])

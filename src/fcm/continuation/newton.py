@@ -61,7 +61,7 @@ class Newton(Bordered):
             step = self.step()
             if most < FAR and self.too_far(step, before, most, count):
                 return False
-            if self.problem.soft and step < before and self.settled(step, step / before, count):
+            if self.problem.soft and self.settled(step, step / before, count):
                 return self.direct()
             noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
             worse: cython.double = HOPELESS if self.problem.soft else 2.0
@@ -111,8 +111,11 @@ class Newton(Bordered):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def settled(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
-        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be."""
-        if step < EXACT:
+        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be.
+
+        Of the steps that rounding makes the next one may be longer.
+        """
+        if step < EXACT and ratio < 1.0:
             return True
         return count > 0 and ratio > 0.25 and step < ROUGH
 
