@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,6 +63,18 @@ def test_a_contact_a_hundred_thousand_times_as_stiff_as_the_structure_that_stick
     amplitude = np.abs(shapes.T @ np.linalg.solve(dynamic, shapes.sum(axis=1)))
     assert curve.complete and set(curve.regime[:, 0]) == {"E"}
     assert curve.amplitude == pytest.approx(np.tile(amplitude, (2, 1)), rel=1e-6)
+
+
+def test_of_a_contact_too_stiff_to_visit_it_is_said_what_would_do(monkeypatch):
+    monkeypatch.setattr("fcm.response.exact.ENOUGH", 1e-9)
+    (curve,) = trace_exact(yang(k_u=1e12), [1.0, 1.3]).curves
+    assert re.fullmatch(
+        r"not finished in 1e-09 s of processor time, at the start; the k_u of contact \S+ is \S+ times as "
+        r"stiff as the structure there, so .*: try \S+, nearly rigid; half of that tells how nearly",
+        curve.reason,
+    )
+    (slow,) = trace_exact(yang(), [1.0], limit=1e-9).curves
+    assert not slow.complete and slow.reason == "not finished in 1e-09 s of processor time, at the start"
 
 
 def test_a_motion_of_two_periods():

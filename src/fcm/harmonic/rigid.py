@@ -16,6 +16,7 @@ from fcm.scene.model import FloatArray
 
 TOO_STIFF = 1e7  # k |G|, from which on curves were seen to stop
 ENOUGH = 1e6  # k |G|, at which a contact is nearly rigid: the root of its inverse is a thousandth
+TOO_QUICK, SLOW = 1e6, 1e5  # and both of the motion in time, of which a curve then takes long, and seconds
 
 
 def too_stiff(system: System, moves: bool = False) -> str:
@@ -30,10 +31,11 @@ def too_stiff(system: System, moves: bool = False) -> str:
     receptance = _least_receptance(system)
     worst = int((springs * receptance).argmax())
     ratio = springs[worst] * receptance[worst]
-    if not ratio > TOO_STIFF:
+    most, enough = (TOO_QUICK, SLOW) if moves else (TOO_STIFF, ENOUGH)
+    if not ratio > most:
         return ""
     contact, key = system.scene.contacts[worst // 2], ("k_u", "k_v")[worst % 2]
-    instead = ENOUGH / receptance[worst]
+    instead = enough / receptance[worst]
     why = "rounding decides when it slips or opens"
     if moves:
         why = f"a period may have {np.sqrt(ratio):.0e} vibrations on it, each with slip of its own"

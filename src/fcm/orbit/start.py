@@ -134,22 +134,24 @@ def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
         yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
 
 
-def solution_at(scene: Scene, omega: float) -> Orbit:
+def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
     """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
+
+    look is called now and then.
 
     Raises
     ------
     SimulationError
         If there is none.
     """
-    near = list(near_balance(scene, omega))
+    near = list(near_balance(scene, omega, look))
     stable = [orbit for orbit in near if orbit.stable]
-    return (stable or _from_rest(scene, omega, bool(near)) or near)[0]
+    return (stable or _from_rest(scene, omega, bool(near), look) or near)[0]
 
 
-def near_balance(scene: Scene, omega: float) -> Iterator[Orbit]:
+def near_balance(scene: Scene, omega: float, look: Look = without_end) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
-    return _shot(scene, omega, balanced_states(scene, omega))
+    return _shot(scene, omega, balanced_states(scene, omega), look)
 
 
 def _shot(scene: Scene, omega: float, guesses: Iterable[State], look: Look = without_end) -> Iterator[Orbit]:

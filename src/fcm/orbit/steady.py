@@ -20,7 +20,7 @@ from fcm.motion.measure import Measure, measure
 from fcm.motion.run import cycles_from
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.orbit.periodic import converged, within_unit_circle
+from fcm.orbit.periodic import Look, converged, within_unit_circle, without_end
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray
@@ -55,8 +55,10 @@ class Steady(NamedTuple):
     error: float  # by which it fails to repeat, relative to the motion; nan of periods 0
 
 
-def steady(system: System, state: State) -> Steady | State:
+def steady(system: System, state: State, look: Look = without_end) -> Steady | State:
     """The steady motion that a simulation from a state comes to; where there is none, the state at its end.
+
+    look is called after every cycle.
 
     Examples
     --------
@@ -69,6 +71,7 @@ def steady(system: System, state: State) -> Steady | State:
     for count in FREE_CYCLES:
         ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
+            look()
             ends.append(end)
             cycles.append(cycle)
         state = ends[-1]

@@ -74,7 +74,7 @@ def trace_exact(
     jobs, place, keep, resume
         As in `fcm.response.trace`.
     limit : float, optional
-        Processor time for each curve that is followed [s]; what there is of it then, is the result.
+        Processor time for each curve [s]; what there is of it then, is the result.
     tolerance : float, optional
         Greatest relative change of the amplitudes by modes that are left out; 0 leaves out only those that
         have no effect, None nothing.
@@ -185,7 +185,7 @@ class ExactWork:
             return _traced(scene, report, self.limit)
         if self.at is None:
             return _traced_lightly(scene, report, self.limit)
-        return _visited(scene, self.at, report)
+        return _visited(scene, self.at, report, self.limit)
 
 
 def _traced_lightly(scene: Scene, report: Report, limit: float | None) -> Curve:
@@ -220,8 +220,7 @@ def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitP
 
     Where a contact is too stiff for that to end, it is said after so long; a limit of one's own is kept.
     """
-    stiff = _too_stiff(scene)
-    limit = ENOUGH if limit is None and stiff else limit
+    stiff, limit = _too_stiff(scene, limit)
     problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
     try:
         paths, without = explore(problem, legs, legs.look)
@@ -229,27 +228,36 @@ def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitP
     except (KeyboardInterrupt, TimeOver) as stop:
         legs.keep()
         paths = legs.paths()
-        where = reached(scene, paths)
-        over = (
-            f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
-        )
-        reason = over + where
+        reason = _cut_off(stop, limit) + reached(scene, paths)
     return problem, paths, reason + stiff if reason else ""
 
 
-def _too_stiff(scene: Scene) -> str:
-    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''."""
+def _cut_off(stop: BaseException, limit: float | None) -> str:
+    """How the reason of a curve begins that has been stopped."""
+    return f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
+
+
+def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
+    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
+
+    And the limit of time, if there is none of one's own.
+    """
     whole = scene.whole()
     resists = whole.contacts and whole.modal.frequency.all()
-    return too_stiff(System(whole, (1,)), moves=True) if resists else ""
+    stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
+    return stiff, ENOUGH if stiff and limit is None else limit
 
 
-def _visited(scene: Scene, at: tuple[float, ...], report: Report) -> Curve:
-    visitor, reason = Visitor(replace(scene, frequency_range=(0.0, at[-1]))), ""
+def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
+    around = replace(scene, frequency_range=(0.0, at[-1]))
+    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
+    visitor, reason = Visitor(around, Legs(around.frequency_range, report, limit).look), ""
     try:
         visitor.run(at, report)
-    except KeyboardInterrupt:
-        reason = STOPPED + (shown(scene, visitor.points[-1].frequency) if visitor.points else "the start")
+    except (KeyboardInterrupt, TimeOver) as stop:
+        where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
+        reason = _cut_off(stop, limit) + where
     except SimulationError as error:
         reason = str(error)
-    return visited_curve(scene, visitor, reason)
+    reason = reason or visitor.reason
+    return visited_curve(scene, visitor, reason + stiff if reason else "")

@@ -71,8 +71,8 @@ def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str) -> Curv
 
 
 def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
-    """The points at which sweeps were steady, in order; complete without a reason, its own or that one."""
-    curve = _curve(scene, visitor.points, reason or visitor.reason, everywhere=True)
+    """The points at which sweeps were steady, in order; complete without a reason."""
+    curve = _curve(scene, visitor.points, reason, everywhere=True)
     if curve.orbits is not None:
         curve.orbits.sweep = np.array(visitor.sweep, dtype="<U4")
         curve.orbits.swept = Swept(visitor.jumps, [])

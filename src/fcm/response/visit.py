@@ -22,7 +22,7 @@ from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.branch import shown
 from fcm.orbit.held import held
-from fcm.orbit.periodic import shoot
+from fcm.orbit.periodic import Look, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled, settled
 from fcm.orbit.start import first_point, solution_at
@@ -57,10 +57,10 @@ STATES = (Visit, Sample, State, Measure)  # what is saved consists of these
 
 
 class Visitor:
-    """Sweeps of one scene; what they have found is there whenever they are interrupted."""
+    """Sweeps of one scene; what they have found is there whenever they are interrupted, as by `look`."""
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.problem = scene, OrbitProblem(scene)
+    def __init__(self, scene: Scene, look: Look = without_end) -> None:
+        self.scene, self.problem, self.look = scene, OrbitProblem(scene), look
         self.newton = Newton(self.problem)
         self.points: list[Sample] = []
         self.sweep: list[str] = []
@@ -137,13 +137,13 @@ class Visitor:
     def _begin(self, omega: float) -> None:
         """Where there is nothing to continue: a stable periodic solution, or the motion from rest."""
         try:
-            orbit = solution_at(self.scene, omega)
+            orbit = solution_at(self.scene, omega, self.look)
         except CycleError as error:
             self.refused[shown(self.scene, omega)] = str(error)
             return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
-        if not (orbit.stable and self._take(first_point(self.problem, orbit))):
+        if not (orbit.stable and self._take(first_point(self.problem, orbit, self.look))):
             self._settle(State.rest(self.scene), omega)
 
     def _take(self, z: FloatArray) -> bool:
@@ -183,6 +183,7 @@ class Visitor:
         step = omega - float(self._here.z[-1])
         smallest = SMALLEST * abs(step)
         while (left := omega - float(self._here.z[-1])) != 0.0:
+            self.look()
             if self._near(omega if abs(step) >= abs(left) else omega - left + step):
                 step *= 2.0
                 continue
@@ -212,7 +213,7 @@ class Visitor:
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
         self._here, self._sample, system = None, None, System(self.scene, omega)
-        found = steady(system, state)
+        found = steady(system, state, self.look)
         if isinstance(found, State):
             self._state = found
             return
@@ -220,7 +221,7 @@ class Visitor:
         if found.periods != 1:
             self._sample = settled(omega, found)
             return
-        orbit = shoot(system, found.state)
+        orbit = shoot(system, found.state, self.look)
         if orbit is not None:
             with suppress(SimulationError):  # resonant but for rounding: no motion is determined
-                self._take(first_point(self.problem, orbit))
+                self._take(first_point(self.problem, orbit, self.look))
