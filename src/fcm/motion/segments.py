@@ -82,6 +82,29 @@ class Segments:
             out[2 * m + i] = max(max(y[2 * m + i], min(limit, flows.k_u[i] * length)), TINY)
         return whole
 
+    def length_by(self, rates: cython.double[::1]) -> float:
+        """The greatest displacement of any mode, or velocity over the mode's own rate (mode,) [1/s]."""
+        m: cython.Py_ssize_t = rates.shape[0]
+        y: cython.double[::1] = self.largest()
+        length: cython.double = TINY
+        i: cython.Py_ssize_t
+        for i in range(m):
+            length = max(length, max(y[i], y[m + i] / rates[i]))
+        return float(length)
+
+    def lasting(self, duration: cython.double, least: cython.double) -> bytes:
+        """The states in the segments that last longer than the least [s], of all those of a duration."""
+        codes = []
+        k: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        end: cython.double
+        for k in range(self.count):
+            end = self.start[k + 1] if k + 1 < self.count else duration
+            if end - self.start[k] > least:
+                for j in range(self.states.shape[1]):
+                    codes.append(int(self.states[k, j]))
+        return bytes(codes)
+
     def held(self, j: int) -> float:
         """A lower bound of the exits of contact j over all segments."""
         k: cython.Py_ssize_t

@@ -60,6 +60,7 @@ class System:
         self.sticking = np.zeros((c, self.unknowns))  # k_u w of the contacts, by x = (q, q', f)
         self.sticking[:, self.q], self.sticking[:, self.f] = self.k_u[:, None] * self.tangential, -np.eye(c)
         self.rough = [has_friction(contact) for contact in scene.contacts]
+        self.limit_rows = self._limit_rows()
         kernels = _kernels_of(scene, self._kernels)
         self.flows, self._march, self._derivative, self._along = kernels[:4]
         self.displaced, self.limits, self.integrals = kernels[4:]
@@ -128,8 +129,7 @@ class System:
         moves, limits = Scan(flows, Rows(displacements)), Scan(flows, Rows(self.limit_rows))
         return flows, March(flows), Derivative(flows), Directional(flows), moves, limits, Integrals(flows)
 
-    @property
-    def limit_rows(self) -> FloatArray:
+    def _limit_rows(self) -> FloatArray:
         """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
         c, each = len(self.contacts), np.arange(len(self.contacts))
         rows = np.zeros((c, 2, self.size - 2))

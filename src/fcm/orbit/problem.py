@@ -52,6 +52,9 @@ class OrbitProblem(Problem):
         self.span = scene.frequency_range[1] - scene.frequency_range[0]
         self.periods = 0  # that have been computed
         self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size
+        self._residual, self._jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
+        self._output, self._growth = np.asarray(self.output), np.asarray(self.growth)
+        self._scale, self._root = np.asarray(self.scale), float(np.sqrt(self.free.size))
         self._shots: dict[bytes, Shot | None] = {}
         self._numbers = 0  # in them
         self._points: set[bytes] = set()  # of them those to which a curve has come
@@ -65,13 +68,14 @@ class OrbitProblem(Problem):
         """The period from z; None where there is none."""
         z = np.asarray(z)
         key = z.tobytes()
-        if key not in self._shots:
+        shot = self._shots.get(key)
+        if shot is None and key not in self._shots:
             shot = self._made(z)
             self._numbers += _size(shot)
             if self._numbers > KEPT:
                 self._forget()
             self._shots[key] = shot
-        return self._shots[key]
+        return shot
 
     def _forget(self) -> None:
         """Forget the periods that no curve has come to; all of them, if those are too many."""
@@ -89,20 +93,20 @@ class OrbitProblem(Problem):
 
     def evaluate(self, z: FloatArray) -> int:
         """See `Problem`; not a number where there is no motion, so that no solution is sought there."""
-        shot = self.shot(z)
-        jacobian, residual = np.asarray(self.jacobian), np.asarray(self.residual)
+        shot, jacobian = self.shot(z), self._jacobian
         if shot is None:
-            jacobian[:] = residual[:] = np.nan
-            return 0
-        residual[:] = shot.gap[self.free]
-        jacobian[:, :-1] = shot.by_state if self._all else shot.by_state[self._block]
-        jacobian[:, -1] = shot.by_frequency[self.free]
+            jacobian[:] = self._residual[:] = np.nan
+        elif self._all:
+            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = shot.gap, shot.by_state, shot.by_frequency
+        else:
+            self._residual[:], jacobian[:, :-1] = shot.gap[self.free], shot.by_state[self._block]
+            jacobian[:, -1] = shot.by_frequency[self.free]
         return 0
 
     def probe(self, z: FloatArray) -> int:
         """See `Problem`."""
         shot = self.shot(z)
-        np.asarray(self.residual)[:] = np.nan if shot is None else shot.gap[self.free]
+        self._residual[:] = np.nan if shot is None else shot.gap[self.free]
         return 0
 
     def measure(self, z: FloatArray) -> int:
@@ -115,12 +119,10 @@ class OrbitProblem(Problem):
             return 0
         self._points.add(np.asarray(z).tobytes())
         system, scale = shot.system, shot.scale.copy()
-        y = shot.segments.largest()
         rates = np.maximum(self._rates, system.omega)
-        length = max(y[system.q].max(), (y[system.p] / rates).max(), 1e-300)
+        length = shot.segments.length_by(rates)
         scale[system.q], scale[system.p] = length, length * rates
-        out = np.asarray(self.scale)
-        out[:-1], out[-1] = scale[self.free] * np.sqrt(self.free.size), self.span
+        self._scale[:-1], self._scale[-1] = scale[self.free] * self._root, self.span
         return 0
 
     def bound(self, z: FloatArray) -> int:
@@ -133,7 +135,7 @@ class OrbitProblem(Problem):
     def report(self, z: FloatArray, direction: FloatArray) -> int:
         """Half the peak-to-peak of the degrees of freedom: an extreme grows as the motion at its instant."""
         shot = self.shot(z)
-        output, growth = np.asarray(self.output), np.asarray(self.growth)
+        output, growth = self._output, self._growth
         output[:] = growth[:] = 0.0
         if shot is None:
             return 0
@@ -159,9 +161,6 @@ def _label(shot: Shot) -> float:
 
     A transition that passes the start is a corner of the friction force there, though of nothing else.
     """
-    start = np.asarray(shot.segments.start)
-    lasts = np.empty_like(start)
-    lasts[:-1], lasts[-1] = start[1:] - start[:-1], shot.duration - start[-1]
-    states = np.asarray(shot.segments.states)[lasts > INSTANT * shot.duration]
-    limited = bytes(choice.contact for choice in shot.chosen if choice.limited)
-    return float(crc32(states.tobytes() + limited))
+    states = shot.segments.lasting(shot.duration, INSTANT * shot.duration)
+    limited = bytes([choice.contact for choice in shot.chosen if choice.limited])
+    return float(crc32(states + limited))

@@ -21,6 +21,7 @@ from fcm.orbit.derivative import derivative_at
 from fcm.scene.model import Contact, FloatArray, Scene
 
 MARGIN = 1e-9  # distance from the slip limit, relative to the forces
+BOTH = 1 << POSITIVE | 1 << NEGATIVE  # of what has been seen of a contact: slip in both directions
 ROUNDING = 1e-3  # of that: a contact this near to what is wanted has it, whatever its limits
 
 
@@ -56,16 +57,16 @@ def _resting(contacts: tuple[Contact, ...], displacement: FloatArray, friction: 
 
 def always_stuck(system: System, segments: Segments) -> list[int]:
     """The contacts that stick all through the segments."""
-    return [
-        j
-        for j, (rough, seen) in enumerate(zip(system.rough, segments.seen(), strict=True))
-        if seen == 1 << STICK and rough
-    ]
+    return stuck_of(system, segments.seen())
 
 
-def choices(system: System, segments: Segments, wanted: FloatArray) -> list[Choice]:
-    """The choices for all contacts that stick all through the segments; wanted are their w, (contact,)."""
-    stuck = always_stuck(system, segments)
+def stuck_of(system: System, seen: list[int]) -> list[int]:
+    """The same of what each contact has been in: see `Segments.seen`."""
+    return [j for j, states in enumerate(seen) if states == 1 << STICK and system.rough[j]]
+
+
+def choices(system: System, segments: Segments, wanted: FloatArray, stuck: list[int]) -> list[Choice]:
+    """The choices for the contacts that stick all through the segments; wanted: the w of all, (contact,)."""
     if not stuck:
         return []
     y = np.asarray(segments.y)[0]
@@ -113,15 +114,15 @@ def _margin(system: System, y: FloatArray, j: int) -> float:
     return MARGIN * float(abs(y[system.f.start + j]) + limit)
 
 
-def overshoots(system: System, segments: Segments) -> list[tuple[int, float]]:
+def overshoots(system: System, segments: Segments, seen: list[int]) -> list[tuple[int, float]]:
     """Contacts that slip in one direction only, with what their gap lacks to continue that of a `Choice`.
 
     None of these is periodic: the slip takes the force to its limit, where the contact sticks.
     """
     found = []
-    for j, (rough, seen) in enumerate(zip(system.rough, segments.seen(), strict=True)):
-        ways = seen & (1 << POSITIVE | 1 << NEGATIVE)
-        if rough and not seen & 1 << OPEN and ways in (1 << POSITIVE, 1 << NEGATIVE):
+    for j, states in enumerate(seen):
+        ways = states & BOTH
+        if ways not in (0, BOTH) and not states & 1 << OPEN and system.rough[j]:
             sign = 1.0 if ways == 1 << POSITIVE else -1.0
             found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
     return found

@@ -14,7 +14,7 @@ from fcm.motion.run import march_from
 from fcm.motion.state import State
 from fcm.motion.system import System, has_friction
 from fcm.orbit.derivative import period_derivative
-from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting
+from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting, stuck_of
 from fcm.scene.model import FloatArray, Scene
 
 SMALL = 16  # rows of a matrix, of which LAPACK finds the eigenvalues later
@@ -40,16 +40,17 @@ class Shot:
         self.duration = periods * system.period  # [s]
         self.segments, end = march_from(system, x, self.duration)
         self.gap, self.chosen = end[: system.unknowns] - x, list[Choice]()
+        self._derivatives: tuple[FloatArray, FloatArray, FloatArray] | None = None
         if resting is not None:
             self._choose(resting)
 
     def _choose(self, resting: FloatArray) -> None:
         """Let the gap of the contacts that always stick be that of their slip motions."""
-        first = self.system.f.start
-        self.chosen = choices(self.system, self.segments, resting)
+        first, seen = self.system.f.start, self.segments.seen()
+        self.chosen = choices(self.system, self.segments, resting, stuck_of(self.system, seen))
         for choice in self.chosen:
             self.gap[first + choice.contact] = choice.gap
-        for contact, missing in overshoots(self.system, self.segments):
+        for contact, missing in overshoots(self.system, self.segments, seen):
             self.gap[first + contact] -= missing
 
     @cached_property
@@ -79,31 +80,31 @@ class Shot:
         """The states of the contacts from segment to segment: while it stays, the gap is smooth."""
         return np.asarray(self.segments.states).tobytes()
 
-    @cached_property
-    def _derivatives(self) -> tuple[FloatArray, FloatArray]:
-        return period_derivative(self.system, self.segments, self.duration)
-
     @property
     def derivative(self) -> FloatArray:
         """Of the state after the period by x: (unknown, unknown)."""
-        return self._derivatives[0]
+        return self._differentiated()[0]
 
-    @cached_property
+    @property
     def by_state(self) -> FloatArray:
         """Derivative of the gap by x: (unknown, unknown)."""
-        matrix = self.derivative.copy()
-        matrix.reshape(-1)[:: self.x.size + 1] -= 1.0
-        for choice in self.chosen:
-            matrix[2 * self.system.modes + choice.contact] = choice.row
-        return matrix
+        return self._differentiated()[1]
 
-    @cached_property
+    @property
     def by_frequency(self) -> FloatArray:
         """Derivative of the gap by the frequency: (unknown,)."""
-        rate = self._derivatives[1].copy()
-        for choice in self.chosen:
-            rate[2 * self.system.modes + choice.contact] = choice.rate
-        return rate
+        return self._differentiated()[2]
+
+    def _differentiated(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The derivatives, which are computed once."""
+        if self._derivatives is None:
+            end, rate = period_derivative(self.system, self.segments, self.duration)
+            gap, first = end.copy(), self.system.f.start
+            gap.reshape(-1)[:: self.x.size + 1] -= 1.0
+            for choice in self.chosen:
+                gap[first + choice.contact], rate[first + choice.contact] = choice.row, choice.rate
+            self._derivatives = end, gap, rate
+        return self._derivatives
 
     @cached_property
     def extremes(self) -> Displaced:
