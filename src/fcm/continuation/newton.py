@@ -22,6 +22,7 @@ CLOSE = cython.declare(cython.double, 1e-13)  # error of a point, estimated from
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
 EXACT = cython.declare(cython.double, 1e-11)  # a step that is not worth another evaluation
 ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, though the way was long
+LEFT = cython.declare(cython.double, 1e-10)  # and one that grows: longer ones have met a corner
 CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian from before it will do
 HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
 SLIGHT = cython.declare(cython.double, 1e-3)  # of the most: a second step this short is no sign of failure
@@ -117,7 +118,7 @@ class Newton(Bordered):
         """
         if step < EXACT and ratio < 1.0:
             return True
-        return count > 0 and ratio > 0.25 and step < ROUGH
+        return count > 0 and ratio > 0.25 and step < (ROUGH if ratio < 1.0 else LEFT)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
