@@ -13,9 +13,6 @@ from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.start import Found, few_of, solutions
 from fcm.harmonic.system import System
 
-NEAR = (
-    2.0  # times 1, or part of it: so far few harmonics may move a turn, as one errs by up to that in a peak
-)
 ENOUGH = 3  # harmonics, with which a peak that one harmonic has at twice its height is within some per cent
 
 
@@ -25,10 +22,25 @@ def with_a_window(system: System, looked: Sequence[Found]) -> tuple[int, ...]:
     looked: where solutions were looked for with those of the system, and what was found.
     """
     few = tuple(sorted({*system.harmonics, *range(1, min(ENOUGH, few_of(system)) + 1)}))
-    near = [one for one in looked if any(1.0 / NEAR < level < NEAR for level in one.turns)]
+    near = [one for one in looked if turns_near(one)]
     if few == system.harmonics or not near:
         return system.harmonics
     finer = system.with_harmonics(few)
     foresee(finer, [one.omega for one in near])
     other = any(len(solutions(finer, one.omega).solutions) != len(one.solutions) for one in near)
     return few if other else system.harmonics
+
+
+def turns_near(found: Found) -> bool:
+    """Whether the level turned so near 1 that more harmonics may turn on its other side.
+
+    One harmonic errs by up to a factor of two in a peak, and so do two: it may take the third. With more the
+    error falls faster than their number rises.
+    """
+    near = 1.0 + 1.0 / max(lowest_of(found.harmonics) - 1, 1)
+    return any(1.0 / near < level < near for level in found.turns)
+
+
+def lowest_of(harmonics: Sequence[int]) -> int:
+    """Up to which harmonic there are all."""
+    return next(h for h in range(1, len(harmonics) + 2) if h not in harmonics) - 1

@@ -34,12 +34,13 @@ BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure
 
 @dataclass(frozen=True)
 class Found:
-    """Solutions at one frequency, z (unknown + 1,), and whether their level was followed to its end,
-    or back to its beginning; how far it is to be followed with more harmonics, infinite if that is not told;
-    and the levels at which it turned.
+    """Solutions at one frequency with some harmonics, z (unknown + 1,), and whether their level was followed
+    to its end, or back to its beginning; how far it is to be followed with more harmonics, infinite if that
+    is not told; and the levels at which it turned.
     """
 
     omega: float
+    harmonics: tuple[int, ...]
     solutions: tuple[FloatArray, ...]
     complete: bool
     reach: float
@@ -70,7 +71,7 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
 def _followed(system: System, omega: float, linear: float, top: float) -> Found:
     """What the level passes on its way from where it is linear to its top."""
     if linear >= top:
-        return Found(omega, (), True, FURTHER * NEAR)
+        return Found(omega, system.harmonics, (), True, FURTHER * NEAR)
     return _shared(system, omega, top) or _found(system, omega, linear, top)
 
 
@@ -78,7 +79,8 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
     found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    return Found(omega, found, complete, _reach(path.status, path.parameter), _turns(path.parameter))
+    reach, turns = _reach(path.status, path.parameter), _turns(path.parameter)
+    return Found(omega, system.harmonics, found, complete, reach, turns)
 
 
 def _shared(system: System, omega: float, top: float) -> Found | None:
@@ -95,7 +97,7 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
     if path is None or found is None:
         return None
     levels = system.unit * path.parameter
-    return Found(omega, tuple(found), True, _reach(path.status, levels), _turns(levels))
+    return Found(omega, system.harmonics, tuple(found), True, _reach(path.status, levels), _turns(levels))
 
 
 def _whole(system: System, omega: float) -> Path:

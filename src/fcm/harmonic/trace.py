@@ -11,6 +11,7 @@ import numpy as np
 from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
+from fcm.harmonic.carried import carried
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.narrow import narrow
@@ -43,7 +44,8 @@ def traced(
     reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
     frequencies = (*span, *resonances(system))
     foresee(system, frequencies)
-    looked = tuple(solutions(system, omega, reach.get(omega)) for omega in frequencies)
+    known = {found.omega: carried(system, found) for found in fewer}
+    looked = tuple(known.get(omega) or solutions(system, omega, reach.get(omega)) for omega in frequencies)
     inside = [z for z in near if span[0] <= z[-1] <= span[1]]
     starts = [*(z for found in looked for z in found.solutions), *inside]
     branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))

@@ -1,0 +1,120 @@
+"""Solutions with more harmonics at a frequency where those with fewer are known.
+
+The level of very many harmonics takes longer to follow than the branches themselves, and passes 1 where that
+of many does. So once many have told which solutions hang together with rest, each of them is led to that with
+more; where one is lost, or the level turned so near 1 that more harmonics may move the turn across it, the
+level is followed again. With a few it always is: branches come to be up to the seventh harmonic or so.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Status, follow
+from fcm.continuation.problem import Problem
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.further import padded
+from fcm.harmonic.nearby import lowest_of, turns_near
+from fcm.harmonic.start import Found
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+MANY = 7  # harmonics, from the first on, with which a peak is within a per cent or so
+FAR = 0.5  # of a solution's size: a Newton step that leads further is not believed
+STEP = 0.5  # longest, on the way to a solution
+DETOUR = -9.0  # as far back as the way may lead before it does: it has folds
+REPORTS = 16  # of the follower, of 16 steps each, after which it is too long
+APART = 1e-3  # of their size: solutions that come closer than this have become one
+
+
+def carried(system: System, before: Found) -> Found | None:
+    """What was found with fewer harmonics, with those of a system; None where the level is to be followed."""
+    few = lowest_of(before.harmonics) < MANY
+    if few or not before.solutions or not before.complete or turns_near(before):
+        return None
+    known: list[FloatArray] = []
+    for z in before.solutions:
+        there = _led(system, padded(z, before.harmonics, system.harmonics))
+        if there is None or any(_same(there, other) for other in known):
+            return None
+        known.append(there)
+    return replace(before, harmonics=system.harmonics, solutions=tuple(known))
+
+
+def _same(one: FloatArray, other: FloatArray) -> bool:
+    return bool(np.abs(one - other)[:-1].max() < APART * np.abs(one[:-1]).max())
+
+
+def _led(system: System, z: FloatArray) -> FloatArray | None:
+    """The solution near z at its frequency."""
+    balance, newton = system.afresh(), system.front.newton
+    newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
+    balance.measure(z)
+    newton.scale[:] = balance.scale
+    if newton.correct(1.0) and newton.moved < FAR:
+        return np.array(newton.z)
+    way, left = _Way(system.afresh(), z), REPORTS
+
+    def tire(_: float) -> None:
+        nonlocal left
+        left -= 1
+        if not left:
+            raise _LostError
+
+    try:
+        path = follow(way, np.append(z[:-1], 0.0), (DETOUR, 1.0), True, STEP, (), tire)
+    except _LostError:
+        return None
+    arrived = path.status is Status.COMPLETE and path.parameter[-1] == 1.0
+    return np.append(path.z[-1, :-1], z[-1]) if arrived else None
+
+
+class _LostError(Exception):
+    """The way leads too far."""
+
+
+class _Way(Problem):
+    """From a guess to a solution: F(x) = (1 - t) F(guess), where the parameter t leads from 0 to 1.
+
+    Its corners are no events, but places at which the steps are short.
+    """
+
+    def __init__(self, balance: Balance, guess: FloatArray) -> None:
+        Problem.__init__(self, balance.unknowns, 0, 0, balance.rank)
+        self.balance, self.at = balance, guess.copy()
+        balance.evaluate(guess)
+        self.given = np.array(balance.residual)
+
+    def evaluate(self, z: FloatArray) -> int:
+        balance = self._put(z)
+        balance.evaluate(self.at)
+        np.asarray(self.residual)[:] = np.asarray(balance.residual) - (1.0 - z[-1]) * self.given
+        np.asarray(self.jacobian)[:] = balance.jacobian
+        np.asarray(self.jacobian)[:, -1] = self.given
+        return 0
+
+    def measure(self, z: FloatArray) -> int:
+        balance = self._put(z)
+        balance.measure(self.at)
+        np.asarray(self.scale)[:] = balance.scale
+        self.scale[-1] = 1.0
+        return 0
+
+    def _put(self, z: FloatArray) -> Balance:
+        self.at[:-1] = np.asarray(z)[:-1]
+        return self.balance
+
+    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
+        np.asarray(self.balance.jacobian)[:] = self.jacobian
+        self.balance.condense(row, matrix)
+        return 0
+
+    def shorten(self, right: FloatArray, out: FloatArray) -> int:
+        self.balance.shorten(right, out)
+        return 0
+
+    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
+        self.balance.lengthen(reduced, out)
+        return 0
