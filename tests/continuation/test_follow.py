@@ -265,6 +265,20 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
     assert sorted(found[:, 0]) == pytest.approx([3.0 - np.sqrt(3.0), 3.0 + np.sqrt(3.0)], abs=1e-10)
 
 
+def test_a_curve_that_is_lost_to_a_closed_one_goes_around_it_once():
+    """A straight line up to x = 5, p = 2 becomes the circle, which comes back to it in a gap of 1e-4."""
+    loop = circle().f
+
+    def joined(x, p):
+        return (x - 5.0, 1.0, 0.0) if p < 2.0 and x > 5.0 - 1e-4 else loop(x, p)
+
+    path = follow(Planar(joined), start(5.0, -1.0), (-1.0, 5.0), True, 0.05, stations=[3.0])
+    assert path.status is Status.AROUND
+    passed = path.z[path.where(Mark.STATION), 0]
+    high = 3.0 + np.sqrt(3.0)
+    assert passed == pytest.approx([high, 3.0 - np.sqrt(3.0), high], abs=1e-10)
+
+
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("back", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("middle", [2.0, 2.03, 2.1])

@@ -7,7 +7,7 @@ cdef class Passage:
     cdef readonly Trail trail
     cdef readonly Py_ssize_t n
     cdef readonly double low, high
-    cdef readonly bint interior
+    cdef readonly bint interior, around
     cdef readonly list values
     cdef readonly object greatest
     cdef double[::1] stops, most

@@ -22,6 +22,7 @@ else:
 
 END = cython.declare(cython.long, int(Mark.END))
 CORNER = cython.declare(cython.long, int(Mark.CORNER))
+SAME = 1e-6  # of the greatest unknown: points closer than this are one
 
 
 @cython.cclass
@@ -39,7 +40,7 @@ class Passage:
         self.stops, self.trail = np.array(self.values), Trail(self.n + 1)
         self.greatest = np.zeros(front.problem.outputs)
         self.most, self.first, self.head = self.greatest, np.zeros(self.n + 1), np.zeros(self.n + 1)
-        self.interior = False
+        self.interior = self.around = False
 
     def begins(self, parameter: float) -> None:
         """Begin where the front is, which is to be that value of the parameter."""
@@ -68,16 +69,30 @@ class Passage:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def keep(self, limit: cython.double) -> cython.bint:
-        """Keep what happens within the step up to a limit; true if the curve leaves its range there."""
+        """Keep what happens within the step up to a limit; true if the curve leaves its range there, or comes
+        around to where it was though it did not begin there."""
         if quiet(self.front, self.stops, self.most):
             return False
         for event in events.within(self.front, limit, self.values, self.greatest):
             ends = event.mark & Mark.STATION and event.z[self.n] in (self.low, self.high)
             mark = Mark.END if ends else event.mark
             self.trail.put(event.z, event.direction, mark, event.orientation, event.shift)
-            if ends:
+            if mark & Mark.STATION and self.been():
+                self.around = True
+            if ends or self.around:
                 return True
         return False
+
+    def been(self) -> bool:
+        """Whether the last point, at a station, was passed before in its direction, with folds in between: a
+        step that ends there may keep it, and the next one once more."""
+        kept, k = self.trail.points(), self.trail.count - 1
+        ahead = kept.direction[:k, -1] * kept.direction[k, -1] > 0.0
+        since = np.flatnonzero(~ahead)
+        before = np.arange(since[-1] if since.size else 0)
+        there = ((kept.mark[before] & Mark.STATION) > 0) & (kept.z[before, -1] == kept.z[k, -1])
+        off = np.abs(kept.z[before[there & ahead[before]]] - kept.z[k]).max(axis=1)
+        return bool((off < SAME * np.abs(kept.z[k, :-1]).max(initial=0.0)).any())
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -122,7 +137,9 @@ class Passage:
         return float(abs(self.front.here.z[self.n] - self.first[self.n]) / (self.high - self.low))
 
     def end(self) -> Status:
-        """The status of a curve that has left its range."""
+        """The status of a curve that has left its range, or comes around."""
+        if self.around:
+            return Status.AROUND
         back = not self.interior and self.trail.last()[self.n] == self.first[self.n]
         return Status.RETURNED if back else Status.COMPLETE
 

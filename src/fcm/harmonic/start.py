@@ -113,7 +113,7 @@ def _hasty(system: System, omega: float, linear: float, top: float, stations: tu
             return path
     for step in (STEP, SHORTER * STEP):
         path = level_curve(system, omega, (0.0, top), step, stations, linear)
-        if path.status is not Status.STALLED:
+        if path.status not in (Status.STALLED, Status.AROUND):
             break
     return replace(path, status=Status.STALLED) if _lost(path, stations) else path
 
