@@ -93,6 +93,17 @@ def test_an_optimum_short_of_the_accuracy_says_so(scene, monkeypatch):
     assert "with 1 harmonic the error of the least peak" in short.curves[0].short_of
 
 
+def test_an_optimum_short_of_the_accuracy_says_what_fewer_harmonics_found(scene, monkeypatch):
+    aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 20.0),), (Aim("u"),)))
+    (fewer,) = optimise(aimed, harmonics=1).tracking.optima
+    monkeypatch.setattr(least, "ROUNDS", 2)
+    monkeypatch.setattr(least, "AGAIN", 0.2)
+    short = optimise(aimed, accuracy=1e-7)
+    assert short.tracking.optima[0].error > 1e-7 and len(short.tracking.harmonics) > 1
+    found = f"with 1 harmonic it is {fewer.value:.6g} at {PRELOAD} = {fewer.values[PRELOAD]:.6g}"
+    assert short.curves[0].short_of.endswith(found)
+
+
 def test_what_cannot_be_followed_is_found_by_trials(scene, monkeypatch):
     aimed = replace(scene, optimum=Optimum((PRELOAD,), ((2.0, 30.0),), (Aim("u"),)))
     followed = optimise(aimed, harmonics=1).tracking.optima[0]

@@ -84,9 +84,10 @@ def foreseen(
     if not tops:  # nothing moves
         return Foreseen(0.0, True, system.harmonics)
     found = _ahead(system, tops, height, accuracy)
-    if found is None:
+    if found is None and len(paths) > 1:  # what is lower may lead further; of one path all was looked at
         found = _ahead(system, list(_places(paths, amplitudes, height, 0.0)), height, accuracy)
-        found = Foreseen(0.0, False, system.harmonics) if found is None else replace(found, told=False)
+        found = None if found is None else replace(found, told=False)
+    found = found or Foreseen(0.0, False, system.harmonics)
     if found.told:
         return found
     share = _share(system, [one[0] for one in tops], height, system.harmonics)

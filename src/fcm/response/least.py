@@ -59,6 +59,7 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
     chosen, seconds = harmonics or (1,), AGAIN
     known: Lowest | None = None
+    before: Optimal | None = None
     for i in range(ROUNDS):
         shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
         if len(task.numbers) == 1:
@@ -74,8 +75,8 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
         more, taken = _enough(task, found[0], chosen, seconds)
         if more == chosen:
             break
-        chosen, seconds = more, seconds - taken
-    return found
+        chosen, seconds, before = more, seconds - taken, found[0]
+    return replace(found[0], fewer=before), found[1]
 
 
 def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:

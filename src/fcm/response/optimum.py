@@ -136,9 +136,14 @@ def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) 
     for one, curve in zip(tracking.optima, response.curves, strict=True):
         if curve.complete and not one.error <= accuracy:
             error = "cannot be told" if np.isnan(one.error) else f"is estimated as {one.error:.1e}"
-            count = len(one.harmonics)
-            many = f"{count} harmonic{'' if count == 1 else 's'}"
-            curve.short_of = f"with {many} the error of the least peak {error}"
+            curve.short_of = f"{_with(one.harmonics)} the error of the least peak {error}"
+            if one.fewer is not None:
+                at = ", ".join(f"{key} = {value:.6g}" for key, value in one.fewer.values.items())
+                curve.short_of += f"; {_with(one.fewer.harmonics)} it is {one.fewer.value:.6g} at {at}"
+
+
+def _with(harmonics: tuple[int, ...]) -> str:
+    return f"with {len(harmonics)} harmonic{'' if len(harmonics) == 1 else 's'}"
 
 
 def _higher(tracking: Tracking, response: Response) -> list[str]:

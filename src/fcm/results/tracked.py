@@ -107,6 +107,7 @@ class Optimal:
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials
     stable: tuple[float, ...] = ()  # of each of the active, as of a `Peak`
+    fewer: Optimal | None = None  # what was found with fewer harmonics before
 
     def summary(self, unit: str) -> dict[str, Any]:
         """For JSON."""
