@@ -119,7 +119,7 @@ class Lifted:
             step = newton.step()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
-            if self.dear and step > (before if count else TWICE * FAR):
+            if self.dear and (step > TWICE * FAR if count == 0 else step > min(2.0 * before, FAR)):
                 return False
             for i in range(self.guess.shape[0]):
                 newton.z[i] += newton.scale[i] * newton.delta[i]
