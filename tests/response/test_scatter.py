@@ -151,7 +151,7 @@ def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     told = [[1, 1, np.nan, 1, np.nan, 1, 1], [1, 1, 1, 1, 1, 1, 1]]
     curves = [curve_with(stable) for stable in told]
     one = scatter_of(curves)
-    printed = summary(response) | {"scatter": [one | {"peak": {d: one["peak"]["u"] for d in "uv"}}]}
+    printed = summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
     assert "of 0% of the curves; 50% may jump, as stability is not told" in as_table(printed, "rad/s")
     own = [replace(c, parameters={"contact.c.n_0": float(i)}) for i, c in enumerate(curves)]
     fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")

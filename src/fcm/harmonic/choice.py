@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
-from fcm.harmonic.cost import PATIENCE, seconds_with
+from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_with
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.nearby import with_a_window
@@ -102,6 +102,16 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
             break
         found = then
     return replace(sure or judged(found, accuracy), further=further)
+
+
+def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accurate | None:
+    """The response traced again with more harmonics; None where no solution is found, or that takes longer
+    than is worth it."""
+    if found.seconds_with(harmonics) > AGAIN:
+        return None
+    near = _near(found, harmonics)
+    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.looked, near)
+    return judged(then, accuracy) if then.shown else None
 
 
 def given(system: System, progress: Progress | None = None) -> Accurate:

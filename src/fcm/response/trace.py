@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
-from fcm.harmonic.choice import Accurate, accurate, given
+from fcm.harmonic.choice import Accurate, accurate, finer, given
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, astray, reported_at
+from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.rigid import too_stiff
@@ -30,6 +31,7 @@ from fcm.units import in_unit
 METHODS = ("table", "closed-form")
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
 UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
+ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
 BEYOND = 0.2  # estimated error, beyond which a solution is not called stable
 Rows = npt.NDArray[np.intp]
 
@@ -51,11 +53,53 @@ def traced_curve(scene: Scene, wanted: Wanted = ONE_HARMONIC) -> Curve:
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
-    curve = _curve(found)
-    if wanted.harmonics is None and not found.reached and curve.complete:
-        curve.short_of = _short_of(found)
+    followed = _followed(found, by_need)
+    if by_need:
+        followed = _with_jumps(followed, wanted.accuracy)
+    curve = _curve(followed)
+    if by_need and curve.complete:
+        curve.short_of = _short_of(followed.found) if not followed.found.reached else ""
+        curve.short_of = curve.short_of or _lost_short_of(followed, wanted.accuracy, scene.frequency_unit)
     curve.seconds = time.perf_counter() - begin
     return curve
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """A response with the points at which stability changes, and whether each point is stable.
+
+    lost: how far the frequencies are off at which it changes without a fold, where harmonics are chosen."""
+
+    found: Accurate
+    stable: list[FloatArray]
+    lost: list[Lost]
+
+
+def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
+    """With as many harmonics as it takes to have the frequencies at which stability is lost accurately."""
+    for _ in range(ROUNDS):
+        off = [one for one in followed.lost if one.error > accuracy]
+        more = {h for one in off for h in one.harmonics} | set(followed.found.system.harmonics)
+        if len(more) == len(followed.found.system.harmonics):
+            break
+        again = finer(followed.found, tuple(sorted(more)), accuracy)
+        if again is None:
+            break
+        followed = _followed(again)
+    return followed
+
+
+def _lost_short_of(followed: _Followed, accuracy: float, unit: str) -> str:
+    """What keeps the frequencies at which stability is lost from the accuracy; empty if nothing does."""
+    off = [one for one in followed.lost if not one.error <= accuracy]
+    if not off:
+        return ""
+    worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
+    error = "cannot be told" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
+    count = len(followed.found.system.harmonics)
+    many = f"{count} harmonic{'' if count == 1 else 's'}"
+    at = f"{in_unit(worst.frequency, unit):.6g} {unit}"
+    return f"with {many} the error of the frequency at which stability is lost, {at}, {error}"
 
 
 def _short_of(found: Accurate) -> str:
@@ -77,9 +121,9 @@ def _short_of(found: Accurate) -> str:
     return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 
-def _curve(found: Accurate) -> Curve:
+def _curve(followed: _Followed) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them."""
-    found, parts = _with_stability(found)
+    found, parts = followed.found, followed.stable
     system, paths = found.system, found.traced.branches.paths
     points, rounding = with_digits(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
@@ -119,12 +163,14 @@ def _curve(found: Accurate) -> Curve:
     )
 
 
-def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
-    """The same with points where stability changes between folds, and whether each point is stable."""
+def _followed(found: Accurate, by_need: bool = True) -> _Followed:
+    """A response with points where stability changes between folds, and whether each point is stable."""
     paths, shown, errors, stable = [], [], [], []
+    lost: list[Lost] = []
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path)
         inserted = judged.inserted
+        lost += lost_along(found.system, path, judged.crossings) if by_need else []
         if not inserted:
             paths.append(path)
             shown.append(known)
@@ -144,7 +190,7 @@ def _with_stability(found: Accurate) -> tuple[Accurate, list[FloatArray]]:
         stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
-    return replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors)), stable
+    return _Followed(replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors)), stable, lost)
 
 
 def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:

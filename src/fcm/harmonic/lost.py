@@ -1,0 +1,120 @@
+r"""How far the frequencies at which stability is lost are from where more harmonics have them.
+
+Places of the curve around a crossing are displaced to the curve of the balance with those further harmonics
+that would do most there, and the growth of disturbances is looked at on that: where it changes its sign is
+the crossing of more harmonics.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation import Between, Path
+from fcm.continuation.secants import Secants
+from fcm.harmonic.corrector import corrector_of
+from fcm.harmonic.error import reported_at
+from fcm.harmonic.inserted import Crossing
+from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.system import System
+
+FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
+FIRST = 0.5
+FINE = 1e-5  # of the way between two points, to which it is found: an error is told to a few parts of itself
+LEAST = -0.3  # growth that is as good as any that is less
+LOOKS = 40
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
+    cannot be told. harmonics are those that tell."""
+
+    frequency: float  # [rad/s] of the crossing
+    error: float
+    harmonics: tuple[int, ...]
+
+
+def lost_along(system: System, path: Path, crossings: Sequence[Crossing]) -> list[Lost]:
+    """Errors of the crossings of a path."""
+    return [_lost(system, path, one) for one in crossings]
+
+
+def _lost(system: System, path: Path, one: Crossing) -> Lost:
+    z, direction = one.z[None], one.direction[None]
+    amplitude = reported_at(system, z, direction).amplitude[0]
+    corrector = corrector_of(system)
+    corrector.further.at(one.z, amplitude)
+    more = corrector.most()
+    if more == system.harmonics:  # nothing is left out
+        return Lost(one.frequency, 0.0, more)
+    found = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system).crossing(one.place)
+    return Lost(one.frequency, abs(found / one.frequency - 1.0), more)
+
+
+class _Beside:
+    """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
+
+    def __init__(self, finer: System, path: Path, lifted: Lifted, system: System) -> None:
+        self.path, self.lifted, self.balance = path, lifted, system.balance()
+        self.multipliers = multipliers_of(finer, float(path.parameter.max()))
+        self.frequency = math.nan  # of the place that was looked at last
+
+    def growth(self, place: float) -> float:
+        """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known."""
+        k = min(int(place), len(self.path.z) - 2)
+        z, direction = self.path.z[k], self.path.direction[k]
+        if place != k:
+            between = Between(self.balance, self.path, k)
+            if not between.put(place - k):
+                return math.nan
+            z, direction = between.z, between.direction
+        if not self.lifted.beside(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
+            return math.nan
+        self.frequency = float(self.lifted.newton.z[-1])
+        return max(self.multipliers.verdict(np.array(self.lifted.newton.z)).growth, LEAST)
+
+    def crossing(self, place: float) -> float:
+        """The frequency at which growth changes its sign next to a place; NaN where that is not found."""
+        now = self.growth(place)
+        sides = [_enclosed(self.growth, place, now, ahead) for ahead in self._ways(place)]
+        known = [one for one in sides if one is not None]
+        if math.isnan(now) or not known:
+            return math.nan
+        near = min(known, key=lambda one: one.width)
+        for _ in range(LOOKS):
+            at = near.at
+            value = self.growth(at)
+            if math.isnan(value) or near.width < FINE:
+                break
+            near.saw(at, value)
+            if near.known(FINE):
+                break
+        return self.frequency if not math.isnan(value) else math.nan
+
+    def _ways(self, place: float) -> Iterator[Iterator[float]]:
+        """Places further and further from one, up and down."""
+        last = float(len(self.path.z) - 1)
+        for sign in (1.0, -1.0):
+            ends = (place + sign * FIRST * 2.0**i for i in range(int(math.log2(FAR / FIRST)) + 1))
+            yield (at for at in ends if 0.0 <= at <= last)
+
+
+def _enclosed(
+    growth: Callable[[float], float], place: float, now: float, ahead: Iterator[float]
+) -> Secants | None:
+    """A change of sign between a place and others; None if there is none up to where it is not known."""
+    before = (place, now)
+    for at in ahead:
+        value = growth(at)
+        if math.isnan(value):
+            return None
+        if (value > 0.0) != (before[1] > 0.0):
+            (low, one), (high, other) = sorted((before, (at, value)))
+            return Secants(low, high, one, other, may_jump=True)
+        before = (at, value)
+    return None
