@@ -14,7 +14,8 @@ from fcm.harmonic.stability import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
-from fcm.scene import load_scene
+from fcm.response.exact import trace_exact
+from fcm.scene import load_scene, scene_from_dict
 
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
@@ -186,3 +187,33 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     beyond = astray(curve.truncation_error)
     assert beyond.sum() > 64
     assert not (curve.stable[beyond] == 1.0).any()
+
+
+def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
+    """One harmonic has a branch of three times the amplitude down to 1.643 rad/s; that of the exact motion
+    ends before, so that at 1.6487 there is nothing but the low motion."""
+    contacts = [
+        {"name": "a", "tangential": "p", "normal": "s", "mu": 0.0539, "k_u": 0.6884, "k_v": 7.7463},
+        {"name": "b", "tangential": "s", "normal": "q", "mu": 0.017, "k_u": 0.2485, "k_v": 0.1655},
+    ]
+    isolated = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["p", "q", "r", "s"], "frequency": [1.0], "damping": [0.04328],
+                "shapes": [[0.783, 1.287, 1.769, 0.903]],
+            },
+            "contact": [one | {"n_0": n_0} for one, n_0 in zip(contacts, (1.0859, 3.0617), strict=True)],
+            "force": [{"dof": "s", "amplitude": 0.8124, "phase": 3.0352}],
+            "response": {"frequency": [0.645, 1.8362], "harmonics": 1},
+        }
+    )  # fmt: skip
+    (exact,), (curve,) = trace_exact(isolated).curves, trace(isolated).curves
+
+    def passing(one):
+        """Amplitudes of r at which a curve passes 1.6487 rad/s where it is said to be stable."""
+        ways = (one.frequency[:-1] - 1.6487) * (one.frequency[1:] - 1.6487) <= 0.0
+        return one.amplitude[:-1][ways & (one.stable[:-1] == 1.0), 2]
+
+    assert exact.complete and curve.amplitude[:, 2][np.isfinite(curve.frequency)].max() > 8.0
+    (true,), (found,) = passing(exact), passing(curve)
+    assert found == pytest.approx(true, rel=0.05) and true < 0.3

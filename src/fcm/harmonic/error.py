@@ -29,6 +29,7 @@ CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
+AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
 GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
@@ -149,6 +150,22 @@ def astray(truncation: FloatArray) -> npt.NDArray[np.bool_]:
     for first, end in _stretches(np.isnan(truncation)):
         far[first:end] = end - first > 2 * FARTHER
     return far
+
+
+def unbelieved(
+    frequency: FloatArray, truncation: FloatArray, stable: FloatArray, beyond: float
+) -> npt.NDArray[np.bool_]:
+    """Stretches (point,) without an error next to a point whose error is beyond what is believed.
+
+    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said.
+    """
+    found = np.zeros(len(truncation), dtype=np.bool_)
+    framed = np.concatenate(([False], truncation > beyond, [False]))
+    for first, end in _stretches(np.isnan(truncation)):
+        own = frequency[first:end][stable[first:end] == 1.0]
+        wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
+        found[first:end] = wide and bool(framed[first] or framed[end + 1])
+    return found
 
 
 def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, finer, given
 from fcm.harmonic.drift import REASONS, undetermined
-from fcm.harmonic.error import Reported, astray, reported_at
+from fcm.harmonic.error import Reported, astray, reported_at, unbelieved
 from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
@@ -134,6 +134,7 @@ def _curve(followed: _Followed) -> Curve:
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncation = np.concatenate([one.truncation for one in found.errors])
     far = (truncation > BEYOND) | np.concatenate([astray(one.truncation) for one in found.errors])
+    far |= unbelieved(points.z[:, -1], truncation, stable, BEYOND)
     stable[far & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
