@@ -149,7 +149,7 @@ def test_the_dataset_has_the_layout_of_every_response():
         assert exact[name].dims == balanced[name].dims
     assert set(exact.variables) - set(balanced.variables) == {
         "closure_error", "sweep",
-        "repeats", "cycle_least", "cycle_greatest", "family_least", "family_greatest",
+        "repeats", "cycle_least", "cycle_greatest", "family_least", "family_greatest", "family_complete",
     }  # fmt: skip
     assert exact.fundamental.dims == exact.amplitude.dims
     # the greatest displacement is never less than what one harmonic of three can hide

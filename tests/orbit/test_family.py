@@ -120,3 +120,26 @@ def test_two_contacts_that_stick_together():
     found = family(scene, 1.581, periodic(scene, 1.581).state)
     assert found.contacts == (0, 1) and found.complete
     assert found.spread.max() < 1e-8 and (found.friction[:, 0] < found.friction[:, 1]).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "omega", "stress", "reached"),
+    [("stuck_by_turns", 0.8518, 30.0, 0.3241), ("all_stuck", 1.487, 30.0, 0.0348)],
+)
+def test_it_goes_on_where_another_contact_begins_to_slip(name, omega, stress, reached):
+    """The greatest amplitude is what a march of the contact law in small steps comes to."""
+    scene = fcm.load_scene(Path(__file__).parent / f"scenes/{name}.toml")
+    (curve,) = trace_exact(scene, [omega]).curves
+    least, greatest = curve.orbits.family_least[0], curve.orbits.family_greatest[0]
+    assert curve.orbits.family_complete[0] == 1.0
+    modes, contacts = scene.modal.frequency.size, len(scene.contacts)
+    found = []
+    for friction in np.random.default_rng(0).uniform(-1.0, 1.0, (12, contacts)) * [stress, 0.1, 0.2]:
+        rest = State(np.zeros(modes), np.zeros(modes), friction)
+        before, last = simulate(scene, omega, 600, rest).measures(last=2)
+        assert last.amplitude == pytest.approx(before.amplitude, rel=1e-6)
+        found.append(last.amplitude)
+    assert (np.array(found) >= least * (1.0 - 1e-4)).all()
+    assert (np.array(found) <= greatest * (1.0 + 1e-4)).all()
+    assert max(one[0] for one in found) == pytest.approx(reached, abs=1e-4)
+    assert greatest[0] == pytest.approx(reached, abs=1e-4)

@@ -99,9 +99,15 @@ def remarks(response: Response) -> list[str]:
         )
     if loose:
         count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in loose)
+        partly = sum(int((one.family_complete == 0.0).sum()) for one in loose)
         out.append(
             f"points that are not unique: {count}; a contact never slips there, and its residual friction "
             f"changes an amplitude by up to {max(spread):.0%} (family_least to family_greatest); [start] "
             "friction chooses"
         )
+        if partly:
+            out.append(
+                f"at {partly} of them it may change more: not every residual friction was reached "
+                "(family_complete is 0)"
+            )
     return out

@@ -2,7 +2,8 @@
 
 The slider of such a contact may rest anywhere between its limits, and every place gives a steady motion. The
 family is followed from the motion that is chosen to the limits of one contact after the other, in both
-directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same.
+directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same; where
+one begins to slip, or to stick, the family goes on from there with those that stick then.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ ITERATIONS = 8  # of Newton's method: with more a shorter step is found sooner
 GROWTH = 4.0  # of a step to the next, at most
 TINY = 1e-12  # part of the reach that is none
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
+MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
 
 
 @dataclass(frozen=True)
@@ -37,7 +39,7 @@ class Family:
     friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
     least: FloatArray  # (dof,) amplitude, half the peak-to-peak
     greatest: FloatArray  # (dof,)
-    complete: bool  # whether the limits of slip were reached on every way
+    complete: bool  # whether every way was followed to its end
 
     @property
     def spread(self) -> FloatArray:
@@ -79,17 +81,41 @@ def family(scene: Scene, frequency: float, state: State) -> Family | None:
     if found is None:
         raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
     begun = found[0]
-    contacts = always_stuck(system, begun.segments)
+    contacts = _stuck(begun)
     if not contacts:
         return None
-    ways = [_Way(system, begun, contacts, sense) for sense in _senses(len(contacts))]
-    shots = [begun, *(shot for way in ways for shot in way.shots())]
+    shots, complete = _members(begun)
     amplitude = np.array([measure(shot.cycle).amplitude for shot in shots])
-    friction = np.array([_residual(shot)[contacts] for shot in shots])
+    friction = np.array([_residual(shot)[contacts] for shot in shots if contacts == _stuck(shot)])
     return Family(
         tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
-        amplitude.min(axis=0), amplitude.max(axis=0), all(way.ended for way in ways),
+        amplitude.min(axis=0), amplitude.max(axis=0), complete,
     )  # fmt: skip
+
+
+def _members(begun: Shot) -> tuple[list[Shot], bool]:
+    """Motions of the family up to its ends, and whether these were reached on every way."""
+    shots, waiting, seen, complete = [begun], [begun], set[tuple[int, ...]](), True
+    left = MOST_TRIED
+    while waiting:
+        first = waiting.pop(0)
+        contacts = _stuck(first)
+        if not contacts or tuple(contacts) in seen:
+            continue
+        seen.add(tuple(contacts))
+        for sense in _senses(len(contacts)):
+            way = _Way(first, contacts, sense)
+            shots += way.shots(min(left, MOST_TRIED // 5))
+            left -= way.tried
+            complete &= way.ended
+            if way.beyond is not None:
+                shots.append(way.beyond)
+                waiting.append(way.beyond)
+    return shots, complete
+
+
+def _stuck(shot: Shot) -> list[int]:
+    return always_stuck(shot.system, shot.segments)
 
 
 def _senses(count: int) -> list[FloatArray]:
@@ -110,21 +136,24 @@ def _residual(shot: Shot) -> FloatArray:
 
 
 class _Way:
-    """The family in one direction, until every contact that is pushed is at its limit."""
+    """The family in one direction, until every contact that is pushed is at its limit, or others stick."""
 
-    def __init__(self, system: System, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
-        self.system, self.last, self.contacts, self.ended = system, begun, contacts, False
+    def __init__(self, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
+        self.system, self.last, self.contacts, self.ended = begun.system, begun, contacts, False
+        self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
+        self.tried = 0  # motions that were looked for
         self.room = self._rooms(begun)
-        self.reach = self.room.sum(axis=1)
-        self.push = np.zeros(len(system.contacts))
+        self.reach = self.room.sum(axis=1)  # the greatest so far
+        self.push = np.zeros(len(self.system.contacts))
         self.push[contacts] = sense * self.reach / STEPS
         self.slope: FloatArray | None = None  # of x by the share of the push
 
-    def shots(self) -> Iterator[Shot]:
-        """The motions on the way, the last one at the limits."""
+    def shots(self, tries: int) -> Iterator[Shot]:
+        """The motions on the way, the last one at the limits, as far as so many trials lead."""
         share = longest = 1.0
         most = GROWTH
-        while share > SHORTEST * longest and not self.ended:
+        while share > SHORTEST * longest and not self.ended and self.tried < tries:
+            self.tried += 1
             new = self._further(share)
             if new is None:
                 share, most = 0.25 * share, 1.0
@@ -134,10 +163,12 @@ class _Way:
             share, most = share * min(self._growth(new), most), GROWTH
             self.last, longest = new, max(longest, share)
             yield new
+        self.ended |= self.beyond is not None
 
     def _growth(self, new: Shot) -> float:
         """Of a step to the next: most of it moves the structure where that is softer than the contact."""
         before, self.room = self.room, self._rooms(new)
+        self.reach = np.maximum(self.reach, before.sum(axis=1))
         used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
         return 1.0 / (STEPS * max(float(used.max()), TINY))
 
@@ -150,9 +181,10 @@ class _Way:
         """The motion when the contacts are stressed a little more."""
         guess = None if self.slope is None else self.last.x + share * self.slope
         new = _moved(self.last, -(_residual(self.last) + share * self.push), guess)
-        if new is None or always_stuck(self.system, new.segments) != self.contacts:
+        if new is None:
             return None
-        return new
+        self.beyond = None if _stuck(new) == self.contacts else new
+        return new if self.beyond is None else None
 
 
 def chosen(shot: Shot, wanted: FloatArray, look: Look = without_end) -> Shot | None:

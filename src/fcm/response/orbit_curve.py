@@ -140,15 +140,19 @@ def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatAr
 
 def _families(
     scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, everywhere: bool
-) -> tuple[FloatArray, FloatArray]:
-    """The extent over residual friction at the peaks, or everywhere; nan where the amplitude is unique."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The extent over residual friction at the peaks, or everywhere; nan where the amplitude is unique.
+
+    And whether it is that of all residual friction: (point,).
+    """
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
+    whole = np.full(len(points), np.nan)
     known = np.isfinite(amplitude).any(axis=1)
     rough = all(has_friction(contact) for contact in scene.contacts)
 
     def linear(point: Sample) -> bool:
-        """Whether no contact does anything but stick: as far as all do, the amplitude is the same."""
-        return rough and set(point.states) == {"E"}
+        """Whether the only contact does nothing but stick; of several another may begin to slip."""
+        return rough and len(scene.contacts) == 1 and set(point.states) == {"E"}
 
     chosen = range(len(points)) if everywhere else set(np.nanargmax(amplitude, axis=0)) if known.any() else ()
     for k in chosen:
@@ -160,8 +164,8 @@ def _families(
         except SimulationError:  # its neighbourhood cannot be computed
             continue
         if found is not None and found.spread.max() > UNIQUE:
-            least[k], greatest[k] = found.least, found.greatest
-    return least, greatest
+            least[k], greatest[k], whole[k] = found.least, found.greatest, found.complete
+    return least, greatest, whole
 
 
 def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.str_]:

@@ -48,6 +48,14 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
         ("dof",),
         {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
     ),
+    "family_complete": (
+        (),
+        {
+            "long_name": "1 where family_least and family_greatest are of all residual friction, 0 where "
+            "some was not reached",
+            "units": "1",
+        },
+    ),
     "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
 }
 

@@ -22,6 +22,7 @@ class Orbits:
     cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
     family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
     family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
+    family_complete: FloatArray  # (point,) 1 where all of these were reached, 0 where there may be others
     swept: Swept | None = None  # what slow sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
