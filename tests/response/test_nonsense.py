@@ -23,6 +23,10 @@ from ..program import called
         (["--at", "1.2", "--level", "0:inf"], "a level beyond 1e+06 is a mistake of units"),
         (["--at", "1.2", "--level", "0:1e-5"], "up to a level of 0.001 there is but rest"),
         (["--at", "1.2", "--level", "0:nan"], "the levels must rise"),
+        (["--leave-out-tolerance", "nan"], "nan is not a finite number"),
+        (["--leave-out-tolerance", "inf"], "inf is not a finite number"),
+        (["--mode", "1", "--level", "0:1", "--force-level", "nan"], "nan is not a finite number"),
+        (["--largest-file", "nan"], "nan is not a finite number"),
     ],
 )
 def test_options_that_are_nonsense_are_refused(options, words, tmp_path):

@@ -9,6 +9,7 @@ from typing import Any
 
 import click
 
+from fcm.cli.options import FiniteRange
 from fcm.files import partial_of
 
 
@@ -68,7 +69,7 @@ def _try(path: Path) -> None:
 
 
 largest_file_option = click.option(
-    "--largest-file", type=click.FloatRange(min=0.0, min_open=True), default=1000.0, show_default=True,
+    "--largest-file", type=FiniteRange(min=0.0, min_open=True), default=1000.0, show_default=True,
     metavar="MB", help="Largest file of modes or matrices that is read, unpacked.",
     callback=lambda _ctx, _param, megabytes: round(megabytes * 1e6),
 )  # fmt: skip

@@ -1,10 +1,24 @@
-"""The options that every command has: ``-v`` and ``-q``, before or after the command's name."""
+"""The options that every command has, ``-v`` and ``-q``, and numbers of options that are finite."""
 
 from __future__ import annotations
+
+import math
+from typing import Any
 
 import click
 
 from fcm.cli.messages import Messages
+
+
+class FiniteRange(click.FloatRange):
+    """A `click.FloatRange` without nan, which is in every range there, and without inf."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, or a usage error."""
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{number} is not a finite number.", param, ctx)
+        return number
 
 
 def _louder(ctx: click.Context, _param: click.Parameter, count: int) -> None:

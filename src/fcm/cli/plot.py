@@ -10,6 +10,7 @@ import click
 from fcm.cli.drawing import draws_file, picture_of, save_picture
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.options import FiniteRange
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +52,7 @@ def plot() -> None:
     help="Exact motions to mark over the curves, the file of `fcm respond --method exact -o FILE`.",
 )  # fmt: skip
 @click.option(
-    "--band", type=click.FloatRange(0.0, 100.0), nargs=2, metavar="LOW HIGH",
+    "--band", type=FiniteRange(0.0, 100.0), nargs=2, metavar="LOW HIGH",
     help="Instead of curves of random draws, these percentiles of the greatest stable amplitude at each "
     "frequency, and the median.",
 )  # fmt: skip

@@ -12,6 +12,7 @@ import click
 from fcm.cli import balance, exact
 from fcm.cli.about_scenes import about_scenes
 from fcm.cli.files import largest_file_option, output_option
+from fcm.cli.options import FiniteRange
 from fcm.cli.time_limit import seconds
 from fcm.cli.track import track_options
 
@@ -56,7 +57,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
         "over the span --level.",
     ),
     click.option(
-        "--force-level", "force_levels", type=click.FloatRange(min=0.0, min_open=True), multiple=True,
+        "--force-level", "force_levels", type=FiniteRange(min=0.0, min_open=True), multiple=True,
         metavar="L",
         help="With --mode: predict the response near the resonance for the scene's forces times this; again "
         "for more.  [default: 1]",
@@ -92,7 +93,7 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
     ),
     click.option("--resume", is_flag=True, help="Continue an interrupted sweep with the same -o FILE."),
     click.option(
-        "--leave-out-tolerance", "tolerance", type=click.FloatRange(min=0.0), default=1e-5, show_default=True,
+        "--leave-out-tolerance", "tolerance", type=FiniteRange(min=0.0), default=1e-5, show_default=True,
         metavar="X", help="Greatest relative change of the response by what is left out.",
     ),
     click.option(
