@@ -95,7 +95,8 @@ def remarks(response: Response) -> list[str]:
         out.append(f"points that repeat only after several periods of the force (repeats): {several}")
     if irregular:
         out.append(
-            f"quasi-periodic or irregular points (repeats is 0; cycle_least to cycle_greatest): {irregular}"
+            "quasi-periodic or irregular points, or of more than 8 periods (repeats is 0; cycle_least to "
+            f"cycle_greatest): {irregular}"
         )
     if loose:
         count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in loose)

@@ -33,8 +33,8 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
     "repeats": (
         (),
         {
-            "long_name": "periods of the force after which the motion repeats, 0 if it is quasi-periodic or "
-            "irregular",
+            "long_name": "periods of the force after which the motion repeats, up to 8; 0 if it is "
+            "quasi-periodic, irregular or of more",
             "units": "1",
         },
     ),

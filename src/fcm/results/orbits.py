@@ -17,7 +17,7 @@ class Orbits:
 
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
     sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
-    repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if it does not
+    repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if not after 8
     cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
     cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
     family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
