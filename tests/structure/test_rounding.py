@@ -66,6 +66,48 @@ def test_a_stiff_spring_hides_no_soft_mode_and_the_bound_has_the_rounding(stiff,
         assert off.max() < near * found.bound + 2.0 / stiff
 
 
+def frame(rng, nodes=12):
+    """A space frame that nothing holds: bars between random nodes, each with its 6 nearest."""
+    at, K = rng.random((nodes, 3)), np.zeros((3 * nodes, 3 * nodes))
+    for i in range(nodes):
+        for j in np.argsort(np.linalg.norm(at - at[i], axis=1))[1:7]:
+            along = np.zeros(3 * nodes)
+            along[3 * i : 3 * i + 3] = (at[i] - at[j]) / np.linalg.norm(at[i] - at[j]) ** 1.5
+            along[3 * j : 3 * j + 3] = -along[3 * i : 3 * i + 3]
+            K += 1e8 * np.outer(along, along)
+    return K, np.diag(np.repeat(rng.random(nodes) + 0.5, 3))
+
+
+def written(K, digits):
+    if digits == "single":
+        return K.astype(np.float32).astype(np.float64)
+    return np.vectorize(lambda value: float(f"{value:.{digits - 1}e}"))(K)
+
+
+@pytest.mark.parametrize("digits", [17, 15, 12, 9, 8, "single"])
+def test_rigid_bodies_of_matrices_written_with_few_digits(digits):
+    """Their stiffness is then that of the rounding, positive or negative; one on soft springs has its own."""
+    for seed in range(3):
+        K, M = frame(np.random.default_rng(seed))
+        first = scipy.linalg.eigh(K, M, eigvals_only=True)[6]
+        loads = np.eye(len(K))[:, :1]
+        for held, rigid in ((0.0, 6), (0.05**2 * first, 0)):
+            rounded = scipy.sparse.csc_array(written(K + held * M, digits))
+            found = reduced(rounded, scipy.sparse.csc_array(M), loads, 0.5 * first**0.5, 8, True)
+            assert found.rigid == rigid
+            frequency = np.sqrt(found.modes.stiffness)
+            exact = np.sqrt(first + held)
+            assert abs(frequency[6] / exact - 1.0) <= max(2.0 * found.rounding, 1e-12)
+
+
+def test_numbers_that_somebody_has_typed_are_exact():
+    """A soft spring beside a stiff one, in the seventh digit of an entry."""
+    K, M = np.array([[1e7 + 10.0, -1e7], [-1e7, 1e7]]), np.eye(2)
+    found = reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(2)[:, :1], 1.0, 2, True)
+    assert found.rigid == 0
+    assert found.modes.stiffness[0] == pytest.approx(5.0, rel=1e-6)
+
+
 def test_a_scene_says_by_how_much_rounding_moves_its_frequencies():
     """Where that is some of the width of a resonance, and only there."""
 

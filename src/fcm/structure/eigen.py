@@ -21,11 +21,14 @@ import scipy.linalg
 import scipy.sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+from fcm.structure.digits import digits_of
+
 FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
 
 DENSE = 600  # rows up to which all modes are computed at once
 SHIFT = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
+LAST_DIGITS = 10.0  # units of the last digit of the entries that a shift is at least, if they have few digits
 NO_MASS = 1e-13  # relative: below it, an eigenvalue of the inverse problem is no mode, but a row without mass
 NEAR = 1e-9  # relative: squares of frequencies so near to each other are one, beside rounding
 NEGATIVE = 1e-9  # of the largest mass: less negative than that is rounding
@@ -67,7 +70,7 @@ def system_of(K: Matrix, M: Matrix) -> System:
     if not (heavy > 0.0).any():
         raise StructureError("the mass has no entry greater than 0 on its diagonal")
     with np.errstate(over="ignore"):
-        shift = -SHIFT * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+        shift = -_part(K) * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
     if shift == 0.0:
         raise StructureError("the stiffness has no entry on its diagonal")
     if not np.isfinite(shift):
@@ -79,6 +82,12 @@ def system_of(K: Matrix, M: Matrix) -> System:
     return System(
         K, M, shift, _factor(K - shift * M, "the stiffness is singular where there is no mass").solve
     )
+
+
+def _part(K: Matrix) -> float:
+    """How much of the largest ratio the shift is: more than rounding of the entries may take away."""
+    digits = digits_of(K)
+    return SHIFT if digits is None else max(SHIFT, LAST_DIGITS * 10.0**-digits)
 
 
 def _fault(what: str, matrix: Matrix) -> str:

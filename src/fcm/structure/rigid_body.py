@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.structure.digits import energy_uncertain
+
 if TYPE_CHECKING:
     from fcm.structure.eigen import FloatArray, Matrix, Modes
 
@@ -13,6 +15,7 @@ FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come
 MOST = 6  # rigid-body modes of one body
 CANCELLED = 4e-16  # share of the elastic energy's terms that is left of their sum: rounding of its entries
 NEARLY = {1e-13: 0.03, 1e-6: 1e-4}  # the same, of a matrix written with fewer digits: of the next frequency
+DEVIATIONS, BELOW = 4.0, 0.03  # of the energy by the digits of the entries; of the next frequency
 AT_REST = 1e-3  # the share of the elastic forces of a row: a soft mode of stiff parts has some of its own
 
 
@@ -35,6 +38,9 @@ def rigid_by_energy(K: Matrix, modes: Modes) -> int:
     of_rows = np.divide(np.abs(K @ modes.shapes), forces, out=np.zeros_like(forces), where=forces > 0.0)
     none = left <= CANCELLED
     frequency = np.sqrt(np.maximum(modes.stiffness, 0.0))
+    negative, number = int((modes.stiffness <= 0.0).sum()), np.arange(left.size)
     for most, below in NEARLY.items():
-        none |= (left <= most) & (np.arange(left.size) < rigid_by_gap(frequency, below))
+        none |= (left <= most) & (number < negative + rigid_by_gap(frequency, below))
+    uncertain = modes.stiffness <= DEVIATIONS * energy_uncertain(K, modes.shapes)
+    none |= uncertain & (number < negative + rigid_by_gap(frequency, BELOW))
     return int((none & (of_rows.max(axis=0, initial=0.0) <= AT_REST)).sum())

@@ -10,16 +10,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.structure.digits import energy_uncertain
 from fcm.structure.eigen import FloatArray, Matrix, Modes, elastic_energy
 
 LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic energy is summed
 
 
 def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
-    """How far the frequency of each mode may be off, relative; 0 for rigid-body modes."""
+    """How far the frequency of each mode may be off, relative; 0 for rigid-body modes.
+
+    Beside the sum's, that of entries that were written with few digits, of which two deviations are taken.
+    """
     terms = np.einsum("ij,ij->j", np.abs(modes.shapes), abs(K) @ np.abs(modes.shapes))
+    lost = LONG * terms + 2.0 * energy_uncertain(K, modes.shapes)
     elastic = modes.stiffness > 0.0
-    off: FloatArray = np.divide(0.5 * LONG * terms, modes.stiffness, out=np.zeros_like(terms), where=elastic)
+    off: FloatArray = np.divide(0.5 * lost, modes.stiffness, out=np.zeros_like(terms), where=elastic)
     return off
 
 
