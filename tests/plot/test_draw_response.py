@@ -119,12 +119,13 @@ def test_a_scene_without_a_sweep_has_one_unnamed_black_line():
 def test_unstable_parts_are_dashed_and_join_the_stable_ones():
     stable = np.ones(201, bool)
     stable[80:90] = False
-    (axes,) = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable))).axes
-    solid, dashed = axes.lines
+    figure = draw_response(response(resonance(9.0, 1.2, 5.0, stable=stable)))
+    solid, dashed = figure.axes[0].lines
     assert solid.get_linestyle() == "-" and dashed.get_linestyle() == "--"
     assert solid.get_color() == dashed.get_color()
     assert np.flatnonzero(np.isnan(solid.get_ydata())).tolist() == list(range(80, 90))
     assert np.flatnonzero(np.isfinite(dashed.get_ydata())).tolist() == list(range(79, 91))
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["unstable"]
 
 
 def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so():
@@ -135,7 +136,10 @@ def test_parts_of_which_stability_is_not_told_are_dotted_and_the_legend_says_so(
     solid, dashed, dotted = figure.axes[0].lines
     assert np.isnan(solid.get_ydata()).sum() == 30 and np.isfinite(dashed.get_ydata()).sum() == 12
     assert np.flatnonzero(np.isfinite(dotted.get_ydata())).tolist() == list(range(119, 141))
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["whether it is stable is not told"]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        "unstable",
+        "whether it is stable is not told",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ _DASHES: LineStyle = (0, (3.0, 1.6))
 _DOTS: LineStyle = (0, (1.0, 1.0))
 _FADED = "may err by more than 20 %"  # what is faded,
 _ALPHA = 0.3  # and how much of it is left
+_NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
 _MOST_TICKS = 9  # of a colour bar
 _DOUBTFUL = 0.2  # estimated error beyond which a curve is faded
@@ -130,12 +131,14 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
 
 
 def _notes(curves: list[DrawnCurve], colour: str, width: float) -> dict[str, Line2D]:
-    """Why parts of curves are faded or dotted: lines like theirs, by what is to be said of them."""
+    """Why parts of curves are faded, dashed or dotted: lines like theirs, by what is to be said of them."""
     from matplotlib.lines import Line2D
 
     notes = {}
     if any(doubtful(curve).any() for curve in curves):
         notes[_FADED] = Line2D([], [], color=colour, linewidth=width, alpha=_ALPHA)
+    if any(curve.stable is not None and (~curve.stable).any() for curve in curves):
+        notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
     if any(curve.untold is not None and curve.untold.any() for curve in curves):
         notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=_DOTS)
     return notes
