@@ -204,3 +204,16 @@ def test_a_mode_that_is_there_twice_is_refused(tmp_path):
     said = refused(tmp_path, TRANSLATION + TRANSLATION)
     assert "its normal modes 1 and 3 are the same" in said and "modes 2 and 4 are the same" in said
     assert "the same" not in refused(tmp_path, TRANSLATION.replace("1.50162e-01", "1.5x162e-01", 1))
+
+
+@pytest.mark.parametrize("lines", [5, 14, 18, 29])
+def test_a_file_that_is_cut_off_within_a_dataset_is_refused(tmp_path, lines):
+    """What of it is whole would be fewer modes than it has had, without a word."""
+    (tmp_path / "cut.uff").write_text("\n".join(TRANSLATION.splitlines()[:lines]) + "\n")
+    data = {
+        "modal": {"file": "cut.uff", "damping": 0.01},
+        "force": [{"dof": "1x", "amplitude": 1.0}],
+        "response": {"frequency": [1.0, 100.0]},
+    }
+    with pytest.raises(SceneError, match='it is cut off within a dataset "55"'):
+        scene_from_dict(data, "test.toml", tmp_path)

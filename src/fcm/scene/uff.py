@@ -82,7 +82,7 @@ def read_uff(path: Path) -> dict[str, Any]:
 
 
 def _datasets(path: Path) -> Iterator[tuple[str, list[str]]]:
-    """The number and the lines of each dataset, between its marks -1."""
+    """The number and the lines of each dataset, between its marks -1; ValueError if the last has no end."""
     block: list[str] | None = None
     for line in path.read_text("latin-1").split("\n"):
         if line.strip() != "-1":
@@ -92,6 +92,8 @@ def _datasets(path: Path) -> Iterator[tuple[str, list[str]]]:
         if block:
             yield block[0].strip(), block[1:]
         block = [] if block is None else None
+    if block and any(line.strip() for line in block):
+        raise ValueError(f"it is cut off within a dataset {quoted(block[0].strip(), 6)}, without a -1 behind")
 
 
 def _is_normal_mode(kind: str, block: Sequence[str]) -> bool:
