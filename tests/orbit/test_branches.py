@@ -182,7 +182,7 @@ def test_of_a_contact_too_stiff_to_follow_it_is_said_what_would_do(monkeypatch):
     def of(k_u):
         return replace(bundled, contacts=(replace(bundled.contacts[0], k_u=k_u),))
 
-    monkeypatch.setattr("fcm.response.exact.ENOUGH", 1e-9)
+    monkeypatch.setattr("fcm.response.exact_work.ENOUGH", 1e-9)
     curve = curve_of(of(1e12))
     said = re.fullmatch(
         r"not finished in 1e-09 s of processor time, at the start; the k_u of contact wall is 1e\+12 times "

@@ -11,7 +11,7 @@ from fcm.motion import simulate
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.start import first_point, near_balance
 from fcm.reduction import held
-from fcm.response import exact
+from fcm.response import exact_work
 from fcm.response.exact import trace_exact
 from fcm.response.legs import Leg, Legs
 from fcm.response.trace import traced_curve
@@ -118,7 +118,7 @@ def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, res
     """Foreseen wrongly: the first contact, which slips, and the last, which is open, as sticking."""
     w = held.resting(scene)
     wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
-    monkeypatch.setattr(exact, "foreseen_held", lambda *_: wrong)
+    monkeypatch.setattr(exact_work, "foreseen", lambda *_: wrong)
     response = trace_exact(scene)
     assert [text.split(",")[0] for text in response.left_out] == ["the transitions of contact sticks"]
     curve, whole = response.curves[0], responses[1].curves[0]

@@ -1,0 +1,138 @@
+"""How each curve of exact periodic solutions is made: followed in its range, or visited at frequencies."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.continuation import Path as Followed
+from fcm.harmonic.rigid import too_stiff
+from fcm.harmonic.system import System
+from fcm.motion.errors import SimulationError
+from fcm.orbit.branch import explore, incomplete, reached, shown
+from fcm.orbit.problem import OrbitProblem
+from fcm.reduction.held import foreseen, lost_by
+from fcm.response.groups import Group, lost_curve
+from fcm.response.legs import Legs, TimeOver
+from fcm.response.only_peaks import peaks_alone, peaks_of
+from fcm.response.orbit_curve import orbit_curve, visited_curve
+from fcm.response.trace import traced_curve as balance_of
+from fcm.response.visit import Visitor
+from fcm.results.result import INTERRUPTED, Curve
+from fcm.run import Interrupted, Report
+from fcm.scene.model import Held, Scene
+
+FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
+ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
+STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
+
+
+@dataclass(frozen=True)
+class ExactWork:
+    """How each curve is made: traced, or visited at frequencies."""
+
+    at: tuple[float, ...] | None  # [rad/s]
+    limit: float | None = None  # [s] of processor time for a curve
+    only_peaks: bool = False
+    whole: bool = False  # nothing is to be left out
+
+    def __call__(self, group: Group, report: Report) -> list[Curve]:
+        return [self._curve(scene, report) for scene in group]
+
+    def _curve(self, scene: Scene, report: Report) -> Curve:
+        begin = time.perf_counter()
+        try:
+            curve = self._made(scene, report)
+        except SimulationError as error:  # there is no rest to begin with
+            curve = lost_curve(scene, str(error))
+        curve = replace(curve, seconds=time.perf_counter() - begin)
+        if curve.reason.startswith(STOPPED):
+            raise Interrupted([curve])
+        return curve
+
+    def _made(self, scene: Scene, report: Report) -> Curve:
+        if self.only_peaks:
+            alone = peaks_alone(scene, report)
+            return peaks_of(*_followed(scene, report, self.limit)) if alone is None else alone
+        if self.at is None and (self.whole or len(scene.contacts) < FEWEST):
+            return _traced(scene, report, self.limit)
+        if self.at is None:
+            return _traced_lightly(scene, report, self.limit)
+        return _visited(scene, self.at, report, self.limit)
+
+
+def _traced_lightly(scene: Scene, report: Report, limit: float | None) -> Curve:
+    """The curve, followed without the contacts that keep their state all along it."""
+    held = foreseen(scene, balance_of(scene))
+    end = None if limit is None else time.process_time() + limit
+    while True:
+        left = None if end is None else end - time.process_time()
+        curve = _held_or_lost(scene, held, report, left) if held else _traced(scene, report, left)
+        lost = np.zeros(0) if curve.orbits is None else lost_by(curve.orbits.held)
+        if not (held and (lost.size or not curve.points)):
+            return curve
+        if curve.reason.startswith(STOPPED) or (end is not None and time.process_time() > end):
+            return lost_curve(scene, curve.reason)  # what there is of it is not the motion of these contacts
+        held = tuple(one for one in held if curve.points and one.place not in lost)
+
+
+def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, limit: float | None) -> Curve:
+    """The curve with contacts held; without a point, if it cannot be begun."""
+    try:
+        return _traced(scene.holding(held), report, limit)
+    except SimulationError as error:
+        return lost_curve(scene, str(error))
+
+
+def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
+    return orbit_curve(*_followed(scene, report, limit))
+
+
+def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitProblem, list[Followed], str]:
+    """All branches, and why they are not complete, else ''.
+
+    Where a contact is too stiff for that to end, it is said after so long; a limit of one's own is kept.
+    """
+    stiff, limit = _too_stiff(scene, limit)
+    problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
+    try:
+        paths, without = explore(problem, legs, legs.look)
+        reason = incomplete(scene, paths, without)
+    except (KeyboardInterrupt, TimeOver) as stop:
+        legs.keep()
+        paths = legs.paths()
+        reason = _cut_off(stop, limit) + reached(scene, paths)
+    return problem, paths, reason + stiff if reason else ""
+
+
+def _cut_off(stop: BaseException, limit: float | None) -> str:
+    """How the reason of a curve begins that has been stopped."""
+    return f"not finished in {limit:g} s of processor time, at " if isinstance(stop, TimeOver) else STOPPED
+
+
+def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
+    """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
+
+    And the limit of time, if there is none of one's own.
+    """
+    whole = scene.whole()
+    resists = whole.contacts and whole.modal.frequency.all()
+    stiff = too_stiff(System(whole, (1,)), moves=True) if resists else ""
+    return stiff, ENOUGH if stiff and limit is None else limit
+
+
+def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
+    around = replace(scene, frequency_range=(0.0, at[-1]))
+    stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
+    visitor, reason = Visitor(around, Legs(around.frequency_range, report, limit).look), ""
+    try:
+        visitor.run(at, report)
+    except (KeyboardInterrupt, TimeOver) as stop:
+        where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
+        reason = _cut_off(stop, limit) + where
+    except SimulationError as error:
+        reason = str(error)
+    reason = reason or visitor.reason
+    return visited_curve(scene, visitor, reason + stiff if reason else "")
