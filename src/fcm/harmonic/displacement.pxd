@@ -29,4 +29,4 @@ cdef class Displacements:
     cdef void single(self, Py_ssize_t d) noexcept
     cdef void several(self, Py_ssize_t d) noexcept
     cdef void extreme(self, Py_ssize_t d, Py_ssize_t k) noexcept
-    cdef void turn(self, double theta) noexcept
+    cdef void waves_at(self, double theta) noexcept

@@ -186,7 +186,7 @@ class Displacements:
         slope: cython.double
         curvature: cython.double
         for _ in range(REFINED):
-            self.turn(theta)
+            self.waves_at(theta)
             slope = curvature = 0.0
             for j in range(self.seen.count):
                 h: cython.double = self.seen.harmonics[j]
@@ -198,7 +198,7 @@ class Displacements:
             theta -= slope / curvature
             if fabs(slope) < fabs(curvature) * CLOSE:
                 break
-        self.turn(theta)
+        self.waves_at(theta)
         self.value = self.rate = 0.0
         for j in range(self.seen.count):
             self.value += self.re[j, d] * self.c[j] - self.im[j, d] * self.s[j]
@@ -206,7 +206,7 @@ class Displacements:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def turn(self, theta: cython.double) -> cython.void:
+    def waves_at(self, theta: cython.double) -> cython.void:
         """c, s (harmonic,): cosine and sine of each harmonic at an angle."""
         c_1: cython.double = cos(theta)
         s_1: cython.double = sin(theta)

@@ -2,7 +2,7 @@ from fcm.harmonic.monodromy cimport Monodromy
 
 cdef class RingMonodromy(Monodromy):
     cdef double part, start
-    cdef object turn, source
+    cdef object renumber, source
     cdef int first
     cdef int[::1] memory
     cpdef int follow(self, double omega) except -1

@@ -39,7 +39,7 @@ class BySeries(Propagator):
 class RingMonodromy(Monodromy):
     """As `Monodromy`, of the contacts of all sectors.
 
-    part is the angle that is followed; turn (mode, mode) renumbers the sectors in modal coordinates, and
+    part is the angle that is followed; renumber (mode, mode) renumbers the sectors in modal coordinates, and
     source (contact,) is the contact whose slider has the place of each afterwards.
     """
 
@@ -48,11 +48,11 @@ class RingMonodromy(Monodromy):
         stiffness: Stiffness,
         transitions: Transitions,
         part: cython.double,
-        turn: npt.NDArray[np.float64],
+        renumber: npt.NDArray[np.float64],
         source: npt.NDArray[np.intp],
     ) -> None:
         Monodromy.__init__(self, stiffness, transitions, BySeries())
-        self.part, self.turn, self.source = part, turn, source
+        self.part, self.renumber, self.source = part, renumber, source
         self.memory = np.zeros(self.contacts, dtype=np.intc)
         self.first, self.start = 0, 0.0
 
@@ -127,4 +127,4 @@ class RingMonodromy(Monodromy):
         X = np.asarray(self.X)[:, :columns]
         memory = np.flatnonzero(np.asarray(self.memory))
         sliders = X[2 * m + np.asarray(self.source)[memory]]
-        return np.concatenate((self.turn @ X[:m], self.turn @ X[m : 2 * m], sliders))
+        return np.concatenate((self.renumber @ X[:m], self.renumber @ X[m : 2 * m], sliders))

@@ -54,12 +54,12 @@ class Around:
     natural: FloatArray  # (mode,)
     damping: FloatArray
     ports: FloatArray  # (mode, port), sector after sector
-    turn: FloatArray  # (mode, mode)
+    renumber: FloatArray  # (mode, mode)
 
     def some(self, which: npt.NDArray[np.bool_]) -> Around:
         """Some of the modes."""
-        turn = np.ascontiguousarray(self.turn[np.ix_(which, which)])
-        return Around(self.natural[which], self.damping[which], self.ports[which], turn)
+        renumber = np.ascontiguousarray(self.renumber[np.ix_(which, which)])
+        return Around(self.natural[which], self.damping[which], self.ports[which], renumber)
 
 
 class RingMultipliers(Multipliers):
@@ -87,11 +87,11 @@ class RingMultipliers(Multipliers):
         self.eigenvalues = Eigenvalues(SMALL)
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), of_one, harmonics)
         self.fine, self.plain = (
-            RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.turn, source)
+            RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.renumber, source)
             for numbers in (finer, harmonics)
         )
         self.ring = ring
-        self.turns = {
+        self.shifts = {
             len(numbers): np.exp(1j * np.outer(np.arange(n), _phases(ring, numbers)))
             for numbers in (finer, harmonics)
         }
@@ -104,12 +104,12 @@ class RingMultipliers(Multipliers):
         """As `Multipliers.see`, with the unknowns of one sector."""
         count = (transitions.width - 2) // 4
         blocks = np.asarray(x)[: self.contacts * transitions.width].reshape(self.contacts, transitions.width)
-        turn = self.turns[count]
+        shift = self.shifts[count]
         pairs = np.ascontiguousarray(blocks[:, 2:]).view(np.complex128).reshape(self.contacts, count, 2)
-        turned = pairs[None] * turn[:, None, :, None]  # (sector, contact, harmonic, direction)
-        whole = np.empty((len(turn), self.contacts, transitions.width))
+        shifted = pairs[None] * shift[:, None, :, None]  # (sector, contact, harmonic, direction)
+        whole = np.empty((len(shift), self.contacts, transitions.width))
         whole[..., :2] = blocks[:, :2]
-        whole[..., 2:] = turned.reshape(len(turn), self.contacts, 2 * count).view(np.float64)
+        whole[..., 2:] = shifted.reshape(len(shift), self.contacts, 2 * count).view(np.float64)
         return bool(transitions.look(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
@@ -146,17 +146,17 @@ def modes_around(linear: RingLinear, ring: Ring) -> Around:
     step = 2.0 * np.pi * ring.diameter[places] / ring.sectors
     second = np.concatenate(([False], np.diff(places) == 0))  # the sine of a pair
     first = np.concatenate((second[1:], [False]))
-    turned = np.exp(1j * np.outer(step, np.arange(n)))[..., None]
-    wave = ((ring.shapes[places] @ linear.directions)[:, None, :] * turned).reshape(places.size, -1)
+    shift = np.exp(1j * np.outer(step, np.arange(n)))[..., None]
+    wave = ((ring.shapes[places] @ linear.directions)[:, None, :] * shift).reshape(places.size, -1)
     ports = (
         np.where(second[:, None], wave.imag, wave.real)
         * np.sqrt(np.where(first | second, 2.0, 1.0) / n)[:, None]
     )
     by = step * behind(ring)
-    turn = np.diag(np.cos(by))
+    renumber = np.diag(np.cos(by))
     at = np.flatnonzero(first)
-    turn[at, at + 1], turn[at + 1, at] = -np.sin(by[at]), np.sin(by[at])
-    return Around(ring.frequency[places], ring.damping[places], ports, turn)
+    renumber[at, at + 1], renumber[at + 1, at] = -np.sin(by[at]), np.sin(by[at])
+    return Around(ring.frequency[places], ring.damping[places], ports, renumber)
 
 
 def _places(ring: Ring) -> npt.NDArray[np.intp]:

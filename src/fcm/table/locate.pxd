@@ -10,7 +10,7 @@ cdef class Place:
     cdef double u_n, u_b, u_phi, x_b, x_phi, z_phi, scale_b, scale_phi, mean_n, mean_b, mean_phi
 
     cdef void find(self, double n0, double b, double phi, bint gradient) noexcept nogil
-    cdef void turn(self, double phi) noexcept nogil
+    cdef void set_phase(self, double phi) noexcept nogil
     cdef void geometry(self, double b_bar) noexcept nogil
     cdef void _variation(self, double b) noexcept nogil
     cdef void _phase(self, double phi) noexcept nogil

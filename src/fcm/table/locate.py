@@ -53,7 +53,7 @@ class Place:
         self.sign = 1.0
         if phi >= PI:  # phi -> phi + pi changes the sign of F_b alone
             phi, self.sign = phi - PI, -1.0
-        self.turn(phi)
+        self.set_phase(phi)
         self._phase(phi)
         self._variation(b)
         if n0 < b:
@@ -66,7 +66,7 @@ class Place:
             self.x_phi *= self.scale
             self.z_phi *= self.scale
 
-    def turn(self, phi: float) -> None:
+    def set_phase(self, phi: float) -> None:
         """Sines and cosines of the phase."""
         self.sin_half, self.cos_half = sin(0.5 * phi), cosine(0.5 * phi)
         self.sin_phi = 2.0 * self.sin_half * self.cos_half
@@ -209,7 +209,7 @@ def slip_geometry(b_bar: cython.double[::1], phi: cython.double[::1]) -> np.ndar
     out: cython.double[:, ::1] = rows
     place: Place = Place((2, 2, 2, 2))
     for i in range(b_bar.shape[0]):
-        place.turn(phi[i])
+        place.set_phase(phi[i])
         place.geometry(b_bar[i])
         out[0, i], out[1, i], out[2, i] = place.low, place.high, place.width
     return rows
