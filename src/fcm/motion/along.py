@@ -78,13 +78,13 @@ class Along:
                 + self.flows.forced[slot, j, 2, i] * sine
             ) + self.flows.forced[slot, j, 3, i] * cosine
         h: cython.double = self.flows.step[slot] * (1 << j)
-        self._turn(self.flows.turn[slot, j, 0], self.flows.turn[slot, j, 1], h)
+        self._rotate(self.flows.rotation[slot, j, 0], self.flows.rotation[slot, j, 1], h)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _turn(self, c: cython.double, s: cython.double, time: cython.double) -> cython.void:
-        """Turn the forces by the angle with that cosine and sine, which takes that time [s]."""
+    def _rotate(self, c: cython.double, s: cython.double, time: cython.double) -> cython.void:
+        """Rotate the forces by the angle with that cosine and sine, which takes that time [s]."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         k: cython.Py_ssize_t
@@ -212,4 +212,4 @@ class Along:
                 self._grades[j, i] += self._grades[j + 1, i]
         for i in range(n):
             self.columns[u, i] = self._grades[0, i]
-        self._turn(cos(self.flows.omega * h), sin(self.flows.omega * h), h)
+        self._rotate(cos(self.flows.omega * h), sin(self.flows.omega * h), h)

@@ -1,7 +1,7 @@
 from fcm.motion.forced cimport Forced
 
 cdef class Exits(Forced):
-    cdef double[::1] _turned
+    cdef double[::1] _rotated
     cdef void _angles(self, Py_ssize_t slot) noexcept nogil
     cdef void _of_exit(self, Py_ssize_t slot, Py_ssize_t e, int a) noexcept nogil
     cdef void expand(self, Py_ssize_t slot, Py_ssize_t e) noexcept nogil

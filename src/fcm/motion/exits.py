@@ -9,8 +9,8 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+from fcm.motion.matrices import Matrices
 from fcm.motion.pool import ORDER
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.forced import Forced
@@ -27,15 +27,9 @@ class Exits(Forced):
     What these need for a new frequency is made where it is needed, by `look` and `expand`.
     """
 
-    def __init__(
-        self,
-        modal: tuple[FloatArray, ...],
-        ports: tuple[FloatArray, ...],
-        law: FloatArray,
-        springs: tuple[FloatArray, ...],
-    ) -> None:
-        Forced.__init__(self, modal, ports, law, springs)
-        self._turned = np.zeros(ORDER)
+    def __init__(self, matrices: Matrices) -> None:
+        Forced.__init__(self, matrices)
+        self._rotated = np.zeros(ORDER)
 
     @cython.cfunc
     @cython.nogil
@@ -61,7 +55,7 @@ class Exits(Forced):
                 self.series_forced[slot, b, w] = self.table_forced[slot, b, e] = 0.0
                 self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
                 self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
-        self.looked[slot] = 0
+        self.watched[slot] = 0
 
     @cython.cfunc
     @cython.nogil
@@ -72,7 +66,7 @@ class Exits(Forced):
         power: cython.double = 1.0
         x: cython.double = self.omega * self.step[slot]
         for j in range(_ORDER):
-            self._turned[j] = power
+            self._rotated[j] = power
             power *= -x if j % 2 else x
 
     @cython.cfunc
@@ -91,8 +85,8 @@ class Exits(Forced):
         for k in range(a):
             total *= k + 1
             j = a - 1 - k
-            first = self._turned[j] * (self.kick[slot, e, 0, k] + square * self.kick[slot, e, 2, k])
-            other = self._turned[j] * (self.kick[slot, e, 1, k] + square * self.kick[slot, e, 3, k])
+            first = self._rotated[j] * (self.kick[slot, e, 0, k] + square * self.kick[slot, e, 2, k])
+            other = self._rotated[j] * (self.kick[slot, e, 1, k] + square * self.kick[slot, e, 3, k])
             if j % 2:
                 sine, cosine = sine - other, cosine + first
             else:
@@ -122,14 +116,14 @@ class Exits(Forced):
         T[k + 1] = T[k] exp(A h).
         """
         g: cython.Py_ssize_t = 3 * self.exits[slot]
-        begin: cython.Py_ssize_t = self.looked[slot] * g
+        begin: cython.Py_ssize_t = self.watched[slot] * g
         end: cython.Py_ssize_t = steps * g
         w: cython.Py_ssize_t
         i: cython.Py_ssize_t
         b: cython.int
         x: cython.double
-        c: cython.double = self.turn[slot, 0, 0]
-        s: cython.double = self.turn[slot, 0, 1]
+        c: cython.double = self.rotation[slot, 0, 0]
+        s: cython.double = self.rotation[slot, 0, 1]
         if begin >= end:
             return
         for b in range(2):
@@ -146,7 +140,7 @@ class Exits(Forced):
             self.table_forced[slot, 1, w + g] += (
                 s * self.table_forced[slot, 0, w] + c * self.table_forced[slot, 1, w]
             )
-        self.looked[slot] = steps
+        self.watched[slot] = steps
 
     @cython.cfunc
     @cython.nogil

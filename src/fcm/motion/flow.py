@@ -53,8 +53,8 @@ class Flows(Exits):
         self.free(slot, j, y, k)
         for i in range(n):
             y[k, i] = self.whole[i]
-        y[k, n] = self.turn[slot, j, 0] * sine + self.turn[slot, j, 1] * cosine
-        y[k, n + 1] = self.turn[slot, j, 0] * cosine - self.turn[slot, j, 1] * sine
+        y[k, n] = self.rotation[slot, j, 0] * sine + self.rotation[slot, j, 1] * cosine
+        y[k, n + 1] = self.rotation[slot, j, 0] * cosine - self.rotation[slot, j, 1] * sine
 
     @cython.cfunc
     @cython.nogil

@@ -10,7 +10,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, sin
 
-from fcm.scene.model import FloatArray
+from fcm.motion.matrices import Matrices
 
 if cython.compiled:
     from cython.cimports.fcm.motion.series import Series
@@ -28,14 +28,8 @@ class Forced(Series):
     Those for more are made where they are needed, by `reach`.
     """
 
-    def __init__(
-        self,
-        modal: tuple[FloatArray, ...],
-        ports: tuple[FloatArray, ...],
-        law: FloatArray,
-        springs: tuple[FloatArray, ...],
-    ) -> None:
-        Series.__init__(self, modal, ports, law, springs)
+    def __init__(self, matrices: Matrices) -> None:
+        Series.__init__(self, matrices)
         self.whole = np.zeros(self.linear)
 
     @cython.cfunc
@@ -134,8 +128,8 @@ class Forced(Series):
                 with cython.gil:
                     self.next_power(slot)
             t = self.omega * self.step[slot] * (1 << self.reached[slot])
-            self.turn[slot, self.reached[slot], 0] = cos(t)
-            self.turn[slot, self.reached[slot], 1] = sin(t)
+            self.rotation[slot, self.reached[slot], 0] = cos(t)
+            self.rotation[slot, self.reached[slot], 1] = sin(t)
             self.reached[slot] += 1
 
     @cython.cfunc
@@ -147,8 +141,8 @@ class Forced(Series):
         i: cython.Py_ssize_t
         b: cython.int
         t: cython.double = self.step[slot] * (1 << j)
-        c: cython.double = self.turn[slot, j, 0]
-        s: cython.double = self.turn[slot, j, 1]
+        c: cython.double = self.rotation[slot, j, 0]
+        s: cython.double = self.rotation[slot, j, 1]
         old: cython.double[:, ::1] = self.forced[slot, j]
         new: cython.double[:, ::1] = self.forced[slot, j + 1]
         for i in range(n):

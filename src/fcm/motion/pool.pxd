@@ -7,12 +7,12 @@ cdef class Pool:
     cdef readonly signed char[::1] rough, halved
     cdef readonly signed char[:, ::1] states
     cdef readonly double[::1] step
-    cdef readonly Py_ssize_t[::1] exits, reached, looked, squared, spelled
+    cdef readonly Py_ssize_t[::1] exits, reached, watched, squared, spelled
     cdef readonly Py_ssize_t[:, ::1] owner, first, spread
     cdef readonly signed char[:, ::1] goal
     cdef readonly double[:, :, ::1] terms, row, table, table_forced, series, series_forced, sizes, sizes_forced
     cdef readonly double[:, :, :, ::1] power, forced, push, pushed, kick
-    cdef readonly double[:, :, ::1] turn
+    cdef readonly double[:, :, ::1] rotation
     cdef readonly double[::1] made_for
     cdef dict _pool
     cdef readonly Py_ssize_t[::1] used

@@ -8,6 +8,7 @@ from typing import Any
 import cython
 import numpy as np
 
+from fcm.motion.matrices import Matrices
 from fcm.scene.model import FloatArray
 
 ORDER = 19  # of the series of exp(A h): 1 / 20! is below rounding
@@ -31,27 +32,10 @@ class Pool:
 
     Of many flows only short pieces are followed, and never their derivatives: the powers of more than a step,
     and the Taylor coefficients, are made where they are needed.
-
-    Parameters
-    ----------
-    modal : tuple of arrays
-        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
-        (2, mode), and those that grow as omega^2 (2, mode).
-    ports : tuple of arrays (contact, mode)
-        Shapes of u and of v, and the same divided by the modal masses.
-    springs : tuple of arrays (spring, mode)
-        Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
-    law : array (5, contact)
-        mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
     """
 
-    def __init__(
-        self,
-        modal: tuple[FloatArray, ...],
-        ports: tuple[FloatArray, ...],
-        law: FloatArray,
-        springs: tuple[FloatArray, ...],
-    ) -> None:
+    def __init__(self, matrices: Matrices) -> None:
+        modal, ports, law, springs = matrices
         self.stiffness, self.damping, self.hold, self.constant, self.square = (
             np.ascontiguousarray(x, dtype=np.float64) for x in modal
         )
@@ -149,7 +133,7 @@ class Pool:
         shapes = {
             "states": (c,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
             "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n), "power": (POWERS, n, n),
-            "forced": (POWERS, 4, n), "turn": (POWERS, 2), "reached": (), "looked": (),
+            "forced": (POWERS, 4, n), "rotation": (POWERS, 2), "reached": (), "watched": (),
             "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
             "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
             "push": (2, 4, n), "pushed": (4, ORDER, n), "kick": (e, 4, ORDER), "spread": (e,),
@@ -164,7 +148,7 @@ class Pool:
             "first": np.intp,
             "used": np.intp,
             "reached": np.intp,
-            "looked": np.intp,
+            "watched": np.intp,
             "spread": np.intp,
             "squared": np.intp,
             "spelled": np.intp,
@@ -180,8 +164,8 @@ class Pool:
         self.row, self.first = made["row"], made["first"]
         self.made_for, self.power, self.forced = made["made_for"], made["power"], made["forced"]
         self.terms, self.squared, self.spelled = made["terms"], made["squared"], made["spelled"]
-        self.turn, self.table, self.table_forced = made["turn"], made["table"], made["table_forced"]
-        self.reached, self.looked, self.spread = made["reached"], made["looked"], made["spread"]
+        self.rotation, self.table, self.table_forced = made["rotation"], made["table"], made["table_forced"]
+        self.reached, self.watched, self.spread = made["reached"], made["watched"], made["spread"]
         self.push, self.pushed, self.kick = made["push"], made["pushed"], made["kick"]
         self.sizes, self.sizes_forced, self.used = made["sizes"], made["sizes_forced"], made["used"]
         self.series, self.series_forced = made["series"], made["series_forced"]

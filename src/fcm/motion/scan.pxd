@@ -15,8 +15,8 @@ cdef class Scan(Walk):
     cdef void _step(self, Py_ssize_t slot, Py_ssize_t k) noexcept nogil
     cdef void _spread(self, Py_ssize_t slot, Py_ssize_t k, Py_ssize_t last) noexcept nogil
     cdef bint _may_exceed(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
-    cdef bint _may_turn(self, Py_ssize_t slot, Py_ssize_t r, Py_ssize_t k) noexcept nogil
+    cdef bint _has_extreme(self, Py_ssize_t slot, Py_ssize_t r, Py_ssize_t k) noexcept nogil
     cdef void _extremes(self, Py_ssize_t r, Py_ssize_t k) noexcept nogil
-    cdef void _turn(self, Py_ssize_t r, Py_ssize_t k, double low, double high) noexcept nogil
+    cdef void _extreme_between(self, Py_ssize_t r, Py_ssize_t k, double low, double high) noexcept nogil
     cdef void _note(self, Py_ssize_t r, double x, double here) noexcept nogil
     cdef void _put(self, Py_ssize_t k, double x) noexcept nogil

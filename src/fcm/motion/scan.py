@@ -154,7 +154,7 @@ class Scan(Walk):
         r: cython.Py_ssize_t
         expanded: cython.bint = False
         for r in range(self.greatest.shape[0]):
-            if self._may_exceed(r, k) and self._may_turn(slot, r, k):
+            if self._may_exceed(r, k) and self._has_extreme(slot, r, k):
                 if not expanded:
                     self.flows.taylor(slot, self._path, k, self._terms)
                     expanded = True
@@ -176,7 +176,9 @@ class Scan(Walk):
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _may_turn(self, slot: cython.Py_ssize_t, r: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.bint:
+    def _has_extreme(
+        self, slot: cython.Py_ssize_t, r: cython.Py_ssize_t, k: cython.Py_ssize_t
+    ) -> cython.bint:
         """Whether step k may hold an extreme of its own."""
         first: cython.double = self._values[1, k, r]
         bend: cython.double
@@ -196,21 +198,21 @@ class Scan(Walk):
         """Those of row r in step k, whose terms are there."""
         first: cython.double = self._values[1, k, r]
         j: cython.int
-        turn: cython.double
+        inflection: cython.double
         for j in range(_ORDER + 1):
             self._powers[j] = self._rows.dot(r, self._terms, j)
         if first * self._values[1, k + 1, r] < 0.0:
-            self._turn(r, k, 0.0, self._length)
+            self._extreme_between(r, k, 0.0, self._length)
             return
-        turn = root(self._powers, 2, 0.0, self._length)
-        if value(self._powers, 1, turn) * first < 0.0:
-            self._turn(r, k, 0.0, turn)
-            self._turn(r, k, turn, self._length)
+        inflection = root(self._powers, 2, 0.0, self._length)
+        if value(self._powers, 1, inflection) * first < 0.0:
+            self._extreme_between(r, k, 0.0, inflection)
+            self._extreme_between(r, k, inflection, self._length)
 
     @cython.cfunc
     @cython.nogil
     @cython.exceptval(check=False)
-    def _turn(
+    def _extreme_between(
         self, r: cython.Py_ssize_t, k: cython.Py_ssize_t, low: cython.double, high: cython.double
     ) -> cython.void:
         """Take the value where the velocity changes its sign in step k."""

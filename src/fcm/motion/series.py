@@ -5,8 +5,8 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+from fcm.motion.matrices import Matrices
 from fcm.motion.pool import ORDER
-from fcm.scene.model import FloatArray
 
 if cython.compiled:
     from cython.cimports.fcm.motion.pool import Pool
@@ -22,14 +22,8 @@ _POSITIVE = cython.declare(cython.int, 2)
 class Series(Pool):
     """Flows as power series. What is done for a whole series is done in one call: y' = A y is little work."""
 
-    def __init__(
-        self,
-        modal: tuple[FloatArray, ...],
-        ports: tuple[FloatArray, ...],
-        law: FloatArray,
-        springs: tuple[FloatArray, ...],
-    ) -> None:
-        Pool.__init__(self, modal, ports, law, springs)
+    def __init__(self, matrices: Matrices) -> None:
+        Pool.__init__(self, matrices)
         self._own = np.zeros((ORDER + 1, self.size))
 
     @cython.cfunc

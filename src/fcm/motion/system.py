@@ -17,12 +17,13 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
+from fcm.motion.matrices import has_friction, held_as_springs, matrices_of
 from fcm.motion.rows import Rows
 from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.steps import Steps
 from fcm.motion.walk import Walk
-from fcm.scene.model import Contact, FloatArray, Scene
+from fcm.scene.model import FloatArray, Scene
 from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
@@ -123,7 +124,7 @@ class System:
         return self.preload + y[self.n]
 
     def _kernels(self) -> _Kernels:
-        flows, wide = self._flows(), self.size - 2
+        flows, wide = Flows(matrices_of(self)), self.size - 2
         displacements = np.zeros((self.scene.modal.shapes.shape[1], wide))
         displacements[:, self.q] = self.scene.modal.shapes.T
         moves, limits = Scan(flows, Rows(displacements)), Scan(flows, Rows(self.limit_rows))
@@ -137,21 +138,6 @@ class System:
             rows[each, i, self.f.start + each] = sign
             rows[each, i, self.n.start + each], rows[:, i, -1] = self.mu, self.mu * self.preload
         return rows.reshape(2 * c, self.size - 2)
-
-    def _flows(self) -> Flows:
-        modal, c = self.scene.modal, self.contacts
-        law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
-        return Flows(
-            (
-                modal.frequency**2,
-                2.0 * modal.damping * modal.frequency,
-                self.steady / modal.mass,
-                *(np.array([one.real, one.imag]) / modal.mass for one in (self.constant, self.square)),
-            ),
-            (self.tangential, self.normal, self.tangential / modal.mass, self.normal / modal.mass),
-            law,
-            (self.stretch, self.pull),
-        )
 
 
 _Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Integrals]
@@ -185,35 +171,7 @@ def _kernels_of(scene: Scene, made: Callable[[], _Kernels]) -> _Kernels:
     return kernels
 
 
-def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What stands for the contacts that are held.
-
-    The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
-    steady modal forces.
-    """
-    modal, steady = scene.modal, np.zeros(scene.modal.mass.size)
-    stretch, stiffness = list[FloatArray](), list[float]()
-    for one in scene.held:
-        contact = one.contact
-        along, across = modal.shapes @ contact.tangential, modal.shapes @ contact.normal
-        if one.open:  # the preload is missing
-            steady += across * max(contact.n_0, 0.0)
-            continue
-        steady -= across * min(contact.n_0, 0.0)  # a gap is not pressed
-        stretch, stiffness = [*stretch, across], [*stiffness, contact.k_v]
-        if has_friction(contact):
-            steady += along * (contact.k_u * one.rest)
-            stretch, stiffness = [*stretch, along], [*stiffness, contact.k_u]
-    shapes = np.array(stretch).reshape(len(stretch), -1 if stretch else modal.mass.size)
-    return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
-
-
 def _checked(omega: float) -> float:
     if not (isfinite(omega) and omega > 0.0):
         raise SimulationError(f"the frequency is {omega:g}; a simulation needs one that is positive")
     return float(omega)
-
-
-def has_friction(contact: Contact) -> bool:
-    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
-    return contact.mu > 0.0 and contact.k_u > 0.0

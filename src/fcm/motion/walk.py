@@ -70,7 +70,7 @@ class Walk:
             last = min(2 * k, SPAN + 1)
             old, new = y[: last - k], y[k:last]
             new[:, :n] = old[:, :n] @ powers[j] + old[:, n:] @ forced[j, :2]
-            c, s = np.asarray(self.flows.turn)[slot, j]
+            c, s = np.asarray(self.flows.rotation)[slot, j]
             new[:, n:] = old[:, n:] @ np.array([[c, -s], [s, c]])
 
     @cython.cfunc

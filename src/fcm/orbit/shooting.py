@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.motion.cycle import Cycle
+from fcm.motion.matrices import has_friction
 from fcm.motion.measure import Displaced, displaced
 from fcm.motion.run import march_from
 from fcm.motion.state import State
-from fcm.motion.system import System, has_friction
+from fcm.motion.system import System
 from fcm.orbit.derivative import period_derivative
 from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting, stuck_of
 from fcm.scene.model import FloatArray, Scene

@@ -13,10 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.motion.matrices import has_friction
 from fcm.motion.measure import extremes
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
-from fcm.motion.system import System, has_friction
+from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.reduction.put_back import unknowns
 from fcm.reduction.sentences import named

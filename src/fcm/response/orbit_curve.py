@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
-from fcm.motion.system import has_friction
+from fcm.motion.matrices import has_friction
 from fcm.orbit.family import family
 from fcm.orbit.landing import with_landings
 from fcm.orbit.problem import OrbitProblem

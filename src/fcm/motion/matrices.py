@@ -1,0 +1,79 @@
+"""What the equations of a motion in time are made of, whatever states the contacts are in."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from fcm.scene.model import Contact, FloatArray, Scene
+
+if TYPE_CHECKING:
+    from fcm.motion.system import System
+
+
+class Matrices(NamedTuple):
+    """Of a scene.
+
+    Parameters
+    ----------
+    modal : tuple of arrays
+        Squares of the modes' frequencies, 2 zeta omega_0, and by mass the steady forces, those of sin and cos
+        (2, mode), and those that grow as omega^2 (2, mode).
+    ports : tuple of arrays (contact, mode)
+        Shapes of u and of v, and the same divided by the modal masses.
+    law : array (5, contact)
+        mu, k_u, k_v, n_0, and whether the contact can exert friction at all.
+    springs : tuple of arrays (spring, mode)
+        Shapes of what springs resist, and the same times their stiffness divided by the modal masses.
+    """
+
+    modal: tuple[FloatArray, ...]
+    ports: tuple[FloatArray, ...]
+    law: FloatArray
+    springs: tuple[FloatArray, ...]
+
+
+def matrices_of(system: System) -> Matrices:
+    """Those of a system, which are the same at every frequency."""
+    modal, c = system.scene.modal, system.contacts
+    law = np.array([[k.mu, k.k_u, k.k_v, k.n_0, has_friction(k)] for k in c]).reshape(len(c), 5).T
+    return Matrices(
+        (
+            modal.frequency**2,
+            2.0 * modal.damping * modal.frequency,
+            system.steady / modal.mass,
+            *(np.array([one.real, one.imag]) / modal.mass for one in (system.constant, system.square)),
+        ),
+        (system.tangential, system.normal, system.tangential / modal.mass, system.normal / modal.mass),
+        law,
+        (system.stretch, system.pull),
+    )
+
+
+def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """What stands for the contacts that are held.
+
+    The shapes of springs (spring, mode), these times their stiffness divided by the modal masses, and the
+    steady modal forces.
+    """
+    modal, steady = scene.modal, np.zeros(scene.modal.mass.size)
+    stretch, stiffness = list[FloatArray](), list[float]()
+    for one in scene.held:
+        contact = one.contact
+        along, across = modal.shapes @ contact.tangential, modal.shapes @ contact.normal
+        if one.open:  # the preload is missing
+            steady += across * max(contact.n_0, 0.0)
+            continue
+        steady -= across * min(contact.n_0, 0.0)  # a gap is not pressed
+        stretch, stiffness = [*stretch, across], [*stiffness, contact.k_v]
+        if has_friction(contact):
+            steady += along * (contact.k_u * one.rest)
+            stretch, stiffness = [*stretch, along], [*stiffness, contact.k_u]
+    shapes = np.array(stretch).reshape(len(stretch), -1 if stretch else modal.mass.size)
+    return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
+
+
+def has_friction(contact: Contact) -> bool:
+    """Whether the contact can exert friction at all; without, it is never more than closed or open."""
+    return contact.mu > 0.0 and contact.k_u > 0.0
