@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fcm.continuation import Status
+from fcm.harmonic.common_levels import forget
 from fcm.harmonic.linear_contacts import highest, least
-from fcm.harmonic.proportion import forget
 from fcm.harmonic.record import recorded_at_levels
 from fcm.harmonic.start import level_curve, resonances, solutions
 from fcm.harmonic.system import System

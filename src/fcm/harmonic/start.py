@@ -14,8 +14,8 @@ import numpy as np
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
+from fcm.harmonic.common_levels import in_common, passings
 from fcm.harmonic.linear_contacts import GREATEST, highest, least, linear_responses
-from fcm.harmonic.proportion import in_common, passings
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 

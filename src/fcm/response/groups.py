@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.harmonic.proportion import forget
+from fcm.harmonic.common_levels import forget
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.results.gist import Gist, without_points
