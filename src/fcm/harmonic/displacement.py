@@ -25,7 +25,7 @@ class Displacements:
     def __init__(self, seen: Receptance, linear: Linear) -> None:
         count, dofs = seen.count, linear.dofs.shape[1]
         self.seen, self.dofs = seen, dofs
-        self.shapes, self.static = linear.dofs, linear.answer
+        self.shapes, self.static = linear.dofs, linear.static_of_dofs
         self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)

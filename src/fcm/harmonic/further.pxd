@@ -1,12 +1,12 @@
 from fcm.contact.periodic.forces cimport PeriodicContact
-from fcm.structure.answers cimport Answers
+from fcm.structure.forced_modes cimport ForcedModes
 
 cdef class Further:
     cdef readonly object system
     cdef readonly int highest, contacts, width
     cdef readonly double[::1] share
     cdef PeriodicContact kernel
-    cdef Answers answers
+    cdef ForcedModes modes
     cdef double[:, ::1] laws
     cdef Py_ssize_t[::1] others
     cdef double least

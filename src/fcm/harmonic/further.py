@@ -19,7 +19,7 @@ import numpy.typing as npt
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
-from fcm.structure.answers import Answers
+from fcm.structure.forced_modes import ForcedModes
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import MIXED
@@ -47,7 +47,7 @@ class Further:
         self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
         few = system.scene.ring is None and linear.ports.size <= FEW
         own = linear.natural, linear.damping, linear.ports, linear.dofs
-        self.answers = Answers(*own) if few else None
+        self.modes = ForcedModes(*own) if few else None
         self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
         self.force = np.zeros((self.highest, 2 * self.contacts, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
@@ -112,9 +112,9 @@ class Further:
             most = max(most, amplitude[k])
         for k in range(self.size.shape[0]):
             self.size[k] = max(amplitude[k], self.least * most)
-        if self.answers is None:
+        if self.modes is None:
             return self.of_many(z[self.contacts * self.width])
-        self.answers.shares(self.others, z[self.contacts * self.width], self.force, self.size, self.share)
+        self.modes.shares(self.others, z[self.contacts * self.width], self.force, self.size, self.share)
         return 0
 
     @cython.cfunc
@@ -123,8 +123,9 @@ class Further:
         """Of many modes, by BLAS, or of a ring."""
         others, size = np.asarray(self.others), np.asarray(self.size)
         force = np.asarray(self.force).view(np.complex128)[others - 1, :, 0][None]
-        answer = np.abs(self.system.linear.answers(others.astype(np.float64), np.array([omega]), force))[0]
-        np.asarray(self.share)[others - 1] = (answer / np.where(size > 0.0, size, np.inf)).max(axis=1)
+        linear, at = self.system.linear, np.array([omega])
+        displaced = np.abs(linear.displacements(others.astype(np.float64), at, force))[0]
+        np.asarray(self.share)[others - 1] = (displaced / np.where(size > 0.0, size, np.inf)).max(axis=1)
         return 0
 
 

@@ -22,7 +22,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class _Last(threading.local):
-    """The linear answers that each thread found last, and what they are of."""
+    """The linear responses that each thread found last, and what they are of."""
 
     def __init__(self) -> None:
         self.key: tuple[object, ...] = ()
@@ -34,19 +34,19 @@ _LAST = _Last()
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
     """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
-    for ports in _linear_answers(system, omega):
+    for ports in _on_ports(system, omega):
         yield _unknowns(system.rest, level * ports, len(system.harmonics), system.harmonics.index(1))
 
 
-def _linear_answers(system: System, omega: float) -> ComplexArray:
+def _on_ports(system: System, omega: float) -> ComplexArray:
     """Of the ports, (3, port), with the contacts as in `linear_responses`; kept in the system."""
-    if omega not in system.answers:
+    if omega not in system.on_ports:
         foresee(system, (omega,))
-    return system.answers[omega]
+    return system.on_ports[omega]
 
 
 def foresee(system: System, frequencies: Sequence[float]) -> None:
-    """Find the linear answers at all frequencies at which solutions will be asked for, at once.
+    """Find the linear responses at all frequencies at which solutions will be asked for, at once.
 
     Those of the last system are still known: of a sweep most are the same.
     """
@@ -54,11 +54,11 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
     held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
     key = (*system.linear.numbers, *frequencies, held.tobytes())
     if key != _LAST.key or system.scene.ring is not None:
-        _LAST.key, _LAST.found = key, _answers_of(system, frequencies, held)
-    system.answers.update(zip(frequencies, _LAST.found, strict=True))
+        _LAST.key, _LAST.found = key, _with_springs(system, frequencies, held)
+    system.on_ports.update(zip(frequencies, _LAST.found, strict=True))
 
 
-def _answers_of(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
+def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
     """Of the ports with springs held (case, port): (frequency, case, port)."""
     G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
     matrices = np.eye(X.shape[1]) + G[:, None] * held[:, None, :]
@@ -86,7 +86,7 @@ def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int
 def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
     levels, loads = [1.0], np.abs(loads_at_rest(system))
-    for ports in _linear_answers(system, omega)[1:]:
+    for ports in _on_ports(system, omega)[1:]:
         for load, (variation, slip, contact) in zip(loads, _motions(system, ports), strict=True):
             levels += [load / variation] if variation > 0.0 else []
             levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
@@ -98,7 +98,7 @@ def least(system: System, omega: float) -> float:
     if system.scene.loads:
         return 0.0
     levels = [GREATEST]
-    for variation, slip, contact in _motions(system, _linear_answers(system, omega)[0]):
+    for variation, slip, contact in _motions(system, _on_ports(system, omega)[0]):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
         levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []

@@ -41,7 +41,7 @@ class System:
     corrected: bool = True
     linear: Linear = field(init=False)
     coarse: CoefficientLaw = field(init=False)  # the table's
-    answers: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
+    on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))

@@ -18,7 +18,7 @@ LEAST_DAMPING = 1e-9  # of an undamped mode at its own frequency, relative
 ROUNDING = 1e-12  # relative: shapes this near are the same
 SAME = 8  # structures that are remembered, as all curves of a sweep have the same
 MOST = 10.0  # times a shape, of those that it is combined from
-TURN = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
+FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class Linear:
         return np.ascontiguousarray(self.ports.T @ self.flexibility @ self.ports)
 
     @cached_property
-    def answer(self) -> FloatArray:
-        """Of the degrees of freedom to mean forces on the ports (dof, port)."""
+    def static_of_dofs(self) -> FloatArray:
+        """Displacements of the degrees of freedom by mean forces on the ports (dof, port)."""
         return np.ascontiguousarray(self.dofs.T @ self.flexibility @ self.ports)
 
     @cached_property
@@ -73,7 +73,7 @@ class Linear:
     def _fundamental(self) -> Receptance:
         return self.receptance(np.ones(1))
 
-    def answers(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
+    def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
         """Displacements (point, harmonic, dof) that forces on the ports (point, harmonic, port) make."""
         modal = force @ self.ports.T
         return amplitudes(self.natural, self.damping, omega, harmonics, modal) @ self.dofs
@@ -152,8 +152,8 @@ def linear_of(scene: Scene) -> Linear:
         damping=modal.damping,
         ports=np.ascontiguousarray(ports),
         dofs=np.ascontiguousarray(modal.shapes * unit),
-        force=TURN * (modal.shapes @ loads.constant) * unit[:, 0],
-        square=TURN * (modal.shapes @ loads.square) * unit[:, 0],
+        force=FROM_SINE * (modal.shapes @ loads.constant) * unit[:, 0],
+        square=FROM_SINE * (modal.shapes @ loads.square) * unit[:, 0],
         load=(modal.shapes @ loads.static) * unit[:, 0],
         flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
         counted=k_v,

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
 from fcm.scene.ring import Ring
-from fcm.structure.linear import TURN, Linear, amplitudes, attached_to, with_springs
+from fcm.structure.linear import FROM_SINE, Linear, amplitudes, attached_to, with_springs
 from fcm.structure.loads import Loads
 from fcm.structure.receptance import Receptance
 from fcm.structure.travelling import TravellingReceptance
@@ -61,15 +61,15 @@ class RingLinear(Linear):
         """The receptance of one harmonic on ports with the real and those with the imaginary parts."""
         wave = self.wave(harmonic)
         both = np.concatenate((wave.ports.real, wave.ports.imag), axis=1)
-        pushed = [TURN * (wave.dofs.conj() @ load) for load in (self.loads.constant, self.loads.square)]
+        pushed = [FROM_SINE * (wave.dofs.conj() @ load) for load in (self.loads.constant, self.loads.square)]
         force, square = pushed if harmonic == 1 else np.zeros((2, len(wave.dofs)), complex)
         static = np.zeros((both.shape[1], both.shape[1]))
         seen = Receptance(both, wave.natural, wave.damping, force, static, np.array([float(harmonic)]))
         seen.grows(square)
         return seen
 
-    def answers(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
-        """As `Linear.answers`."""
+    def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
+        """As `Linear.displacements`."""
         found = np.zeros((*force.shape[:2], self.directions.shape[0]), dtype=np.complex128)
         for j, h in enumerate(harmonics):
             wave = self.wave(int(h))

@@ -1,4 +1,4 @@
-cdef class Answers:
+cdef class ForcedModes:
     cdef double[:, ::1] ports
     cdef double[:, ::1] dofs
     cdef double[::1] natural

@@ -11,7 +11,7 @@ LEAST_DAMPING = cython.declare(cython.double, 1e-9)  # as of a `Receptance`
 
 
 @cython.cclass
-class Answers:
+class ForcedModes:
     """Modes of mass 1 with shapes on the ports (mode, port) and on the degrees of freedom (mode, dof)."""
 
     def __init__(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.structure.answers import Answers
+from fcm.structure.forced_modes import ForcedModes
 
 RNG = np.random.default_rng(7)
 MODES, PORTS, DOFS, POINTS, HARMONICS = 3, 4, 5, 6, 7
@@ -20,9 +20,9 @@ def test_shares_are_those_of_the_equations_of_motion():
     force = RNG.standard_normal((POINTS, HARMONICS, PORTS, 2))
     omega, size = RNG.uniform(0.5, 2.0, POINTS), RNG.uniform(0.1, 1.0, (POINTS, DOFS))
     out = np.full((POINTS, HARMONICS), -1.0)
-    answers = Answers(natural, damping, turned.T @ on_ports, turned.T @ shown)
+    modes = ForcedModes(natural, damping, turned.T @ on_ports, turned.T @ shown)
     for i in range(POINTS):
-        answers.shares(np.array([2, 3, 6]), omega[i], force[i], size[i], out[i])
+        modes.shares(np.array([2, 3, 6]), omega[i], force[i], size[i], out[i])
         for h in (2, 3, 6):
             w = h * omega[i]
             pushed = on_ports @ (force[i, h - 1, :, 0] + 1j * force[i, h - 1, :, 1])
@@ -33,9 +33,9 @@ def test_shares_are_those_of_the_equations_of_motion():
 
 
 def test_what_does_not_move_has_no_share_and_resonance_no_infinite_one():
-    answers = Answers(np.array([2.0]), np.zeros(1), np.ones((1, 1)), np.ones((1, 2)))
+    modes = ForcedModes(np.array([2.0]), np.zeros(1), np.ones((1, 1)), np.ones((1, 2)))
     out, force = np.zeros(2), np.ones((2, 1, 2))
-    answers.shares(np.array([2]), 1.0, force, np.array([0.0, 1.0]), out)
+    modes.shares(np.array([2]), 1.0, force, np.array([0.0, 1.0]), out)
     assert out[0] == 0.0 and np.isfinite(out[1]) and out[1] > 1e6
-    answers.shares(np.array([2]), 1.0, force, np.zeros(2), out)
+    modes.shares(np.array([2]), 1.0, force, np.zeros(2), out)
     assert (out == 0.0).all()
