@@ -3,4 +3,4 @@ from fcm.continuation.narrow cimport Narrow
 from fcm.continuation.passage cimport Passage
 from fcm.continuation.place cimport Place
 from fcm.continuation.problem cimport Problem
-from fcm.continuation.turn cimport Turn
+from fcm.continuation.leaving cimport Leaving

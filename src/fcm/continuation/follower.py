@@ -9,6 +9,7 @@ import numpy as np
 
 from fcm.continuation.back import BACK, earlier
 from fcm.continuation.front import Front
+from fcm.continuation.leaving import Leaving
 from fcm.continuation.narrow import Narrow
 from fcm.continuation.passage import Passage
 from fcm.continuation.path import FloatArray, Mark, Path, Status
@@ -16,18 +17,17 @@ from fcm.continuation.place import Place
 from fcm.continuation.problem import Problem
 from fcm.continuation.soft import Soft
 from fcm.continuation.stage import Stage, put_back, state_of
-from fcm.continuation.turn import Turn
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.ahead import ahead
+    from cython.cimports.fcm.continuation.leaving import before_corner
     from cython.cimports.fcm.continuation.margins import crosses, detour, dip
     from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
-    from cython.cimports.fcm.continuation.turn import before_corner
 else:
     from fcm.continuation.ahead import ahead
+    from fcm.continuation.leaving import before_corner
     from fcm.continuation.margins import crosses, detour, dip
     from fcm.continuation.step_rule import clear, extent, good, next_step
-    from fcm.continuation.turn import before_corner
 
 FIRST = cython.declare(cython.double, 1e-3)  # the first step
 SHORTEST = cython.declare(cython.double, 1e-9)  # a step that is still too long then leads nowhere
@@ -53,7 +53,7 @@ class Follower:
     front: Front
     passage: Passage
     narrow: Narrow  # values of the parameter that no step leads across
-    corners: Turn
+    corners: Leaving
     step: cython.double
     max_step: cython.double
     size: cython.double  # of the solution at the start
@@ -80,7 +80,7 @@ class Follower:
         self.near = max_step if hasty else NEAR
         self.passage = Passage(self.front, span, stations)
         self.narrow = Narrow([one for one in narrow if one[1] < max_step * (span[1] - span[0])])
-        self.corners, self.attempts = Turn(self.passage, problem.soft), 0
+        self.corners, self.attempts = Leaving(self.passage, problem.soft), 0
         self.soft = Soft(self.front, self.passage.trail) if problem.soft else None
 
     def begin(self, start: FloatArray, forward: bool) -> bool:
@@ -147,7 +147,7 @@ class Follower:
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
                 front.drift(reach)
-                return self.turn(front.here, 0.0)
+                return self.leave(front.here, 0.0)
             # curves bend more and more towards a corner, and may hide a pair of folds there
             if self.near < reach < step and clear(front, NEARER * reach) and self.hidden() == 0.0:
                 return self.smooth()
@@ -222,10 +222,10 @@ class Follower:
         if self.passage.keep(front.step):
             return self.passage.end()
         place: Place = front.between if front.put(at, True, True) else front.there
-        return self.turn(place, at)
+        return self.leave(place, at)
 
     @cython.ccall
-    def turn(self, place: Place, at: cython.double, past: cython.double = BEYOND) -> object:
+    def leave(self, place: Place, at: cython.double, past: cython.double = BEYOND) -> object:
         """Go on from a corner, a place at a length from here; past: where to look if it is soft."""
         self.corners.at(place, at, past)
         self.step = AFTER

@@ -31,7 +31,7 @@ SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends bef
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
 TOUCHED = 1e-8  # a change of label this near is met: less than BEYOND
 MET = 1e-6  # and this near, where no curve is found up to there
-TURNS = 5  # looks beyond one place, each ten times as far
+LOOKS = 5  # looks beyond one place, each ten times as far
 AROUND = 16  # directions in which a way out of a corner is sought at last,
 REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
 BACK = -0.99  # cosine below which a curve goes back on the way that it came, unless its label there is new:
@@ -49,8 +49,8 @@ class Follower(Protocol):
     def smooth(self) -> object:
         """Go on to the place there; a status where the curve ends."""
 
-    def turn(self, place: Place, at: float, past: float) -> object:
-        """Keep the corner, a place at a length from here, and turn into the direction beyond it."""
+    def leave(self, place: Place, at: float, past: float) -> object:
+        """Keep the corner, a place at a length from here, and take the direction beyond it."""
 
     def aim(self, step: float, longer: bool) -> None:
         """Make the next step at most that long, or at least."""
@@ -91,13 +91,13 @@ class Soft:
                 continue
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
-                return self.turn(follower, reach)
+                return self.leave(follower, reach)
             if reach < step and front.go(reach * (1.0 - SHORT_OF)) and self.good(follower):
                 status = self.smooth(follower, LONGER)
                 follower.aim(SHARP, False)
                 return status
             step = 0.25 * min(step, reach)
-        return self.turn(follower, ahead(front, MET))
+        return self.leave(follower, ahead(front, MET))
 
     def good(self, follower: Follower) -> bool:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
@@ -139,23 +139,23 @@ class Soft:
         away = (kept.z[folds[folds < count - LOOP]] - kept.z[new[-1]]) / np.asarray(self.front.newton.scale)
         return bool((np.abs(away).max(axis=1, initial=0.0) < SAME).any())
 
-    def turn(self, follower: Follower, reach: float) -> object:
-        """Turn at a change of label that is this near; if nothing new leads on, look further beyond it."""
+    def leave(self, follower: Follower, reach: float) -> object:
+        """Leave a corner, a change of label this near; if nothing new leads on, look further beyond it."""
         front = self.front
-        if self.repeated > TURNS:
+        if self.repeated > LOOKS:
             return Status.STALLED
         if self.repeated == 0:
             self.came = np.array(front.here.tangent)
             self.label = np.array(front.here.margin)
             self.came_so = self.trail.tail()
-        while self.repeated < TURNS:
+        while self.repeated < LOOKS:
             np.asarray(front.here.tangent)[:] = self.came
             front.prediction.straighten()
             self.trail.drop()
             self.trail.put(*self.came_so)
             past = max(BEYOND, 3.0 * reach) * 10.0**self.repeated
             self.repeated += 1
-            follower.turn(front.here, 0.0, past)
+            follower.leave(front.here, 0.0, past)
             new = np.array(front.here.tangent)
             front.problem.bound(np.asarray(front.here.z) + past * np.asarray(front.newton.scale) * new)
             if self.leads_on(float(new @ self.came)):
@@ -168,9 +168,9 @@ class Soft:
         return cosine > (SPIKE if new else BACK)
 
     def sought(self, follower: Follower) -> bool:
-        """Whether the curve leaves a corner into any of the pieces around it: then it is turned there."""
+        """Whether the curve leaves a corner into any of the pieces around it: then it is left there."""
         front = self.front
-        if self.repeated > TURNS:
+        if self.repeated > LOOKS:
             return False
         self.repeated += 1
         directions = np.random.default_rng(0).normal(size=(AROUND, self.came.size))

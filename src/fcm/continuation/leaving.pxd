@@ -4,7 +4,7 @@ from fcm.continuation.place cimport Place
 
 cdef double before_corner(Front front) except? -1
 
-cdef class Turn:
+cdef class Leaving:
     cdef Passage passage
     cdef bint softly
     cdef double[::1] grew

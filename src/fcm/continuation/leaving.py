@@ -1,4 +1,4 @@
-"""Turns: a corner is found in a step, kept as a point, and left in the direction of the curve beyond."""
+"""Corners: one is found in a step, kept as a point, and left in the direction of the curve beyond."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def before_corner(front: Front) -> cython.double:
 
 
 @cython.cclass
-class Turn:
+class Leaving:
     """At corners of the curve of a `passage`; `softly` where a change of label is what tells of them."""
 
     def __init__(self, passage: Passage, softly: bool) -> None:
@@ -49,7 +49,7 @@ class Turn:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def at(self, place: Place, length: cython.double, past: cython.double) -> cython.int:
-        """Keep the corner, a place at a length from here, and turn into the direction beyond it.
+        """Keep the corner, a place at a length from here, and take the direction beyond it.
 
         past: the length at which that is looked for where the corner is a change of label.
         """
