@@ -20,7 +20,7 @@ class Ring:
     """Sectors that do the same one after the other: x of sector k at t is x of sector 0 at t + k phi / omega.
 
     With phi = 2 pi engine_order / sectors: the forces on sector k have the phase k phi, and harmonic h of the
-    motion is X_h exp(i h k phi). In space that is h engine_order turns around the ring, of which sectors see
+    motion is X_h exp(i h k phi). In space that is h engine_order waves around the ring, of which sectors see
     the remainder r by their number: it meets the modes of the nodal diameter r or sectors - r.
 
     The modes of diameter n are those of a sector whose next moves as itself times exp(2 pi i n / sectors).
@@ -34,23 +34,23 @@ class Ring:
     diameter: npt.NDArray[np.int64]  # (mode,)
     added: npt.NDArray[np.bool_]  # (mode,) those that stand for the flexibility of modes left out
 
-    def turns(self, harmonic: int) -> int:
-        """The number of turns around the ring that a harmonic has, from 0 to sectors - 1."""
+    def waves(self, harmonic: int) -> int:
+        """The number of waves of a harmonic around the ring, from 0 to sectors - 1."""
         return harmonic * self.engine_order % self.sectors
 
     def meets(self, harmonic: int) -> int:
         """The nodal diameter of the modes that a harmonic meets."""
-        turns = self.turns(harmonic)
-        return min(turns, self.sectors - turns)
+        waves = self.waves(harmonic)
+        return min(waves, self.sectors - waves)
 
     def modes(self, harmonic: int) -> tuple[FloatArray, FloatArray, ComplexArray]:
         """Frequency (mode,), damping (mode,) and shapes (mode, dof) that a harmonic meets.
 
-        Beyond half of the sectors it turns the other way, and the shapes are the conjugates.
+        Beyond half of the sectors they travel the other way, and the shapes are the conjugates.
         """
         which = self.diameter == self.meets(harmonic)
         shapes = self.shapes[which]
-        backward = 2 * self.turns(harmonic) > self.sectors
+        backward = 2 * self.waves(harmonic) > self.sectors
         return self.frequency[which], self.damping[which], shapes.conj() if backward else shapes
 
     def lacking(self, harmonics: Iterable[int]) -> dict[int, int]:
