@@ -49,7 +49,7 @@ def _lost(system: System, path: Path, one: Crossing) -> Lost:
     amplitude = reported_at(system, z, direction).amplitude[0]
     corrector = corrector_of(system)
     corrector.further.at(one.z, amplitude)
-    more = corrector.most()
+    more = corrector.ranking.most()
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
     found = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system).crossing(one.place)
