@@ -8,7 +8,7 @@ the crossing of more harmonics.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,8 @@ from fcm.harmonic.system import System
 
 FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
 FIRST = 0.5
-FINE = 1e-5  # of the way between two points, to which it is found: an error is told to a few parts of itself
+FINE = 1e-5  # of the way between two points, to which it is found: an error is told to a few parts of itself,
+PART = 0.03  # or to this part of itself, and of what it may be
 LEAST = -0.3  # growth that is as good as any that is less
 LOOKS = 40
 
@@ -39,12 +40,14 @@ class Lost:
     harmonics: tuple[int, ...]
 
 
-def lost_along(system: System, path: Path, crossings: Sequence[Crossing]) -> list[Lost]:
-    """Errors of the crossings of a path."""
-    return [_lost(system, path, one) for one in crossings]
+def lost_along(
+    system: System, path: Path, crossings: Sequence[Crossing], accuracy: float = 0.0
+) -> list[Lost]:
+    """Errors of the crossings of a path, which may be as large as accuracy."""
+    return [_lost(system, path, one, accuracy) for one in crossings]
 
 
-def _lost(system: System, path: Path, one: Crossing) -> Lost:
+def _lost(system: System, path: Path, one: Crossing, accuracy: float) -> Lost:
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     corrector = corrector_of(system)
@@ -52,7 +55,8 @@ def _lost(system: System, path: Path, one: Crossing) -> Lost:
     more = corrector.ranking.most()
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
-    found = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system).crossing(one.place)
+    beside = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system)
+    found = beside.crossing(one, PART * accuracy)
     return Lost(one.frequency, abs(found / one.frequency - 1.0), more)
 
 
@@ -78,43 +82,41 @@ class _Beside:
         self.frequency = float(self.lifted.newton.z[-1])
         return max(self.multipliers.verdict(np.array(self.lifted.newton.z)).growth, LEAST)
 
-    def crossing(self, place: float) -> float:
-        """The frequency at which growth changes its sign next to a place; NaN where that is not found."""
-        now = self.growth(place)
-        sides = [_enclosed(self.growth, place, now, ahead) for ahead in self._ways(place)]
-        known = [one for one in sides if one is not None]
-        if math.isnan(now) or not known:
+    def crossing(self, one: Crossing, fine: float) -> float:
+        """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
+
+        To `FINE`, or until two looks are at frequencies that differ by less than fine, relative, or by less
+        than `PART` of how far they are from the crossing.
+        """
+        near = self._enclosed(one.place)
+        if near is None:
             return math.nan
-        near = min(known, key=lambda one: one.width)
         for _ in range(LOOKS):
-            at = near.at
+            at, before = near.at, self.frequency
             value = self.growth(at)
             if math.isnan(value) or near.width < FINE:
+                break
+            off = max(fine * one.frequency, PART * abs(self.frequency - one.frequency))
+            if abs(self.frequency - before) < off:
                 break
             near.saw(at, value)
             if near.known(FINE):
                 break
         return self.frequency if not math.isnan(value) else math.nan
 
-    def _ways(self, place: float) -> Iterator[Iterator[float]]:
-        """Places further and further from one, up and down."""
-        last = float(len(self.path.z) - 1)
-        for sign in (1.0, -1.0):
-            ends = (place + sign * FIRST * 2.0**i for i in range(int(math.log2(FAR / FIRST)) + 1))
-            yield (at for at in ends if 0.0 <= at <= last)
-
-
-def _enclosed(
-    growth: Callable[[float], float], place: float, now: float, ahead: Iterator[float]
-) -> Secants | None:
-    """A change of sign between a place and others; None if there is none up to where it is not known."""
-    before = (place, now)
-    for at in ahead:
-        value = growth(at)
-        if math.isnan(value):
-            return None
-        if (value > 0.0) != (before[1] > 0.0):
-            (low, one), (high, other) = sorted((before, (at, value)))
-            return Secants(low, high, one, other, may_jump=True)
-        before = (at, value)
-    return None
+    def _enclosed(self, place: float) -> Secants | None:
+        """The change of sign nearest to a place, of which both sides are looked at further and further away;
+        None if there is none up to where the growth is not known, or even that there is not."""
+        now, last, near = self.growth(place), float(len(self.path.z) - 1), FIRST
+        before = {} if math.isnan(now) else {1.0: (place, now), -1.0: (place, now)}
+        while before and near <= FAR:
+            for sign, (known, growth) in list(before.items()):
+                at = place + sign * near
+                value = self.growth(at) if 0.0 <= at <= last else math.nan
+                if (value > 0.0) != (growth > 0.0) and not math.isnan(value):
+                    (low, one), (high, other) = sorted(((known, growth), (at, value)))
+                    return Secants(low, high, one, other, may_jump=True)
+                before[sign] = (at, value)
+            before = {sign: side for sign, side in before.items() if not math.isnan(side[1])}
+            near *= 2.0
+        return None

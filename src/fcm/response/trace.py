@@ -53,7 +53,7 @@ def traced_curve(scene: Scene, wanted: Wanted = ONE_HARMONIC) -> Curve:
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
-    followed = _followed(found, by_need)
+    followed = _followed(found, wanted.accuracy if by_need else None)
     if by_need:
         followed = _with_jumps(followed, wanted.accuracy)
     curve = _curve(followed)
@@ -85,7 +85,7 @@ def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
         again = finer(followed.found, tuple(sorted(more)), accuracy)
         if again is None:
             break
-        followed = _followed(again)
+        followed = _followed(again, accuracy)
     return followed
 
 
@@ -164,14 +164,18 @@ def _curve(followed: _Followed) -> Curve:
     )
 
 
-def _followed(found: Accurate, by_need: bool = True) -> _Followed:
-    """A response with points where stability changes between folds, and whether each point is stable."""
+def _followed(found: Accurate, accuracy: float | None) -> _Followed:
+    """A response with points where stability changes between folds, and whether each point is stable.
+
+    With an accuracy, and how far it is from where more harmonics have these.
+    """
     paths, shown, errors, stable = [], [], [], []
     lost: list[Lost] = []
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path)
         inserted = judged.inserted
-        lost += lost_along(found.system, path, judged.crossings) if by_need else []
+        if accuracy is not None:
+            lost += lost_along(found.system, path, judged.crossings, accuracy)
         if not inserted:
             paths.append(path)
             shown.append(known)
