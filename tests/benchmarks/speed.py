@@ -8,13 +8,13 @@ would be on a machine where that is 10 ns. The multiples carry over to other mac
 from __future__ import annotations
 
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
+from unit import SINE, seconds, sine
 
 import fcm
 from fcm.contact.cycle import __file__ as kernel
@@ -25,8 +25,6 @@ from fcm.table import Table
 from fcm.table.locate import locate
 
 REPEATS = 7
-SINE = 0.01  # [us] a value, of the machine to which times are scaled
-ANGLES = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 200_000)
 Row = tuple[str, Callable[[], object], int]  # what, the call, elements that it handles
 
 
@@ -35,19 +33,13 @@ def block(title: str, rows: list[Row], repeats: int = REPEATS) -> None:
     times: list[list[tuple[float, float]]] = [[] for _ in rows]
     for _ in range(repeats):
         for samples, (_, call, elements) in zip(times, rows, strict=True):
-            sine = seconds(lambda: np.sin(ANGLES)) / ANGLES.size
+            of_a_sine = sine()
             taken = seconds(call) / elements
-            samples.append((taken, taken / sine))
+            samples.append((taken, taken / of_a_sine))
     print(f"\n{title}\n{'':48s}{'us':>12s}{'sines':>10s}{'us scaled':>12s}")
     for (what, _, _), samples in zip(rows, times, strict=True):
         taken, multiple = np.median(samples, axis=0)
         print(f"  {what:46s}{taken * 1e6:12.3f}{multiple:10.1f}{multiple * SINE:12.3f}")
-
-
-def seconds(call: Callable[[], object]) -> float:
-    begin = time.process_time()
-    call()
-    return time.process_time() - begin
 
 
 def contact_points(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
