@@ -200,7 +200,7 @@ def of_a_period(name: str, scene: Scene, omega: float) -> None:
         "multipliers": lambda: problem.residual(x, omega).multipliers,
         "amplitudes, mean and fundamental": lambda: measure(orbit.cycle),
     }
-    unit = min(sine() for _ in range(REPEATS))
+    unit = sine()
     print(f"\n{name}: {len(segments)} segments, {' '.join(orbit.states)}")
     for what, call in calls.items():
         timer = timeit.Timer(call, timer=time.process_time)
@@ -217,7 +217,7 @@ def periods() -> None:
 def aims() -> None:
     """One periodic solution: from a neighbouring one, and from nothing."""
     print("\none periodic solution, where np.sin takes 10 ns")
-    scaled = 1e-3 * SINE / min(sine() for _ in range(REPEATS))  # [ms] of a second here
+    scaled = 1e-3 * SINE / sine()  # [ms] of a second here
     for name, scene, omega in (
         ("the paper's oscillator, n_0 = 5", fcm.load_scene("yang1998-n5"), 1.3),
         ("4 contacts and 50 modes", large(), 1.5),
