@@ -70,7 +70,7 @@ def test_one_pair_alone_is_swept_by_its_name():
             'nodes: may be one pair, or two nodes that touch the ground: write [[40, "41"]]',
         ),
         ({"nodes": [[40, 40]]}, "nodes[0]: is the same node twice, 40"),
-        ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x"'),
+        ({"nodes": [[40, 99]]}, 'nodes: node 99 has no degree of freedom along "x", "y", "z"'),
         ({"nodes": [[40, 2.5]]}, "nodes[0]: must be two nodes"),
         ({"tangential": "40x"}, "tangential: must be one of x, y, z, rx, ry, rz, or a table"),
         ({"tangential": {"x": "1"}}, "tangential.x: must be a number"),
@@ -86,8 +86,13 @@ def test_mistakes_of_pairs(change, words):
 
 def test_all_nodes_that_are_not_there_are_named():
     said = refused([PAIRS | NUMBERS | {"nodes": [[40, 99], [98, 51]], "tangential": {"x": 0.6, "rz": 0.8}}])
-    for node, directions in ((40, ["rz"]), (99, ["x", "rz", "z"]), (98, ["x", "rz", "z"]), (51, ["rz"])):
-        assert all(f'node {node} has no degree of freedom along "{one}"' in said for one in directions)
+    for node, along in ((40, '"rz"'), (99, '"x", "rz", "z"'), (98, '"x", "rz", "z"'), (51, '"rz"')):
+        assert f"node {node} has no degree of freedom along {along}\n" in f"{said}\n"
+
+
+def test_a_node_that_is_not_there_is_named_once():
+    said = refused([PAIRS | NUMBERS | {"nodes": [[40, 99], [50, 99], [99]]}])
+    assert said.count("node 99") == 1
 
 
 def test_areas_without_what_they_share():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import isnan
 from typing import Any
 
@@ -63,19 +63,36 @@ def read_direction(section: Section, key: str) -> dict[str, float]:
     return {} if any(map(isnan, weights.values())) else weights
 
 
-def along(section: Section, weights: dict[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
-    """The relative displacement of a pair along a direction; None after a mistake."""
+def check_nodes(
+    section: Section, directions: Iterable[Mapping[str, float]], pairs: Iterable[Pair], dofs: Names | None
+) -> None:
+    """Note each node that cannot move along some of the directions, once."""
+    if dofs is None:
+        return
+    needed = dict.fromkeys(one for weights in directions for one in weights)
+    for node in dict.fromkeys(node for pair in pairs for node in pair):
+        lacking = [quoted(one) for one in needed if not _at(dofs, node, one)]
+        if lacking:
+            section.wrong("nodes", f"node {node} has no degree of freedom along {', '.join(lacking)}")
+
+
+def along(weights: Mapping[str, float], pair: Pair, dofs: Names | None) -> FloatArray | None:
+    """The relative displacement of a pair along a direction; None where it has none."""
     if dofs is None or not weights:
         return None
-    found, before = np.zeros(len(dofs)), section.mistakes.count
+    found = np.zeros(len(dofs))
     for direction, weight in weights.items():
         for node, sign in zip(pair, (1.0, -1.0), strict=False):
-            name = dofs.find(f"{node}{direction}") or dofs.find(f"{node}_{direction}")
-            if name:
-                found[dofs.place[name]] += sign * weight
-            else:
-                section.wrong("nodes", f"node {node} has no degree of freedom along {quoted(direction)}")
-    return found if section.mistakes.count == before else None
+            name = _at(dofs, node, direction)
+            if not name:
+                return None
+            found[dofs.place[name]] += sign * weight
+    return found
+
+
+def _at(dofs: Names, node: str, direction: str) -> str:
+    """The degree of freedom of a node along a direction; empty if it has none."""
+    return dofs.find(f"{node}{direction}") or dofs.find(f"{node}_{direction}")
 
 
 def read_shares(section: Section, count: int) -> list[float]:

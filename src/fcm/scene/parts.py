@@ -10,7 +10,7 @@ from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.names import Names, same_names, unfit_name
-from fcm.scene.node_pairs import along, read_direction, read_pairs, read_shares
+from fcm.scene.node_pairs import along, check_nodes, read_direction, read_pairs, read_shares
 from fcm.scene.rules import (
     FRACTION,
     MOST_HARMONICS,
@@ -57,10 +57,11 @@ def _contacts(section: Section, dofs: Dofs) -> list[dict[str, Any]]:
     pairs = read_pairs(section)
     shares = read_shares(section, len(pairs))
     directions = {key: read_direction(section, key) for key in keys}
+    check_nodes(section, directions.values(), pairs, dofs)
     return [
         draft
         | {"name": f"{name}_{number}", "group": name, "share": share}
-        | {key: along(section, directions[key], pair, dofs) for key in keys}
+        | {key: along(directions[key], pair, dofs) for key in keys}
         for number, (pair, share) in enumerate(zip(pairs, shares, strict=True), 1)
     ]
 
