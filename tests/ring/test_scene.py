@@ -161,6 +161,21 @@ def test_bars_of_orders_that_meet_one_diameter_stand_side_by_side():
     assert axes.get_title(loc="right") == "24 sectors; the first 6 of 7 engine orders"
 
 
+def test_numbers_of_harmonics_stand_clear_of_modes():
+    opened = tuple(np.array([400.0, 480.0 + 3.0 * d, 700.0]) for d in range(13))
+    stuck = tuple(one + 12.0 for one in opened)
+    ring = Ring("", 24, (3, 4, 5, 6, 7), (180.0, 240.0), "Hz", tuple(range(13)), opened, stuck)
+    (axes,) = draw_campbell(ring).axes
+    top, numbers = axes.get_ylim()[1], [one for one in axes.texts if one.get_text().isdecimal()]
+    assert len(numbers) >= 10 and all(one.get_path_effects() for one in numbers)
+    for one in numbers:
+        x, foot = one.xy
+        assert 0.0 < foot <= 0.95 * top
+        if abs(x - round(x)) < 0.1:  # its letters are 0.03 of the axis high
+            of_diameter = np.concatenate((opened[round(x)], stuck[round(x)]))
+            assert not ((of_diameter > foot) & (of_diameter < foot + 0.03 * top)).any()
+
+
 def test_lines_of_engine_orders_run_up_and_down():
     turns = np.arange(0, 30)
     phases = np.exp(2j * np.pi * np.outer(turns, range(7)) / 7)  # as sectors see them

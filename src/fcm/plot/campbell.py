@@ -29,6 +29,8 @@ _MOST_ORDERS = 6  # that have a line each
 _WIDE = 0.018  # of the axis: a bar of an engine order
 _FILLED = 0.75  # of the distance of two diameters, by bars beside one another
 _LABELLED = 0.95  # of the axis: up to there the numbers of harmonics
+_NUMBER = (0.12, 0.01, 0.045)  # of diameters beside one, and of the axis below and above its foot: its room
+_HALO = 2.0  # points of white around it, on the lines that it stands on
 
 
 @dataclass(frozen=True)
@@ -128,16 +130,46 @@ def _bars(axes: Axes, ring: Ring, colours: dict[int, str], top: float) -> None:
             middle, bar.high - bar.low, width, bar.low, color=colours[bar.order], alpha=0.35, zorder=1,
             linewidth=0.0, label=f"order {bar.order}, its harmonics" if bar.harmonic == 1 else None,
         )  # fmt: skip
-    named: dict[tuple[float, int], list[tuple[Bar, float]]] = {}
+    named: dict[tuple[int, int], list[tuple[Bar, float]]] = {}
     for bar, middle, _ in placed:
         named.setdefault((round(middle), bar.harmonic), []).append((bar, middle))
     for (_, harmonic), some in named.items():
-        only = colours[some[0][0].order] if len(some) == 1 else "black"
         centre = sum(middle for _, middle in some) / len(some)
-        axes.annotate(
-            f"{harmonic}", (centre, min(some[0][0].high, _LABELLED * top)), xytext=(0, 1),
-            textcoords="offset points", fontsize=7, color=only, ha="center", va="bottom",
-        )  # fmt: skip
+        _number(axes, ring, harmonic, centre, some[0][0].high, top)
+
+
+def _number(axes: Axes, ring: Ring, harmonic: int, x: float, end: float, top: float) -> None:
+    """The number of a harmonic where its bars end, legible where lines cross it."""
+    from matplotlib.patheffects import withStroke
+
+    axes.annotate(
+        f"{harmonic}", (x, free_height(ring, x, end, top)), xytext=(0, 1), textcoords="offset points",
+        fontsize=7, ha="center", va="bottom", zorder=4,
+        path_effects=[withStroke(linewidth=_HALO, foreground="white")],
+    )  # fmt: skip
+
+
+def free_height(ring: Ring, x: float, end: float, top: float) -> float:
+    """Where a number stands that belongs to the end of a bar: above it, and above the modes in its way.
+
+    Below the end, if the axis does not go so far.
+    """
+    beside_one, below, above = _NUMBER
+    modes = [
+        frequency
+        for diameter, *both in zip(ring.diameters, ring.opened, ring.stuck, strict=True)
+        for frequency in np.concatenate(both).tolist()
+        if abs(diameter - x) < beside_one
+    ]
+    height = min(end, _LABELLED * top)
+    for direction in (1.0, -1.0):
+        found = height
+        for frequency in sorted(modes, reverse=direction < 0.0):
+            if -below * top < frequency - found < above * top:
+                found = frequency + (below if direction > 0.0 else -above) * top
+        if found <= _LABELLED * top:
+            return found
+    return height
 
 
 def _placed(ring: Ring, x: float, bars: list[Bar]) -> list[tuple[Bar, float, float]]:
