@@ -126,3 +126,16 @@ def test_a_scene_says_by_how_much_rounding_moves_its_frequencies():
     (said,) = (note for note in notes(1e12, 1e-3) if "rounding moves" in note)
     assert 1e-7 < float(said.partition("by up to ")[2].split()[0]) < 1e-3
     assert not any("rounding" in note for note in (*notes(1e12, 1.0), *notes(1e3, 1e-4)))
+
+
+def test_rigid_body_modes_take_no_digits_from_the_elastic_ones():
+    """Those of a free frame are orthogonal to them, and balance, to the machine's precision."""
+    K, M = frame(np.random.default_rng(7))
+    found = reduced(
+        scipy.sparse.csc_array(K), scipy.sparse.csc_array(M), np.eye(len(K))[:, :2], 1e3, 12, True
+    )
+    shapes, stiffness = found.modes.shapes[:, : found.kept], found.modes.stiffness[: found.kept]
+    assert found.rigid == 6
+    assert shapes.T @ M @ shapes == pytest.approx(np.eye(found.kept), abs=1e-12)
+    forces = K @ shapes[:, 6:] - M @ shapes[:, 6:] * stiffness[6:]
+    assert np.abs(forces).max() < 1e-12 * np.abs(K).max() * np.abs(shapes).max()

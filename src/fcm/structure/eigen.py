@@ -2,7 +2,9 @@
 
 K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s):
 K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes are the
-most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole.
+most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole. Beside rigid-body modes,
+-1 / s, the elastic ones, 1 / (lambda - s), lose the digits by which s is nearer to zero than their lambda:
+then all are solved for again about -lambda of the first elastic one.
 
 Of the elastic energy of a low mode little is left: a beam of n elements sums n^4 times as much. So it is
 summed with more digits than the matrices have, where the machine has a longer number; what remains is the
@@ -102,8 +104,11 @@ def _fault(what: str, matrix: Matrix) -> str:
 
 def nearer(system: System, shift: float) -> System:
     """The same with a shift that is no farther from zero than this one, which is negative."""
-    if shift <= system.shift:
-        return system
+    return system if shift <= system.shift else shifted(system, shift)
+
+
+def shifted(system: System, shift: float) -> System:
+    """The same with another negative shift."""
     return replace(system, shift=shift, solve=_factor(system.K - shift * system.M, "no matter").solve)
 
 

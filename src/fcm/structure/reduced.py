@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, system_of
+from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, shifted, system_of
 from fcm.structure.flexibility import bound_aside, flexibility
 from fcm.structure.rigid_body import rigid_by_energy
 from fcm.structure.rounding import of_frequencies, of_receptances
@@ -53,6 +53,8 @@ def reduced(
     rigid = rigid_by_energy(K, found)
     if rigid == found.count < system.rows:  # all of them are kept
         return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest, others)
+    if 0 < rigid < found.count and found.stiffness[rigid] > -system.shift:
+        found = modes_of(shifted(system, -float(found.stiffness[rigid])), found.count)
     wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
