@@ -25,6 +25,7 @@ from ..program import called
         (["--at", "1.2", "--level", "0:nan"], "the levels must rise"),
         (["--leave-out-tolerance", "nan"], "nan is not a finite number"),
         (["--leave-out-tolerance", "inf"], "inf is not a finite number"),
+        (["--keep-all", "--leave-out-tolerance", "0.1"], "is of no use with --keep-all"),
         (["--mode", "1", "--level", "0:1", "--force-level", "nan"], "nan is not a finite number"),
         (["--largest-file", "nan"], "nan is not a finite number"),
     ],

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from fcm.cli import balance, cluster, exact, nonlinear_mode, of_peaks, schedule, track
 from fcm.cli.calculation import calculated
@@ -66,6 +67,7 @@ def _check_options(asked: Asked) -> None:
     """A usage error if options exclude or need one another, whatever the scene."""
     level, mode, method = asked.level, asked.mode, asked.method
     cluster.check_options(asked.cluster, level)
+    _check_left_out(asked)
     nonlinear_mode.check_options(mode, level, asked.at, asked.force_levels)
     track.check_options(asked.track, asked.over, asked.low, asked.high, method)
     exact.check_options(method, asked.at, asked.only, level)
@@ -79,6 +81,14 @@ def _check_options(asked: Asked) -> None:
     if asked.resume and not any(files.values()):
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     check_different(files)
+
+
+def _check_left_out(asked: Asked) -> None:
+    given = click.get_current_context().get_parameter_source("tolerance")
+    if asked.keep_all and given is ParameterSource.COMMANDLINE:
+        raise click.UsageError(
+            "--leave-out-tolerance is of no use with --keep-all, which leaves nothing out."
+        )
 
 
 def _loaded(messages: Messages, name: str, asked: Asked) -> Scene:
