@@ -1,13 +1,17 @@
-"""Solutions with more harmonics at a frequency where those with fewer are known.
+"""Solutions at a frequency where those with fewer harmonics are known.
 
-The level of very many harmonics takes longer to follow than the branches themselves, and passes 1 where that
-of many does. So once many have told which solutions hang together with rest, each of them is led to that with
-more; where one is lost, or the level turned so near 1 that more harmonics may move the turn across it, the
-level is followed again. With a few it always is: branches come to be up to the seventh harmonic or so.
+The level leads to what hangs together with rest, and which solutions do is another matter with each number of
+harmonics: what the level of seven passes on one curve may be off that of nineteen, and just as true. So what
+was found with fewer is led to more, and is a solution beside those of the level. The level of very many
+harmonics takes longer to follow than the branches themselves, and passes 1 where that of many does. So once
+many have told which solutions there are, and each of them is close to one with more, these are all; where
+one is not, or the level turned so near 1 that more harmonics may move the turn across it, the level is
+followed again. With a few it always is: branches come to be up to the seventh harmonic or so.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,17 +20,35 @@ from fcm.continuation import Status, follow
 from fcm.continuation.problem import Problem
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.further import padded
+from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.nearby import lowest_of, turns_near
-from fcm.harmonic.start import Found
+from fcm.harmonic.start import Found, solutions
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 MANY = 7  # harmonics, from the first on, with which a peak is within a per cent or so
 FAR = 0.5  # of a solution's size: a Newton step that leads further is not believed
+CLOSE = 0.1  # of it: what moves further may have come to another solution
 STEP = 0.5  # longest, on the way to a solution
 DETOUR = -9.0  # as far back as the way may lead before it does: it has folds
 REPORTS = 16  # of the follower, of 16 steps each, after which it is too long
 APART = 1e-3  # of their size: solutions that come closer than this have become one
+
+
+def looked(system: System, frequencies: Sequence[float], fewer: Sequence[Found] = ()) -> tuple[Found, ...]:
+    """Solutions at some frequencies, of fewer harmonics where those are known; many are known before more."""
+    if len(system.harmonics) > MANY and not any(len(one.harmonics) >= MANY for one in fewer):
+        fewer = looked(system.with_harmonics(system.harmonics[:MANY]), frequencies, fewer)
+    foresee(system, frequencies)
+    known = {one.omega: one for one in fewer}
+    return tuple(_at(system, omega, known.get(omega)) for omega in frequencies)
+
+
+def _at(system: System, omega: float, before: Found | None) -> Found:
+    if before is None:
+        return solutions(system, omega)
+    reach = before.reach if np.isfinite(before.reach) else None
+    return carried(system, before) or _with_led(system, solutions(system, omega, reach), before)
 
 
 def carried(system: System, before: Found) -> Found | None:
@@ -36,25 +58,41 @@ def carried(system: System, before: Found) -> Found | None:
         return None
     known: list[FloatArray] = []
     for z in before.solutions:
-        there = _led(system, padded(z, before.harmonics, system.harmonics))
+        there = _beside(system, padded(z, before.harmonics, system.harmonics), CLOSE)
         if there is None or any(_same(there, other) for other in known):
             return None
         known.append(there)
     return replace(before, harmonics=system.harmonics, solutions=tuple(known))
 
 
+def _with_led(system: System, found: Found, before: Found) -> Found:
+    """With the solutions that those of fewer harmonics lead to and the level does not."""
+    known = list(found.solutions)
+    for z in before.solutions:
+        there = _led(system, padded(z, before.harmonics, system.harmonics))
+        if there is not None and not any(_same(there, other) for other in known):
+            known.append(there)
+    return replace(found, solutions=tuple(known))
+
+
 def _same(one: FloatArray, other: FloatArray) -> bool:
     return bool(np.abs(one - other)[:-1].max() < APART * np.abs(one[:-1]).max())
 
 
-def _led(system: System, z: FloatArray) -> FloatArray | None:
-    """The solution near z at its frequency."""
+def _beside(system: System, z: FloatArray, far: float) -> FloatArray | None:
+    """The solution that Newton's method finds from z at its frequency, if that is not far."""
     balance, newton = system.afresh(), system.front.newton
     newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
     balance.measure(z)
     newton.scale[:] = balance.scale
-    if newton.correct(1.0) and newton.moved < FAR:
-        return np.array(newton.z)
+    return np.array(newton.z) if newton.correct(1.0) and newton.moved < far else None
+
+
+def _led(system: System, z: FloatArray) -> FloatArray | None:
+    """The solution that a guess z leads to at its frequency, by one step or by a way of many."""
+    near = _beside(system, z, FAR)
+    if near is not None:
+        return near
     way, left = _Way(system.afresh(), z), REPORTS
 
     def tire(_: float) -> None:

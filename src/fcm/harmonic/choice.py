@@ -117,24 +117,25 @@ def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accur
 def given(system: System, progress: Progress | None = None) -> Accurate:
     """The response with the harmonics that a system has.
 
-    Traced with half of them first, or with those that tell how far the level of all is to be followed: what
-    is beside its stable peaks with all is a start, too, as the level of the forces may not lead to it.
+    Traced with one of them first, then with those that tell how far the level of all is to be followed, then
+    with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
+    lead to it. A branch that is isolated with three harmonics may hang together with the others with one.
     """
-    count, few = len(system.harmonics), few_of(system)
-    fewer = system.harmonics[: max(count // 2, few) if count > few else count // 2]
-    if not fewer or not system.scene.contacts:
+    counts = sorted({1, few_of(system), max(len(system.harmonics) // 2, few_of(system))})
+    if not system.scene.contacts:
         return estimated(system, np.inf, progress)
-    before = _built_up(system.with_harmonics(fewer))
-    near = _near(before, system.harmonics)
-    return judged(outlined(system, progress, before.traced.looked, near), np.inf)
+    before: Outline | None = None
+    for count in counts:
+        if count < len(system.harmonics):
+            before = _after(before, system.with_harmonics(system.harmonics[:count]))
+    return judged(_after(before, system, progress), np.inf)
 
 
-def _built_up(system: System) -> Outline:
-    """A response that shows what is beside it with more harmonics; if it has many, it begins from a few."""
-    fewer = system.harmonics[: few_of(system)]
-    if fewer == system.harmonics:
-        return outlined(system)
-    return outlined(system, near=_near(outlined(system.with_harmonics(fewer)), system.harmonics))
+def _after(before: Outline | None, system: System, progress: Progress | None = None) -> Outline:
+    """The response of a system, after that with fewer harmonics."""
+    if before is None:
+        return outlined(system, progress)
+    return outlined(system, progress, before.traced.looked, _near(before, system.harmonics))
 
 
 def _near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:

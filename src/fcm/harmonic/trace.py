@@ -11,12 +11,11 @@ import numpy as np
 from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
-from fcm.harmonic.carried import carried
+from fcm.harmonic.carried import looked
 from fcm.harmonic.drift import undetermined
-from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
-from fcm.harmonic.start import Found, resonances, solutions
+from fcm.harmonic.start import Found, resonances
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -41,15 +40,11 @@ def traced(
     elsewhere, whose branches are traced too if they are within the range.
     """
     span = system.scene.frequency_range
-    reach = {found.omega: found.reach for found in fewer if np.isfinite(found.reach)}
-    frequencies = (*span, *resonances(system))
-    foresee(system, frequencies)
-    known = {found.omega: carried(system, found) for found in fewer}
-    looked = tuple(known.get(omega) or solutions(system, omega, reach.get(omega)) for omega in frequencies)
+    found = looked(system, (*span, *resonances(system)), fewer)
     inside = [z for z in near if span[0] <= z[-1] <= span[1]]
-    starts = [*(z for found in looked for z in found.solutions), *inside]
+    starts = [*(z for one in found for z in one.solutions), *inside]
     branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))
-    return Traced(_steady(system, branches), looked)
+    return Traced(_steady(system, branches), found)
 
 
 def _along(system: System) -> Follow:
