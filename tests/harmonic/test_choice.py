@@ -1,13 +1,18 @@
 """Harmonics chosen for an accuracy."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fcm.harmonic import choice
-from fcm.harmonic.choice import accurate, enlarged, estimated
+from fcm.continuation import follow
+from fcm.harmonic import choice, start, trace
+from fcm.harmonic.choice import Outline, accurate, enlarged, estimated, judged, outlined
+from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.system import System
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
 
 from .truth import scene
 
@@ -88,14 +93,52 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
 
 
 def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
-    """Two rounds are enough, each of which alone is not too long."""
+    """A round that alone is not too long is not begun after others."""
     system = System(scene("yang1998", 5))
-    assert accurate(system, 1e-4).reached
-    monkeypatch.setattr(choice, "seconds_with", lambda *_: 0.6 * choice.PATIENCE)
-    found = accurate(system, 1e-4)
-    assert not found.reached
+    enough, taken = accurate(system, 1e-4), system.work.seconds
+    assert enough.reached and not enough.begun
+    monkeypatch.setattr(choice, "PATIENCE", taken)
+    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.9 * taken)
+    found = accurate(System(system.scene), 1e-4)
+    assert not found.reached and not found.begun
     assert set(found.system.harmonics) > {1}
     assert set(found.further) > set(found.system.harmonics)
+
+
+def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
+    """Each of them as it is counted from outside: by evaluations of balances of their sizes."""
+    system = System(scene("yang1998", 5), (1, 2, 3))
+    paths = {}
+    for module in (start, trace):
+        some = paths[module] = []
+        keep = some.append
+        monkeypatch.setattr(
+            module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
+        )
+    outline = outlined(system)
+    assert paths[start] and paths[trace]
+    evaluations = sum(path.evaluations for some in paths.values() for path in some)
+    assert outline.seconds == pytest.approx(seconds_of(system, evaluations, 3))
+    judged(outline, 1e-3)
+    assert system.work.seconds > outline.seconds
+    assert outline.seconds_with((1, 2, 3)) == pytest.approx(outline.seconds)
+
+
+def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
+    """And that of fewer harmonics before it stays, with its error."""
+    system = System(scene("yang1998", 5))
+    first = outlined(system)
+    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.0)
+    monkeypatch.setattr(choice, "PATIENCE", 1.01 * first.seconds)
+    found = accurate(System(system.scene), 1e-3)
+    assert found.begun and set(found.further) > {1, 2, 3}
+    assert found.system.harmonics == (1,) and not found.reached
+    assert found.worst == pytest.approx(0.062, rel=0.1)
+    assert found.system.work.most == np.inf
+    curve = traced_curve(system.scene, Wanted(harmonics=None, accuracy=1e-3))
+    assert "with 1 harmonic an estimated error of 6" in curve.short_of
+    assert "; more were given up after" in curve.short_of
+    assert {int(h) for h in re.split("[, ]", curve.short_of.split("--harmonics ")[1])} <= set(found.further)
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):

@@ -9,13 +9,14 @@ import numpy as np
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
-from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_with
+from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_of
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced
+from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
 ROUNDS = 8  # of tracing, estimating, choosing
@@ -23,16 +24,23 @@ ROUNDS = 8  # of tracing, estimating, choosing
 
 @dataclass(frozen=True)
 class Outline:
-    """A response whose errors are not known yet; shown (path,) belongs to the branches' paths."""
+    """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
+
+    seconds: about what following its levels and branches took.
+    """
 
     system: System
     traced: Traced
     shown: tuple[Reported, ...]
+    seconds: float
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
-        """About what following its branches with other harmonics takes."""
-        evaluations = sum(path.evaluations for path in self.traced.branches.paths)
-        return seconds_with(self.system, evaluations, len(harmonics))
+        """About what following its levels and branches with other harmonics takes."""
+        few, many = len(self.system.harmonics), len(harmonics)
+        if not self.seconds:  # nothing was to be followed
+            return 0.0
+        grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
+        return self.seconds * grown * many / few
 
     def ahead(self, accuracy: float) -> Foreseen:
         """What more harmonics would do, and those that an accuracy takes."""
@@ -49,7 +57,7 @@ class Accurate(Outline):
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
     amplitude over all of them; worst the greatest of these and of the errors of the folds, NaN where one
     cannot be told, and told the greatest of those that can. further: the harmonics that would do more but
-    take too long, if any.
+    take too long, if any, and whether that was seen only when they had been begun.
     """
 
     errors: tuple[Errors, ...]
@@ -58,6 +66,7 @@ class Accurate(Outline):
     told: float
     reached: bool
     further: tuple[int, ...] = ()
+    begun: bool = False
 
     @property
     def folds(self) -> FloatArray:
@@ -73,11 +82,11 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
     foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
     more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
     to it. Only what is foreseen to be enough has its errors estimated point by point. What would take longer,
-    with all before it, than anyone waits is not begun, see `PATIENCE`. Whether the branches are complete is
-    another question, see their status.
+    with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer is given up.
+    Whether the branches are complete is another question, see their status.
     """
-    found, spent = outlined(system, progress), 0.0
-    further: tuple[int, ...] = ()
+    found, work = outlined(system, progress), system.work
+    further, begun = tuple[int, ...](), False
     for _ in range(ROUNDS - 1):
         ahead, sure = found.ahead(accuracy), None
         more = ahead.harmonics
@@ -92,16 +101,20 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
                 more = enlarged(sure, accuracy)
         if more == found.system.harmonics:
             break
-        spent += found.seconds_with(more)
-        if spent > PATIENCE:
+        if work.seconds + found.seconds_with(more) > PATIENCE:
             further = more
             break
         near = _near(found, more)
-        then = outlined(system.with_harmonics(more), progress, found.traced.looked, near)
+        try:
+            with work.up_to(PATIENCE):
+                then = outlined(system.with_harmonics(more), progress, found.traced.looked, near)
+        except TooLongError:
+            further, begun = more, True
+            break
         if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
             break
         found = then
-    return replace(sure or judged(found, accuracy), further=further)
+    return replace(sure or judged(found, accuracy), further=further, begun=begun)
 
 
 def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accurate | None:
@@ -151,13 +164,13 @@ def judged(outline: Outline, accuracy: float) -> Accurate:
     errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
-        return Accurate(system, response, shown, errors, none, np.nan, np.nan, False)
+        return Accurate(system, response, shown, outline.seconds, errors, none, np.nan, np.nan, False)
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
     height, peak = heights.max(axis=0), _peaks(heights, errors)
     matter = peak[height > NOTHING * height.max()]
     every = np.concatenate((matter, *(one.fold for one in errors)))
     worst, told = float(every.max(initial=0.0)), float(every[np.isfinite(every)].max(initial=0.0))
-    return Accurate(system, response, shown, errors, peak, worst, told, worst <= accuracy)
+    return Accurate(system, response, shown, outline.seconds, errors, peak, worst, told, worst <= accuracy)
 
 
 def outlined(
@@ -167,8 +180,10 @@ def outlined(
     near: Sequence[FloatArray] = (),
 ) -> Outline:
     """The response of a system; fewer and near as of `traced`."""
+    before = system.work.seconds
     response = traced(system, progress, fewer, near)
-    return Outline(system, response, tuple(reported(system, path) for path in response.branches.paths))
+    shown = tuple(reported(system, path) for path in response.branches.paths)
+    return Outline(system, response, shown, system.work.seconds - before)
 
 
 def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:

@@ -8,6 +8,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs
 
+from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.ranking import Ranking
 from fcm.harmonic.system import System
@@ -120,6 +121,15 @@ class Corrector:
             corrector.put(j, z, direction, self.found[1:])
             self.found[:] = corrector.found
         return 0
+
+    def seconds(self) -> float:
+        """About what all points displaced since a system was taken have taken."""
+        sets = self.ranking.sets[: len(self.lifts)]
+        own = [
+            seconds_of(self.system, lifted.newton.evaluations, len(more))
+            for more, lifted in zip(sets, self.lifts, strict=True)
+        ]
+        return sum(own) + sum(other.seconds() for other in self.second.values())
 
     def lifted(self, more: tuple[int, ...]) -> Lifted:
         """The balance of more harmonics."""

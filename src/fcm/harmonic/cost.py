@@ -6,22 +6,49 @@ not from a clock: the same scene has the same answer on every machine.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from fcm.continuation import Path
+from fcm.continuation.follow import Progress
+from fcm.continuation.front import Front
 from fcm.harmonic.condensed import rank_of
 from fcm.harmonic.system import System
 
-PATIENCE = 30.0  # seconds that following branches with more harmonics may take, time and again
+PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
 CYCLE = 3.5e-6  # seconds of an evaluation, for each harmonic of a contact: when it sticks, slips, is open
 SYSTEM = 2.7e-11  # and for each third power of the unknowns that are solved for
 
 
+def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
+    """About what evaluations of the balance with so many harmonics take, each solved for a step."""
+    contacts, modes = len(system.scene.contacts), len(system.linear.natural)
+    unknowns = rank_of(modes, 2 * contacts, harmonics) or contacts * (2 + 4 * harmonics)
+    return evaluations * (CYCLE * contacts * harmonics + SYSTEM * float(unknowns) ** 3)
+
+
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
-    """About what following branches of a system with so many harmonics takes.
+    """About what following curves of a system with so many harmonics takes.
 
     evaluations are those that its own took: they grow as the harmonics do, with the corners and folds.
     """
-    contacts, few = len(system.scene.contacts), max(len(system.harmonics), 1)
-    modes = len(system.linear.natural)
-    unknowns = rank_of(modes, 2 * contacts, harmonics) or contacts * (2 + 4 * harmonics)
-    each = CYCLE * contacts * harmonics + SYSTEM * float(unknowns) ** 3
-    return evaluations * (harmonics / few) * each
+    return seconds_of(system, evaluations, harmonics) * harmonics / max(len(system.harmonics), 1)
+
+
+def paid(system: System, front: Front, progress: Progress | None, follow: Callable[[Progress], Path]) -> Path:
+    """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
+    known = 0
+
+    def add(evaluations: int) -> None:
+        nonlocal known
+        new, known = evaluations - known, evaluations
+        system.work.take(seconds_of(system, new, len(system.harmonics)))
+
+    def report(share: float) -> None:
+        add(front.newton.evaluations)
+        if progress is not None:
+            progress(share)
+
+    path = follow(report)
+    add(path.evaluations)
+    return path

@@ -134,6 +134,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     error[tops[inside], d[inside]] = relative[inside]
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
+    system.work.take(corrected.corrector.seconds())
     return Errors(
         amplitude=error,
         truncation=(error * shown.amplitude).max(axis=1) / np.where(size > 0.0, size, 1.0),

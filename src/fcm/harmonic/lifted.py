@@ -47,6 +47,7 @@ class Lifted:
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = numbers
         self.balance.largest[:] = 0.0
+        self.newton.evaluations = 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

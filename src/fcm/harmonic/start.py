@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.harmonic.common_levels import in_common, passings
+from fcm.harmonic.cost import paid, seconds_of
 from fcm.harmonic.linear_contacts import GREATEST, highest, least, linear_responses
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -93,6 +95,8 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
     if top > system.unit * highest(system.normal, omega):
         return None
     path = in_common(system, omega, _whole)
+    if path is not None:  # whoever followed it
+        system.work.take(seconds_of(system, path.evaluations, len(system.harmonics)))
     found = None if path is None else passings(system, path, omega)
     if path is None or found is None:
         return None
@@ -185,7 +189,8 @@ def _raised(
 ) -> Path:
     level, front = system.raised
     level.begin(omega, lightly)
-    return follow(level, start, span, True, step, stations, hasty=hasty, front=front)
+    along = partial(follow, level, start, span, True, step, stations, hasty=hasty, front=front)
+    return paid(system, front, None, lambda report: along(progress=report))
 
 
 def _back(path: Path, low: float) -> bool:

@@ -19,6 +19,7 @@ from fcm.harmonic.level import Level
 from fcm.harmonic.periodic import Periodic
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
+from fcm.harmonic.work import Work
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance
@@ -42,6 +43,7 @@ class System:
     linear: Linear = field(init=False)
     coarse: CoefficientLaw = field(init=False)  # the table's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
+    work: Work = field(init=False, default_factory=Work, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))
@@ -64,7 +66,7 @@ class System:
     def normal(self) -> System:
         """The same with all preloads divided by the greatest."""
         contacts = tuple(replace(one, n_0=one.n_0 / self.unit) for one in self.scene.contacts)
-        return self._with(scene=replace(self.scene, contacts=contacts))
+        return self._with(scene=replace(self.scene, contacts=contacts), work=Work())
 
     def _with(self, **other: object) -> System:
         found = copy(self)

@@ -11,7 +11,9 @@ import numpy as np
 from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
+from fcm.continuation.problem import Problem
 from fcm.harmonic.carried import looked
+from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
@@ -49,7 +51,21 @@ def traced(
 
 def _along(system: System) -> Follow:
     """Follows the balance that a system looks with, on the one front that it has for that."""
-    return partial(follow, front=system.front, narrow=narrow(system))
+    front, places = system.front, narrow(system)
+
+    def along(
+        problem: Problem,
+        start: FloatArray,
+        span: tuple[float, float],
+        forward: bool,
+        max_step: float,
+        stations: Sequence[float],
+        progress: Progress | None,
+    ) -> Path:
+        one = partial(follow, problem, start, span, forward, max_step, stations, front=front, narrow=places)
+        return paid(system, front, progress, lambda report: one(progress=report))
+
+    return along
 
 
 def _steady(system: System, branches: Branches) -> Branches:

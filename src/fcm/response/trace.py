@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import Accurate, accurate, finer, given
+from fcm.harmonic.cost import PATIENCE
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, astray, reported_at, unbelieved
 from fcm.harmonic.lost import Lost, lost_along
@@ -118,6 +119,8 @@ def _short_of(found: Accurate) -> str:
         return said
     more = found.further
     which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
+    if found.begun:
+        return f"{said}; more were given up after some {PATIENCE:.0f} s of work: --harmonics {which}"
     return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
 
 
