@@ -10,6 +10,7 @@ from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
     from fcm.response import Response
+    from fcm.results.orbits import Orbits, Stuck
     from fcm.scene.model import Scene
 
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
@@ -100,7 +101,7 @@ def remarks(response: Response) -> list[str]:
         )
     if loose:
         count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in loose)
-        partly = sum(int((one.family_complete == 0.0).sum()) for one in loose)
+        partly = sum(int((one.family_complete == 0.0).sum()) - _unsure(one) for one in loose)
         out.append(
             f"points that are not unique: {count}; a contact never slips there, and its residual friction "
             f"changes an amplitude by up to {max(spread):.0%} (family_least to family_greatest); [start] "
@@ -111,4 +112,33 @@ def remarks(response: Response) -> list[str]:
                 f"at {partly} of them it may change more: not every residual friction was reached "
                 "(family_complete is 0)"
             )
-    return out
+    if unsure := sum(_unsure(one) for one in found):
+        out.append(
+            f"points that may not be unique: {unsure}; a contact never slips there, and not every residual "
+            "friction of it was reached (family_complete is 0)"
+        )
+    beside = [one for orbits in found for one in orbits.stuck]
+    return [*out, _stuck(response, beside)] if beside else out
+
+
+def _unsure(orbits: Orbits) -> int:
+    """Points of which no other motion was found, but not every residual friction was tried."""
+    import numpy as np
+
+    none = np.isnan(orbits.family_greatest).all(axis=1)
+    return int(((orbits.family_complete == 0.0) & none).sum())
+
+
+def _stuck(response: Response, beside: list[Stuck]) -> str:
+    """The first of the motions that no point is of, how many there are, and what leads to it."""
+    from fcm.units import in_unit
+
+    first, unit = beside[0], response.frequency_unit
+    pairs = zip(response.contacts, first.states, strict=True)
+    open_or_not = ", ".join(f"{name} {'closed' if one == 'E' else 'open'}" for name, one in pairs)
+    start = ", ".join(f"{force:.5g}" for force in first.friction)
+    return (
+        f"other motions, in which no contact slips, and which no point belongs to: {len(beside)}; at "
+        f"{float(in_unit(first.frequency, unit)):.6g} {unit} one with {open_or_not} all through, which "
+        f"[start] friction = [{start}] leads to (stuck_beside with --json)"
+    )

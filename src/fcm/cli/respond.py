@@ -86,9 +86,7 @@ def _check_options(asked: Asked) -> None:
 def _check_left_out(asked: Asked) -> None:
     given = click.get_current_context().get_parameter_source("tolerance")
     if asked.keep_all and given is ParameterSource.COMMANDLINE:
-        raise click.UsageError(
-            "--leave-out-tolerance is of no use with --keep-all, which leaves nothing out."
-        )
+        raise click.UsageError("--leave-out-tolerance is of no use with --keep-all: nothing is left out.")
 
 
 def _loaded(messages: Messages, name: str, asked: Asked) -> Scene:

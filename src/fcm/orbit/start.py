@@ -17,6 +17,7 @@ from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
 from fcm.orbit.held import held
+from fcm.orbit.linear_motion import started_states
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
@@ -32,18 +33,21 @@ DISTINCT = 1e-6  # solutions further apart than this, relative to their size, ar
 def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatArray], dict[float, str]]:
     """Points z from which all branches are followed, and of ends of the range why one was not found there.
 
-    At both ends, and at the resonances inside, near every solution of the balance, and where that has more
-    than the motion, also beside the tops of its branches; where that leads to no
-    stable motion at an end, also the one that a motion from rest comes to. Where there is none at all, near
-    the first solution of the balance of one harmonic that leads to a motion, anywhere in the range; else from
-    the first motion with more damping that leads to one without.
+    At both ends, and at the resonances inside, near every solution of the balance, and from motions in which
+    contacts stick as the scene starts; where the balance has more than the motion, also beside the tops of
+    its branches; where that leads to no stable motion at an end, also the one that a motion from rest comes
+    to. Where there is none at all, near the first solution of the balance of one harmonic that leads to a
+    motion, anywhere in the range; else from the first motion with more damping that leads to one without.
     look is called now and then.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside, apart = inner_resonances(scene), False
     for omega in (*scene.frequency_range, *inside):
         guesses, before = balanced_states(scene, omega), len(found)
-        orbits = list(_shot(scene, omega, guesses, look))
+        orbits = [
+            *_shot(scene, omega, guesses, look),
+            *_shot(scene, omega, started_states(scene, omega), look),
+        ]
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
                 orbits += _from_rest(scene, omega, bool(orbits), look)
@@ -137,6 +141,7 @@ def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
 def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
     """A stable solution near harmonic balance, or the one that a motion from rest comes near to, or any.
 
+    Where the scene says from which friction it starts, rather one in which contacts stick with just that.
     look is called now and then.
 
     Raises
@@ -144,7 +149,8 @@ def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
     SimulationError
         If there is none.
     """
-    near = list(near_balance(scene, omega, look))
+    near = [] if scene.start is None else list(_shot(scene, omega, started_states(scene, omega), look))
+    near += near_balance(scene, omega, look)
     stable = [orbit for orbit in near if orbit.stable]
     return (stable or _from_rest(scene, omega, bool(near), look) or near)[0]
 

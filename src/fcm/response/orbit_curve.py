@@ -19,6 +19,7 @@ from fcm.orbit.sample import Sample, samples
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
+from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
 from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits
@@ -83,9 +84,10 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
-    families = _families(scene, points, amplitude, everywhere)
+    rows = _told(amplitude, everywhere)
+    families = _families(scene, points, amplitude, rows)
     regime = _regimes(points, len(scene.contacts))
-    told = everywhere | np.isfinite(families[1]).any(axis=1)
+    told = everywhere | np.isfinite(families[2])
     stable = np.array([np.nan if p is None else float(p.stable) for p in points])
     at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
@@ -113,6 +115,7 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
             _cycles(points, "least", empty),
             _cycles(points, "greatest", empty),
             *families,
+            stuck=stuck_beside(scene, rows, frequency, regime, families[:2]),
         ),
     )
 
@@ -138,33 +141,44 @@ def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatAr
     return rows
 
 
-def _families(
-    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, everywhere: bool
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The extent over residual friction at the peaks, or everywhere; nan where the amplitude is unique.
+def _told(amplitude: FloatArray, everywhere: bool) -> list[int]:
+    """The points of which it is told what other motions residual friction allows: the peaks, or all."""
+    known = np.isfinite(amplitude).any(axis=1)
+    if everywhere:
+        return np.flatnonzero(known).tolist()
+    return sorted({int(k) for k in np.nanargmax(amplitude, axis=0)}) if known.any() else []
 
-    And whether it is that of all residual friction: (point,).
+
+def _families(
+    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The extent over residual friction at some points; nan where the amplitude is unique.
+
+    And whether it is that of all residual friction: (point,), nan where there is but one.
     """
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     whole = np.full(len(points), np.nan)
-    known = np.isfinite(amplitude).any(axis=1)
     rough = all(has_friction(contact) for contact in scene.contacts)
 
     def linear(point: Sample) -> bool:
         """Whether the only contact does nothing but stick; of several another may begin to slip."""
         return rough and len(scene.contacts) == 1 and set(point.states) == {"E"}
 
-    chosen = range(len(points)) if everywhere else set(np.nanargmax(amplitude, axis=0)) if known.any() else ()
-    for k in chosen:
+    for k in rows:
         point = points[k]
         if point is None or "E" not in point.states or point.repeats != 1 or linear(point):
             continue
         try:
             found = family(scene, point.frequency, point.state)
         except SimulationError:  # its neighbourhood cannot be computed
+            whole[k] = 0.0
             continue
-        if found is not None and found.spread.max() > UNIQUE:
+        if found is None:
+            continue
+        if found.spread.max() > UNIQUE:
             least[k], greatest[k], whole[k] = found.least, found.greatest, found.complete
+        elif not found.complete:
+            whole[k] = 0.0
     return least, greatest, whole
 
 

@@ -11,6 +11,15 @@ from fcm.contact.limits import FloatArray
 from fcm.results.jumps import Swept
 
 
+@dataclass(frozen=True)
+class Stuck:
+    """A motion that no point is of, in which contacts stick all through the period."""
+
+    frequency: float  # [rad/s]
+    states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open
+    friction: FloatArray  # (contact,) of [start], which leads to it
+
+
 @dataclass
 class Orbits:
     """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
@@ -27,4 +36,5 @@ class Orbits:
     periods: int = 0  # of the motion that were computed to trace the curve
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
     # left out keep of their slip limits, or of their gaps; nan where computed, no contacts where none was
+    stuck: list[Stuck] = field(default_factory=list)  # beside points of peaks, or visited ones
     span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
     from fcm.results.nonlinear_mode import NonlinearMode
-    from fcm.results.orbits import Orbits
+    from fcm.results.orbits import Orbits, Stuck
     from fcm.results.tracked import Tracking
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
@@ -143,7 +143,7 @@ class Curve:
             "stable": gist.stable,
             "table_error": gist.table_error,
             "truncation_error": gist.truncation_error,
-            **({} if self.orbits is None else self._of_orbits(self.orbits)),
+            **({} if self.orbits is None else self._of_orbits(self.orbits, unit)),
             **({} if self.mode is None else {"mode": self.mode.summary(self.frequency, unit, self.peaks)}),
             "seconds": self.seconds,
         }
@@ -168,7 +168,7 @@ class Curve:
                 }
         return out
 
-    def _of_orbits(self, orbits: Orbits) -> dict[str, Any]:
+    def _of_orbits(self, orbits: Orbits, unit: str) -> dict[str, Any]:
         """What only exact motions have, in the summary."""
         here = np.isfinite(self.frequency)
         known = np.isfinite(orbits.family_greatest).any(axis=1)
@@ -183,6 +183,14 @@ class Curve:
             "not_unique": int(known.sum()),
             **({} if orbits.span is None else {"only": "peaks"}),
             **({"peak_range": families} if families else {}),
+            **({"stuck_beside": [self._stuck(one, unit) for one in orbits.stuck]} if orbits.stuck else {}),
+        }
+
+    def _stuck(self, one: Stuck, unit: str) -> dict[str, Any]:
+        return {
+            "frequency": float(in_unit(one.frequency, unit)),
+            "regime": list(one.states),
+            "start_friction": one.friction.tolist(),
         }
 
 

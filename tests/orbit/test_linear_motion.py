@@ -1,0 +1,85 @@
+"""Motions in which contacts stick all through, far from those that a curve has."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.motion import State, simulate
+from fcm.orbit.family import Family
+from fcm.orbit.linear_motion import linear_motions
+from fcm.response import orbit_curve
+from fcm.response.exact import trace_exact
+from fcm.scene.model import Start
+
+from ..program import called
+from ..response.random_scenes import random_scene
+
+WEDGE = Path(__file__).parent / "scenes/wedge.toml"
+
+
+def _with_residual(scene, one, share):
+    """The state of a motion with a share of its residual friction; without a mean but by that."""
+    contact, modal = scene.contacts[0], scene.modal
+    along, across = contact.tangential @ modal.shapes.T, contact.normal @ modal.shapes.T
+    stiffness = np.diag(modal.mass * modal.frequency**2)
+    stiffness += contact.k_u * np.outer(along, along) + contact.k_v * np.outer(across, across)
+    q = share * np.linalg.solve(stiffness, along * one.residual[0]) + one.wave.imag
+    return State(q, one.state.velocity, contact.k_u * (along @ q) - share * one.residual)
+
+
+def test_a_wedged_contact_stays_stuck_with_the_least_residual_friction_that_is_told():
+    """Marched from there it never slips; with a part of that friction it comes loose."""
+    scene = fcm.load_scene(WEDGE)
+    (one,) = linear_motions(scene, 1.3)
+    assert one.states == ("E",)
+    for share, kept in ((1.0, True), (2.0, True), (0.9, False)):
+        cycles = simulate(scene, 1.3, 20, _with_residual(scene, one, share)).cycles
+        assert all(cycle.states == ("E",) for cycle in cycles) is kept
+    last = simulate(scene, 1.3, 20, one.state).measures(last=1)[0]
+    assert last.amplitude == pytest.approx(np.abs(scene.modal.shapes.T @ one.wave), rel=1e-6)
+
+
+def test_marched_these_motions_keep_every_contact_as_it_is():
+    scenes = [random_scene(np.random.default_rng(seed)) for seed in range(16)]
+    places = [(scene, omega) for scene in scenes for omega in np.linspace(*scene.frequency_range, 3).tolist()]
+    found = [(*place, one) for place in places for one in linear_motions(*place)]
+    assert len(found) > 5 and {"".join(sorted(set(one.states))) for *_, one in found} == {"E", "ES"}
+    for scene, omega, one in found:
+        motion = simulate(scene, omega, 5, one.state)
+        assert all(cycle.states == one.states for cycle in motion.cycles)
+        amplitude = np.abs(scene.modal.shapes.T @ one.wave)
+        assert motion.measures(last=1)[0].amplitude == pytest.approx(amplitude, rel=1e-6)
+
+
+@pytest.mark.parametrize("options", [(), ("--at", "1.3")])
+def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(options, tmp_path):
+    run = called("respond", WEDGE, "--method", "exact", "--json", *options)
+    (curve,) = json.loads(run.out)["curves"]
+    (beside,) = curve["stuck_beside"]
+    assert run.code == 0 and beside["regime"] == ["E"]
+    assert "in which no contact slips, and which no point belongs to: 1" in run.err
+    assert f"[start] friction = [{beside['start_friction'][0]:.5g}]" in run.err
+    scene = fcm.load_scene(WEDGE)
+    start = Start(np.zeros(1), np.zeros(1), np.array(beside["start_friction"]), 0.0)
+    at = None if not options else [1.3]
+    (chosen,) = trace_exact(replace(scene, start=start), at).curves
+    assert chosen.complete and not chosen.orbits.stuck
+    there = (chosen.regime[:, 0] == "E") & (chosen.stable == 1.0)
+    nearest = np.abs(np.where(there, chosen.frequency, np.inf) - beside["frequency"]).argmin()
+    expected = np.abs(scene.modal.shapes.T @ linear_motions(scene, chosen.frequency[nearest])[0].wave)
+    assert there.any() and chosen.amplitude[nearest] == pytest.approx(expected, rel=1e-6)
+
+
+def test_an_extent_that_was_not_sought_to_its_end_is_told(monkeypatch, scenes=WEDGE.parent):
+    """Even where all motions that were found are alike."""
+    alike = Family((0,), np.zeros((1, 2)), np.ones(3), np.ones(3), complete=False)
+    monkeypatch.setattr(orbit_curve, "family", lambda *_: alike)
+    (curve,) = trace_exact(fcm.load_scene(scenes / "not_unique.toml"), [1.5]).curves
+    assert curve.orbits.family_complete.tolist() == [0.0, 0.0]
+    assert np.isnan(curve.orbits.family_greatest).all()
