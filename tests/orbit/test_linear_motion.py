@@ -15,6 +15,7 @@ from fcm.orbit.family import Family
 from fcm.orbit.linear_motion import linear_motions
 from fcm.response import orbit_curve
 from fcm.response.exact import trace_exact
+from fcm.response.loose import loose
 from fcm.scene.model import Start
 
 from ..program import called
@@ -83,3 +84,20 @@ def test_an_extent_that_was_not_sought_to_its_end_is_told(monkeypatch, scenes=WE
     (curve,) = trace_exact(fcm.load_scene(scenes / "not_unique.toml"), [1.5]).curves
     assert curve.orbits.family_complete.tolist() == [0.0, 0.0]
     assert np.isnan(curve.orbits.family_greatest).all()
+
+
+@pytest.mark.parametrize(("turned", "felt"), [(False, False), (True, True)])
+def test_a_contact_that_sticks_is_felt_where_its_friction_changes_the_load_of_another(turned, felt):
+    """By what a static force along the one does to the other; the modes are apart."""
+    scene = fcm.load_scene("two-contacts")
+    first, second = scene.contacts
+    dofs = np.eye(len(first.tangential))
+    shapes = np.eye(2, len(first.tangential))
+    modal = replace(
+        scene.modal, mass=np.ones(2), frequency=np.ones(2), damping=np.full(2, 0.01), shapes=shapes
+    )
+    first = replace(first, tangential=dofs[0], normal=0.0 * dofs[0])
+    second = replace(second, tangential=dofs[1], normal=dofs[0] if turned else 0.0 * dofs[0])
+    two = replace(scene, modal=modal, contacts=(first, second))
+    assert loose(two, np.array([["E", "E"]])).tolist() == [felt]
+    assert loose(two, np.array([["E", "EPEN"]])).tolist() == [True]

@@ -198,8 +198,8 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
         return ""
     how = "--at" if summary["method"] == "exact" else "--method exact --at"
     return (
-        f"points at which a contact never slips while another changes its state: {count}; its residual "
-        f"friction decides which of many motions that is: {how} F tells how far they range"
+        f"points at which a contact never slips while another changes its state, or feels it: {count}; its "
+        f"residual friction may decide which of many motions that is: {how} F tells how far they range"
     )
 
 

@@ -2,24 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.model import Contact
+from fcm.scene.model import FloatArray, Scene
+
+FELT = 1e-9  # change of a contact's load, relative to the residual friction of another: less is rounding
 
 
-def loose(contacts: Sequence[Contact], states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
-    """Of points with states (point, contact): whether a contact never slips beside one that feels it.
+def loose(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
+    """Of points with states (point, contact): whether a contact never slips beside one that may feel it.
 
-    Where all stick or stay open the motion is linear, and the same whatever the residual friction.
+    That is one that changes its state, or whose load the residual friction changes: with another residual it
+    may slip, open or close. A contact alone sticks in the same motion with every residual that lets it.
 
-    >>> rough = Contact("c", np.ones(1), np.ones(1), mu=0.3, k_u=1.0, k_v=1.0, n_0=1.0)
-    >>> loose([rough, rough], np.array([["E", "SEP"], ["E", "S"], ["EPEN", "SEP"]])).tolist()
-    [True, False, False]
+    >>> import fcm
+    >>> from dataclasses import replace
+    >>> scene = fcm.load_scene("yang1998-n5")
+    >>> two = replace(scene, contacts=scene.contacts * 2)
+    >>> loose(two, np.array([["E", "SEP"], ["E", "S"], ["E", "E"], ["EPEN", "SEP"]])).tolist()
+    [True, True, True, False]
+    >>> loose(scene, np.array([["E"], ["EPEN"]])).tolist()
+    [False, False]
     """
-    rough = np.array([contact.mu * contact.k_u > 0.0 for contact in contacts], dtype=np.bool_)
+    rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
     stuck, changing = (states == "E") & rough, np.char.str_len(states) > 1
     found: npt.NDArray[np.bool_] = stuck.any(axis=1) & changing.any(axis=1)
+    still = stuck.any(axis=1) & ~changing.any(axis=1)
+    if len(scene.contacts) > 1 and still.any():
+        rows, which = np.unique(states[still], axis=0, return_inverse=True)
+        felt = np.array([_felt(scene, row == "E", (row == "E") & rough) for row in rows])
+        found[still] = felt[which.ravel()]
     return found
+
+
+def _felt(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_]) -> bool:
+    """Whether the residual friction of a contact that sticks changes the load of another, if both stay so."""
+    modal, contacts = scene.modal, scene.contacts
+    along = np.array([modal.shapes @ contact.tangential for contact in contacts])
+    across = np.array([modal.shapes @ contact.normal for contact in contacts])
+    k_u, k_v = (np.array([getattr(contact, name) for contact in contacts]) for name in ("k_u", "k_v"))
+    stiffness: FloatArray = (along.T * (k_u * stuck)) @ along + (across.T * (k_v * closed)) @ across
+    stiffness += np.diag(modal.mass * modal.frequency**2)
+    try:
+        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, by whose friction)
+    except np.linalg.LinAlgError:  # a mode is free to drift with it
+        return True
+    np.fill_diagonal(load, 0.0)
+    return bool((np.abs(load[:, stuck]) > FELT).any())

@@ -106,7 +106,7 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
         error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
-        loose=int((loose(scene.contacts, regime) & ~told).sum()),
+        loose=int((loose(scene, regime) & ~told).sum()),
         peaks={d: _peak(amplitude[:, i], frequency, at_top[i]) for i, d in enumerate(empty.peaks)},
         orbits=Orbits(
             _numbers(points, "residual"),

@@ -162,7 +162,7 @@ def _curve(followed: _Followed) -> Curve:
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
-        loose=int(loose(scene.contacts, words).sum()),
+        loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.looked if not one.complete],
     )
 

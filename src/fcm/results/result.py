@@ -61,9 +61,7 @@ class Curve:
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
-    loose: int = (
-        0  # points at which a contact never slips and another does, where it is not told what that means
-    )
+    loose: int = 0  # points at which a contact never slips and another may feel it, if that is not told
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
     mode: NonlinearMode | None = None
     sensitivity: Sensitivities | None = None  # of the peaks
