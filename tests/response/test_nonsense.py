@@ -23,6 +23,8 @@ from ..program import called
         (["--at", "1.2", "--level", "0:inf"], "a level beyond 1e+06 is a mistake of units"),
         (["--at", "1.2", "--level", "0:1e-5"], "up to a level of 0.001 there is but rest"),
         (["--at", "1.2", "--level", "0:nan"], "the levels must rise"),
+        (["--method", "exact", "--at", "1e12"], "is a mistake of units: the scene has no natural frequency"),
+        (["--method", "exact", "--at", "1e200"], "is a mistake of units: the scene has no natural frequency"),
         (["--leave-out-tolerance", "nan"], "nan is not a finite number"),
         (["--leave-out-tolerance", "inf"], "inf is not a finite number"),
         (["--keep-all", "--leave-out-tolerance", "0.1"], "is of no use with --keep-all"),

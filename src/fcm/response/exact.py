@@ -27,6 +27,7 @@ from fcm.units import UNIT
 
 METHOD = "exact"
 ONLY = "of the exact curves all points but their peaks, folds and jumps"
+FAR = 1e6  # times the highest natural frequency, beyond which a frequency is a mistake of units
 HIGHEST = 3  # harmonic up to which modes are kept as they are; what that does is measured
 
 
@@ -138,4 +139,22 @@ def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | No
     if frequencies.size == 0 or wrong.size:
         what = f"{wrong[0]:g} is none" if wrong.size else "none is given"
         raise ResponseError(f"frequencies to visit must be positive numbers; {what}")
+    highest = _highest(scene) / UNIT[scene.frequency_unit]
+    if highest > 0.0 and frequencies[-1] > FAR * highest:
+        raise ResponseError(
+            f"a frequency to visit of {frequencies[-1]:g} {scene.frequency_unit} is a mistake of units: the "
+            f"scene has no natural frequency above {highest:.2g}, and the greatest is {FAR:g} times that"
+        )
     return tuple((frequencies * UNIT[scene.frequency_unit]).tolist())
+
+
+def _highest(scene: Scene) -> float:
+    """A frequency that no mode exceeds, whatever contacts stick in whatever curve [rad/s]."""
+    highest = 0.0
+    for one in scene.each_curve():
+        modal, square = one.modal, float((one.modal.frequency**2).max(initial=0.0))
+        for contact in one.contacts:
+            for k, row in ((contact.k_u, contact.tangential), (contact.k_v, contact.normal)):
+                square += k * float(((modal.shapes @ row) ** 2 / modal.mass).sum())
+        highest = max(highest, square**0.5)
+    return highest
