@@ -57,12 +57,14 @@ class Draft:
         """What stands at addresses in a curve of the scene."""
         return [_at(self.fixed(scene).parts, address) for address in addresses]
 
-    def fixed(self, scene: Scene) -> Draft:
-        """What a curve of the scene was made of, its swept values in their places."""
+    def fixed(self, scene: Scene, more: Mapping[Address, float] = {}) -> Draft:
+        """What a curve of the scene was made of, its swept values in their places, and then numbers."""
         parts: Any = self.parts
         for one in self.swept:
             for address in one.addresses:
                 parts = replaced(parts, address, scene.parameters[one.key])
+        for address, value in more.items():
+            parts = replaced(parts, address, value)
         return Draft(parts, ())
 
     def present(self, number: Number) -> list[tuple[float, float]]:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from fcm.harmonic.by_number import Rates, law_rates, rates_of
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude, answer
-from fcm.scene.draft import Number
+from fcm.scene.draft import LEVEL, Number
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import linear_of
 
@@ -39,7 +39,10 @@ class Line(NamedTuple):
             for number, value in zip(self.numbers, self.values(s), strict=True)
             for address, one in number.values(float(value)).items()
         }
-        return scene.draft.curve(scene, scene.parameters, every)
+        moved = scene.draft.curve(scene, scene.parameters, every)
+        if any(number.key == LEVEL for number in self.numbers):  # which is relative to what was written
+            return moved
+        return replace(moved, draft=scene.draft.fixed(scene, every))  # of which the rates there are taken
 
 
 def along(number: Number) -> Line:

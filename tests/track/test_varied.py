@@ -1,0 +1,30 @@
+"""The rates of a balance by a number of its scene, where the number has moved from what the scene says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.harmonic.system import System
+from fcm.scene.draft import number_of
+from fcm.track.varied import Varied, along
+
+Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.5, 1.2])
+STEP = 1e-5
+
+
+def residual(varied, s):
+    varied.put(s)
+    varied.balance.evaluate(Z)
+    return np.array(varied.balance.residual)
+
+
+@pytest.mark.parametrize("key, s", [("modal.frequency.0", 0.5), ("force.u.phase", 2.0)])
+def test_rates_are_those_where_the_number_is(key, s):
+    system = System(fcm.load_scene("yang1998-n5"))
+    varied = Varied(system, along(number_of(system.scene, key)))
+    difference = (residual(varied, s + STEP) - residual(varied, s - STEP)) / (2.0 * STEP)
+    residual(varied, s)
+    assert np.abs(difference).max() > 0.01
+    assert varied.by_s(Z).residual == pytest.approx(difference, rel=1e-6, abs=1e-8)
