@@ -76,8 +76,6 @@ class _Follower(Meeting):
             if isinstance(taken, Ending):
                 return self.spots, taken
             step = taken
-            if self._outside(self.z[-1]):
-                return self.spots[:-1], Ending.SPAN
             if count > 2 and self._passes(before, first, heading):
                 self.spots.append(self.spots[0])
                 return self.spots, Ending.CLOSED
@@ -98,13 +96,13 @@ class _Follower(Meeting):
             good = good and not self._crosses()
             if good and not self._holds():
                 return self._leave(step)
-            if good:
-                return self._keep(step)
+            if good and (kept := self._keep(step)) is not None:
+                return kept
             step *= 0.25
             if step < SHORT and not met:
                 met = True
-                if self._meet():
-                    return self.first
+                if (taken := self._meet()) is not None:
+                    return taken
         return self._skip()
 
     def _skip(self) -> float | Ending:
@@ -116,36 +114,39 @@ class _Follower(Meeting):
         rise = float(np.sign(self.t[-1]))
         for leap in () if self.corner is not None else SKIPS:
             guess = self.z + rise * leap * self.smooth.span * self.held
-            if (
-                not self._outside(guess[-1])
-                and self._solve(guess, rise * self.held)
-                and self.newton.moved < FLAT
-            ):
-                self._accept()
-                self.spots.append(self._spot(self.z, self.t))
+            if not self._solve(guess, rise * self.held) or self.newton.moved >= FLAT:
+                continue
+            z, t = np.array(self.newton.z), np.array(self.newton.tangent)
+            ending = self._passed(FLAT, z)
+            if isinstance(ending, Ending):
+                return ending
+            if ending:
+                self._go_to(z, t)
                 return FIRST
         return Ending.STALLED
 
-    def _keep(self, step: float) -> float | Ending:
-        """Go on to the point that was found, with what happens on the way."""
+    def _keep(self, step: float) -> float | Ending | None:
+        """Go on to the point that was found, with what happens on the way; None if not all is found."""
         z, t = np.array(self.newton.z), np.array(self.newton.tangent)
         missed, scale = max(self.newton.moved / step, 1e-9), np.array(self.newton.scale)
-        if self.t[-1] * t[-1] < 0.0:
-            self._turn(step, t)
-        ends = self._stations(step, z, t)
-        if ends:
-            return Ending.SPAN
-        if not self.low <= z[-2] <= self.high:
-            return self._out(step, z)
-        self.newton.z[:], self.newton.tangent[:] = z, t
+        turn = self._turn(step, t) if self.t[-1] * t[-1] < 0.0 else None
+        if turn is None and self.t[-1] * t[-1] < 0.0:
+            return None
+        if (ending := self._passed(step, z, turn)) is not True:
+            return ending or None
         turned = float(np.arccos(min(float(self.t @ t), 1.0)))
         bend = (t - self.t) / step
-        self._accept()
+        self._go_to(z, t)
         ratio = scale / np.asarray(self.newton.scale)
         self.bend = (bend - (bend @ t) * t) * ratio
-        self.spots.append(self._spot(self.z, self.t))
         grown = min(AIM / max(turned, 1e-9), float(np.sqrt(0.03 / missed)))
         return min(step * min(max(0.9 * grown, 0.4), 2.5), self.way.step)
+
+    def _go_to(self, z: FloatArray, t: FloatArray) -> None:
+        """Go on from a point, and keep it."""
+        self.newton.z[:], self.newton.tangent[:] = z, t
+        self._accept()
+        self.spots.append(self._spot(self.z, self.t))
 
     def _passes(self, before: FloatArray, first: FloatArray, heading: FloatArray) -> bool:
         """Whether the last step passes the point where the curve began, in the same direction."""

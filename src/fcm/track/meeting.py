@@ -11,6 +11,7 @@ from fcm.track.corner import nearest
 from fcm.track.passing import Passing
 from fcm.track.place import FIRST
 from fcm.track.spot import Ending, Spot
+from fcm.track.tracked import Condition
 
 NEAR = 1e-2  # a corner further away than this does not end a curve
 SHORTEST = 1e-7  # distance to a corner that has been reached
@@ -24,11 +25,19 @@ class Meeting(Passing):
 
     first: float  # step after a corner
 
-    def _meet(self) -> bool:
-        """Whether the curve ends at a corner of the response: this is tracked from there on, or crossed."""
+    def _meet(self) -> float | Ending | None:
+        """The next step if the curve comes to a corner of the response, tracked from there on, or crossed.
+
+        Or how it ends before that.
+        """
         if self.corner is not None or not self.turns:
-            return False
-        z, came, before = self.z, self.t * np.asarray(self.newton.scale), float(self.t[-1])
+            return None
+        z, came, before, known = (
+            self.z,
+            self.t * np.asarray(self.newton.scale),
+            float(self.t[-1]),
+            len(self.spots),
+        )
         for off, at in nearest(self.smooth.varied, z, np.asarray(self.newton.scale)):
             if off > NEAR:
                 break
@@ -39,11 +48,28 @@ class Meeting(Passing):
             self.corner.problem.evaluate(z)
             side = int(self.corner.problem.residual[-1] > 0.0)
             there = self.corner.zero(z, side)
-            if there is not None and self._is_ahead(there) and self._go_on(there, side, came, before):
-                return True
+            if there is None or not self._is_ahead(there):
+                continue
+            ending = self._until(there, at)
+            if isinstance(ending, Ending):
+                return ending
+            if ending and self._go_on(there, side, came, before):
+                return self.first
+            del self.spots[known:]
         self._use(None)
         self._measure(z)
-        return False
+        return None
+
+    def _until(self, corner: FloatArray, at: Condition) -> Ending | bool:
+        """As `_passed`, by the equations of the smooth curve, up to a corner."""
+        if not any(self._values_between(self.z, corner)):
+            return True
+        self._use(None)
+        self._measure(self.z)
+        ending = self._passed(NEAR, corner)
+        self._use(at)
+        self._measure(self.z)
+        return ending
 
     def _is_ahead(self, corner: FloatArray) -> bool:
         """Whether a corner lies where the curve leads."""
@@ -112,6 +138,8 @@ class Meeting(Passing):
         self._between(low)
         z, before = np.array(self.newton.z), float(self.t[-1])
         came = self.t * np.asarray(self.newton.scale)
+        if (ending := self._passed(step, z)) is not True:
+            return ending or Ending.STALLED
         for side in np.argsort(np.abs(self.corner.sides(z))):
             there = self.corner.zero(z, int(side))
             if there is not None and self._beyond(there, came, before, 2 * int(side) - 1):

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from fcm.continuation.secants import Secants
 from fcm.scene.model import FloatArray
 from fcm.track.place import FIRST, KINK, Place
-from fcm.track.spot import Ending
+from fcm.track.spot import Ending, Spot
 
 FINE = 1e-11  # of a step: a turn is known to this
 LOOKS = 40  # at a turn
@@ -19,47 +19,67 @@ LOOKS = 40  # at a turn
 class Passing(Place):
     """A place with the ways to find what lies between it and the next."""
 
-    def _turn(self, step: float, after: FloatArray) -> None:
-        """Keep where s turns back within the step."""
+    def _turn(self, step: float, after: FloatArray) -> Spot | None:
+        """Where s turns back within the step; None if that is not found."""
         sides = Secants(0.0, step, float(self.t[-1]), float(after[-1]))
         for _ in range(LOOKS):
             at = sides.at
-            if sides.width <= FINE * step or not self._between(at):
-                break
+            if not self._between(at) or self.newton.moved > step:
+                return None
             now = float(self.newton.tangent[-1])
-            if now == 0.0:
+            if now == 0.0 or sides.width <= FINE * step:
                 break
             sides.saw(at, now)
-        self.spots.append(
-            replace(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)), turn=True)
-        )
+        return replace(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)), turn=True)
 
-    def _stations(self, step: float, z: FloatArray, t: FloatArray) -> bool:
-        """Keep the values of s that were asked for within the step; whether s leaves its span there."""
-        way = [(self.z, None), *((spot.z, spot) for spot in self.spots[-1:] if spot.turn), (z, None)]
-        for (one, _), (other, _) in pairwise(way):
-            rise = other[-1] - one[-1]
-            passed = [v for v in self.values if (v - one[-1]) * (v - other[-1]) < 0.0 or v == other[-1]]
-            for value in sorted(passed, reverse=bool(rise < 0.0)):
-                guess = one + (other - one) * ((value - one[-1]) / rise)
-                if not self._solve(guess, self.held * np.sign(rise)) or self.newton.moved > step:
-                    continue
-                self.spots.append(
-                    replace(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)), station=True)
-                )
-                if value in self.way.span and rise * (value - sum(self.way.span) / 2.0) > 0.0:
-                    return True
-        return False
+    def _passed(self, step: float, z: FloatArray, turn: Spot | None = None) -> Ending | bool:
+        """Keep what lies on the way to z, over a turn if there is one; how the curve ends there, if it does.
 
-    def _out(self, step: float, z: FloatArray) -> Ending:
-        """Keep the point at the end of the range of frequencies."""
-        end = self.low if z[-2] < self.low else self.high
-        part = (end - self.z[-2]) / (z[-2] - self.z[-2])
-        guess, row = self.z + part * (z - self.z), np.eye(z.size)[-2]
-        guess[-2] = end
-        if self._solve(guess, row if z[-2] > self.z[-2] else -row):
-            self.spots.append(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)))
-        return Ending.RANGE
+        Else whether that could be: an end that is passed must be landed on.
+        """
+        known, one = len(self.spots), self.z
+        for spot in (turn, None):
+            if spot is None or turn is not None:
+                ending = self._piece(step, one, z if spot is None else spot.z)
+                if ending is False:
+                    del self.spots[known:]
+                if ending is not True:
+                    return ending
+            if spot is not None:
+                self.spots.append(spot)
+                one = spot.z
+        return True
+
+    def _piece(self, step: float, one: FloatArray, other: FloatArray) -> Ending | bool:
+        """As `_passed`, on a piece of the way on which s rises or falls throughout."""
+        for part, i, value in sorted(self._values_between(one, other)):
+            ending = self._ends(i, value, other[i] - one[i])
+            guess, row = one + part * (other - one), np.zeros(one.size)
+            guess[i], row[i] = value, np.sign(other[i] - one[i])
+            if not self._solve(guess, row) or self.newton.moved > step:
+                if ending is not None:
+                    return False
+                continue
+            spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+            spot.z[i] = value
+            self.spots.append(replace(spot, station=i == -1))
+            if ending is not None:
+                return ending
+        return True
+
+    def _values_between(self, one: FloatArray, other: FloatArray) -> Iterator[tuple[float, int, float]]:
+        """Values of s asked for, and ends of the range of frequencies: where on the way, and of what."""
+        for i, values in ((-1, self.values), (-2, [self.low, self.high])):
+            for value in values:
+                if (value - one[i]) * (value - other[i]) < 0.0 or value == other[i] != one[i]:
+                    yield (value - one[i]) / (other[i] - one[i]), i, value
+
+    def _ends(self, i: int, value: float, rise: float) -> Ending | None:
+        """How the curve ends where s (-1) or the frequency (-2) passes a value, rising or falling."""
+        low, high = self.way.span if i == -1 else (self.low, self.high)
+        if value != (high if rise > 0.0 else low):
+            return None
+        return Ending.SPAN if i == -1 else Ending.RANGE
 
     def _kink(self, guess: FloatArray) -> float | None:
         """The first value of s between here and a guess at which the equations have a kink."""
@@ -74,13 +94,19 @@ class Passing(Place):
         there[-1] = kink
         if not self._solve(there, rise * self.held) or self.newton.moved > 0.5 * step:
             return None
-        z, t = np.array(self.newton.z), np.array(self.newton.tangent)
-        if self._stations(step, z, t):
-            return Ending.SPAN
-        beyond = z.copy()
+        known, spot = len(self.spots), self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
+        if (ending := self._passed(step, spot.z)) is not True:
+            return ending or None
+        beyond = spot.z.copy()
         beyond[-1] += rise * KINK * self.smooth.span
-        if not self._holds() or not self._solve(beyond, rise * self.held):
+        if (
+            not self._solve(there, rise * self.held)
+            or not self._holds()
+            or not self._solve(beyond, rise * self.held)
+        ):
+            del self.spots[known:]
             return None
-        self.spots.append(self._spot(z, t))
+        if not any(one.station for one in self.spots[known:]):
+            self.spots.append(spot)
         self._accept()
         return FIRST
