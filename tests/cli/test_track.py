@@ -110,6 +110,7 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
     [
         (["--over", "contact.shroud.n_0"], "--over needs --track"),
         (["--track", "folds"], "--track needs --over and --from and --to"),
+        (["--track", "peaks", *FOLDS, "4", "--to", "5"], "--track is given 2 times (peaks, folds)"),
         ([*FOLDS, "5", "--to", "4"], "must rise"),
         ([*FOLDS[:3], "level", "--from", "0", "--to", "4"], "level is from 0"),
         ([*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"], "must be at least 0"),

@@ -76,3 +76,14 @@ def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
         (at["frequency"],),
     ).curves
     assert exact.orbits.cycle_greatest[:, 0].max() < 0.5 * found["value"]
+
+
+def test_an_onset_is_unstable_between_the_folds_that_pass_it():
+    """On the branch between the folds of the response, which meet the onset at turns of their own curve."""
+    scene, span = load_scene("yang1998-n5"), (6.0, 8.0)
+    onsets = track(scene, "separation", "contact.shroud.n_0", span, harmonics=1).tracking.curves
+    folds = track(scene, "folds", "contact.shroud.n_0", span, harmonics=1).tracking.curves
+    turns = np.array([(one.number[i], one.frequency[i]) for one in folds for i, _ in one.closings])
+    (stretch,) = [one for curve in onsets for one in curve.summary("rad/s").get("not_stable", ())]
+    for end in zip(stretch["number"], stretch["frequency"], strict=True):
+        assert np.abs(turns - end).max(axis=1).min() < 1e-4  # a ten thousandth of a step of a tenth

@@ -31,11 +31,22 @@ OF_NO_USE = {  # beside --track, and why
 }
 
 
+def _only_one(context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> str | None:
+    """The last of several would be followed, and the others left out unsaid."""
+    if len(given) > 1:
+        raise click.UsageError(
+            f"--track is given {len(given)} times ({', '.join(given)}): one run follows points of one kind; "
+            "make a run for each.",
+            context,
+        )
+    return given[0] if given else None
+
+
 def track_options(command: Any) -> Any:
     """The options of tracking."""
     options: list[Callable[[Any], Any]] = [
         click.option(
-            "--track", type=click.Choice(WHAT),
+            "--track", type=click.Choice(WHAT), multiple=True, callback=_only_one,
             help="Follow these points of the response as curves in the number --over: folds (jumps), "
             "peaks, onset of slip, of separation, of contact at all.",
         ),
@@ -178,7 +189,11 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
     for curve in tracked["curves"]:
         for key, said in (("not_stable", "not stable"), ("stability_untold", "stability not told")):
             for one in curve.get(key, ()):
-                ends = [f"{value:.6g}" for value in (*one["number"], *one["frequency"])]
+                ends = [f"{value:.6g}" for key in ("number", "frequency") for value in one[key]]
+                if (
+                    ends[0] == ends[1] and ends[2] == ends[3]
+                ):  # at a place, and on no stretch that can be seen
+                    ends[1] = ends[3] = ""
                 rows.append([*swept(curve), plain(curve["what"]), *ends, said])
     title = "where no motion stays, or it is not told whether one does:"
     return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""

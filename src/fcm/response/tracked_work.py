@@ -68,7 +68,8 @@ class TrackedWork:
             told: tuple[TrackedError, ...] = ()
             stable: FloatArray | None = None
             try:
-                stable = None if stopped else once(partial(stability_along, way, one))
+                if not stopped:
+                    one, stable = once(partial(stability_along, way, one))
                 told = () if stopped else once(partial(errors, way, one))
             except KeyboardInterrupt:
                 stopped = True

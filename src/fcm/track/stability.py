@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
+from fcm.continuation.newton import Newton
 from fcm.harmonic.multipliers import Multipliers, multipliers_of
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
-from fcm.track.curve import Track
+from fcm.track.curve import Track, recorded
 from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Kind, Tracked
 
 BESIDE = 1e-6  # of the response's extent: on either side of a corner, where it may turn back
+HALVINGS = 14  # of a step between points, within which the motion ceases to be stable
+
+Seen = tuple[Spot, float]  # a point, and what is said of it
 
 
-def stability_along(way: Way, track: Track) -> FloatArray:
+def stability_along(way: Way, track: Track) -> tuple[Track, FloatArray]:
     """(point,): 1 where small disturbances die out, 0 where one grows, NaN where it cannot be told.
 
-    As along a response: a fold counts to its stable side, and so does a corner at which it turns back.
+    As along a response: a fold counts to its stable side, and so does a corner at which it turns back. The
+    curve is that with two more points wherever this changes, one on either side.
     """
     return _Along(way, track).run()
 
@@ -26,12 +33,52 @@ class _Along:
     """The points of one curve."""
 
     def __init__(self, way: Way, track: Track) -> None:
-        self.track, self.problem = track, way.tracked(track.condition)
+        self.way, self.track, self.problem = way, track, way.tracked(track.condition)
         self.highest = way.system.scene.frequency_range[1]
         self.known: Multipliers | None = None
 
-    def run(self) -> FloatArray:
-        return np.array([self._at(spot) for spot in self.track.spots])
+    def run(self) -> tuple[Track, FloatArray]:
+        seen = [(spot, self._at(spot)) for spot in self.track.spots]
+        found = seen[:1]
+        for one, other in pairwise(seen):
+            found += [*self._limit(one, other), other]
+        track, spots = self.track, [spot for spot, _ in found]
+        if len(found) > len(seen):
+            track = recorded(self.way, track.condition, spots, track.endings)
+        return track, np.array([stable for _, stable in found])
+
+    def _limit(self, one: Seen, other: Seen) -> list[Seen]:
+        """Points on both sides of where what is said of two changes; none if it does not."""
+        before, ends = one[1], [one, other]
+        if _same(before, other[1]):
+            return []
+        for _ in range(HALVINGS):
+            middle = self._middle(ends[0][0], ends[1][0])
+            if middle is None:
+                break
+            stable = self._at(middle)
+            ends[0 if _same(stable, before) else 1] = middle, stable
+        return [end for end, old in zip(ends, (one, other), strict=True) if end is not old]
+
+    def _middle(self, one: Spot, other: Spot) -> Spot | None:
+        """The point of the curve between two, on the plane half way across their chord."""
+        at = other.corner if one.switch else one.corner
+        problem = self.way.tracked(at or self.track.condition)
+        z = 0.5 * (one.z + other.z)
+        problem.measure(z)
+        newton = Newton(problem)
+        newton.scale[:] = problem.scale
+        chord = (other.z - one.z) / np.asarray(problem.scale)
+        length = float(np.linalg.norm(chord))
+        if length == 0.0:
+            return None
+        newton.z[:], newton.row[:] = z, chord / length
+        try:
+            if not newton.correct(1e-3) or newton.moved > length:
+                return None
+        except np.linalg.LinAlgError:
+            return None
+        return Spot(np.array(newton.z), np.array(newton.tangent) * np.asarray(problem.scale), at)
 
     def _at(self, spot: Spot) -> float:
         problem = self.problem
@@ -50,6 +97,11 @@ class _Along:
             self.known = multipliers_of(varied.system, self.highest)
         self.known.take(varied.system)
         return self.known
+
+
+def _same(one: float, other: float) -> bool:
+    """Whether two verdicts are one, not to be told among them."""
+    return one == other or bool(np.isnan(one) and np.isnan(other))
 
 
 def _signs(problem: Tracked, spot: Spot) -> set[float]:
