@@ -146,14 +146,17 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     here: Place = front.here
     there: Place = front.there
     events = []
-    looks = Looks(front) if front.problem.soft or front.problem.dear else None
-    if here.tangent[n] * there.tangent[n] < 0.0:
+    dear: cython.bint = front.problem.soft or front.problem.dear
+    folds: cython.bint = here.tangent[n] * there.tangent[n] < 0.0
+    peaks = [k for k in range(front.problem.outputs) if turns(here, there, k, most[k])]
+    looks = Looks(front) if dear and (folds or peaks) else None
+    if folds:
         events += located(front, FOLD, 0, limit, Mark.FOLD, looks)
     fold = events[0] if events else None
     for value in values:
         events += passings(front, value, fold)
-    for k in range(front.problem.outputs):
-        if turns(here, there, k, most[k]) and (looks is None or may_exceed(front, k, most[k])):
+    for k in peaks:
+        if not dear or may_exceed(front, k, most[k]):
             events += located(front, PEAK, k, limit, Mark.PEAK, looks)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 

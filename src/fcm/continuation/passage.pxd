@@ -13,6 +13,7 @@ cdef class Passage:
     cdef double[::1] stops, most
     cdef double[::1] first, head
     cdef bint keep(self, double limit) except -1
+    cdef bint been(self) except -1
     cdef int add(self, long mark) except -1
     cdef int note(self, Place place) except -1
     cdef void rise(self) noexcept

@@ -22,7 +22,8 @@ else:
 
 END = cython.declare(cython.long, int(Mark.END))
 CORNER = cython.declare(cython.long, int(Mark.CORNER))
-SAME = 1e-6  # of the greatest unknown: points closer than this are one
+STATION = cython.declare(cython.long, int(Mark.STATION))
+SAME = cython.declare(cython.double, 1e-6)  # of the greatest unknown: points closer than this are one
 
 
 @cython.cclass
@@ -83,16 +84,24 @@ class Passage:
                 return True
         return False
 
-    def been(self) -> bool:
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def been(self) -> cython.bint:
         """Whether the last point, at a station, was passed before in its direction, with folds in between: a
         step that ends there may keep it, and the next one once more."""
-        kept, k = self.trail.points(), self.trail.count - 1
-        ahead = kept.direction[:k, -1] * kept.direction[k, -1] > 0.0
-        since = np.flatnonzero(~ahead)
-        before = np.arange(since[-1] if since.size else 0)
-        there = ((kept.mark[before] & Mark.STATION) > 0) & (kept.z[before, -1] == kept.z[k, -1])
-        off = np.abs(kept.z[before[there & ahead[before]]] - kept.z[k]).max(axis=1)
-        return bool((off < SAME * np.abs(kept.z[k, :-1]).max(initial=0.0)).any())
+        trail: Trail = self.trail
+        n: cython.Py_ssize_t = self.n
+        last: cython.Py_ssize_t = trail.count - 1
+        fold: cython.Py_ssize_t = last - 1  # the last point that another direction led to
+        i: cython.Py_ssize_t
+        rise: cython.double = trail.direction[last, n]
+        while fold >= 0 and trail.direction[fold, n] * rise > 0.0:
+            fold -= 1
+        for i in range(fold):
+            again: cython.bint = trail.mark[i] & STATION and trail.z[i, n] == trail.z[last, n]
+            if again and trail.direction[i, n] * rise > 0.0 and trail.same(i, last, SAME):
+                return True
+        return False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

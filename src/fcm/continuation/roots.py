@@ -63,9 +63,9 @@ def root(
     now: cython.double
     count: cython.int
     turning: cython.bint = sought.kind == FOLD or sought.kind == PEAK
-    sides = Secants(low, high, before, after)
+    sides: Secants = Secants(low, high, before, after)
     for count in range(LOOKS):  # noqa: B007
-        if sides.known(FINE * step.step, after_next=sought.kind == MARGIN):
+        if sides.known(FINE * step.step, sought.kind == MARGIN):
             return min(max(sides.secant, sides.low), sides.high)
         at = sides.at
         if not step.put(at, sought.kind == MARGIN, False):

@@ -7,65 +7,80 @@ much nearer than they were a smooth function differs by much less.
 
 from __future__ import annotations
 
-CLOSER = 0.25  # of the first distance of its sides, at which a function that does not jump
-LESS = 0.5  # differs by less than this part of what it did
-IN_TURN = 3  # looks that are to halve the distance
+import cython
+from cython.cimports.libc.math import fabs
+
+# of the first distance of its sides, at which a function that does not jump
+CLOSER = cython.declare(cython.double, 0.25)
+LESS = cython.declare(cython.double, 0.5)  # differs by less than this part of what it did
+IN_TURN = cython.declare(cython.int, 3)  # looks that are to halve the distance
 
 
+@cython.cclass
 class Secants:
-    """The two sides of a change of sign, which looks at `at` bring nearer to one another."""
+    """The two sides of a change of sign, low and high, which looks at `at` bring nearer to one another.
 
-    def __init__(self, low: float, high: float, before: float, after: float, may_jump: bool = False) -> None:
-        self.low, self.high, self._may_jump = low, high, may_jump
-        self._ends = [before, after]  # the values there
-        self._last, self._now = (low, before), (high, after)  # the last two places and their values
-        self._first = (high - low, abs(after - before))
-        self._looks, self._width = 0, high - low
+    width: their distance; secant: where the secant leads.
+    """
 
-    @property
-    def width(self) -> float:
-        """Distance of the sides."""
-        return self.high - self.low
+    def __init__(
+        self,
+        low: cython.double,
+        high: cython.double,
+        before: cython.double,
+        after: cython.double,
+        may_jump: cython.bint = False,
+    ) -> None:
+        self.low, self.high, self.may_jump = low, high, may_jump
+        self.before, self.after = before, after  # the values there
+        # the last two places and their values
+        self.last, self.last_value, self.now, self.now_value = low, before, high, after
+        self.first_width, self.first_difference = high - low, fabs(after - before)
+        self.looks, self.width_in_turn = 0, high - low
+        self.aim()
 
-    @property
-    def secant(self) -> float:
-        """Where the secant leads."""
-        (last, before), (now, value) = self._last, self._now
-        return now - value * (now - last) / (value - before) if value != before else self.low
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def aim(self) -> cython.void:
+        """The place to be looked at next."""
+        self.width, self.secant = self.high - self.low, self.low
+        if self.now_value != self.last_value:
+            rise: cython.double = self.now_value - self.last_value
+            self.secant = self.now - self.now_value * (self.now - self.last) / rise
+        slow: cython.bint = self.looks % IN_TURN == IN_TURN - 1 and self.width > 0.5 * self.width_in_turn
+        halved: cython.bint = slow or self.jumps() or not self.low < self.secant < self.high
+        self.at = 0.5 * (self.low + self.high) if halved else self.secant
 
-    def known(self, fine: float, after_next: bool = False) -> bool:
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def jumps(self) -> cython.bint:
+        """Whether the function seems to."""
+        difference: cython.double = fabs(self.after - self.before)
+        near: cython.bint = self.width < CLOSER * self.first_width
+        return self.may_jump and near and difference > LESS * self.first_difference
+
+    @cython.ccall
+    @cython.exceptval(check=False)
+    def known(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
         """Whether another look would move by no more than this; or the one after next.
 
         That is shorter than the next by at least as much as the next is than the last.
         """
-        (last, _), (now, _) = self._last, self._now
-        way = abs(self.secant - now)
-        return way <= fine or self.width <= fine or (after_next and way * way <= fine * abs(now - last))
+        way: cython.double = fabs(self.secant - self.now)
+        if way <= fine or self.width <= fine:
+            return True
+        return after_next and way * way <= fine * fabs(self.now - self.last)
 
-    @property
-    def at(self) -> float:
-        """The place to be looked at next."""
-        at = self.secant
-        slow = self._looks % IN_TURN == IN_TURN - 1 and self.width > 0.5 * self._width
-        return 0.5 * (self.low + self.high) if slow or self._jumps() or not self.low < at < self.high else at
-
-    def _jumps(self) -> bool:
-        width, difference = self._first
-        return (
-            self._may_jump
-            and self.width < CLOSER * width
-            and abs(self._ends[1] - self._ends[0]) > LESS * difference
-        )
-
-    def saw(self, at: float, value: float) -> None:
+    @cython.ccall
+    @cython.exceptval(check=False)
+    def saw(self, at: cython.double, value: cython.double) -> cython.void:
         """Take the value there for that of one side."""
-        if self._looks % IN_TURN == IN_TURN - 1:
-            self._width = self.width
-        self._looks += 1
-        self._last, self._now = self._now, (at, value)
-        side = int((value > 0.0) != (self._ends[0] > 0.0))
-        self._ends[side] = value
-        if side:
-            self.high = at
+        if self.looks % IN_TURN == IN_TURN - 1:
+            self.width_in_turn = self.width
+        self.looks += 1
+        self.last, self.last_value, self.now, self.now_value = self.now, self.now_value, at, value
+        if (value > 0.0) != (self.before > 0.0):
+            self.high, self.after = at, value
         else:
-            self.low = at
+            self.low, self.before = at, value
+        self.aim()

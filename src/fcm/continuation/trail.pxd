@@ -11,4 +11,5 @@ cdef class Trail:
     cpdef int put(self, double[::1] z, double[::1] direction, long mark, double orientation, double shift) except -1
     cdef int widen(self) except -1
     cdef bint ends_at(self, Place place) except -1
+    cdef bint same(self, Py_ssize_t i, Py_ssize_t k, double part) except -1
     cdef int mark_last(self, long mark) except -1

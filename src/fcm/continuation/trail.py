@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import fabs
 
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.place import Place
@@ -107,6 +108,18 @@ class Trail:
             if self.z[self.count - 1, i] != place.z[i]:
                 return False
         return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def same(self, i: cython.Py_ssize_t, k: cython.Py_ssize_t, part: cython.double) -> cython.bint:
+        """Whether two points differ by less than a part of the greatest unknown of the second."""
+        j: cython.Py_ssize_t
+        off: cython.double = fabs(self.z[i, self.size - 1] - self.z[k, self.size - 1])
+        size: cython.double = 0.0
+        for j in range(self.size - 1):
+            off = max(off, fabs(self.z[i, j] - self.z[k, j]))
+            size = max(size, fabs(self.z[k, j]))
+        return off < part * size
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
