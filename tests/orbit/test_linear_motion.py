@@ -13,7 +13,7 @@ import fcm
 from fcm.motion import State, simulate
 from fcm.orbit.family import Family
 from fcm.orbit.linear_motion import linear_motions
-from fcm.response import orbit_curve
+from fcm.response import not_unique
 from fcm.response.exact import trace_exact
 from fcm.response.loose import loose
 from fcm.scene.model import Start
@@ -64,7 +64,7 @@ def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(optio
     (curve,) = json.loads(run.out)["curves"]
     (beside,) = curve["stuck_beside"]
     assert run.code == 0 and beside["regime"] == ["E"]
-    assert "in which no contact slips, and which no point belongs to: 1" in run.err
+    assert "in which a contact never slips, and which no point belongs to: 1" in run.err
     assert f"[start] friction = [{beside['start_friction'][0]:.5g}]" in run.err
     scene = fcm.load_scene(WEDGE)
     start = Start(np.zeros(1), np.zeros(1), np.array(beside["start_friction"]), 0.0)
@@ -77,10 +77,42 @@ def test_motions_that_no_point_belongs_to_are_told_with_what_leads_to_them(optio
     assert there.any() and chosen.amplitude[nearest] == pytest.approx(expected, rel=1e-6)
 
 
+def _wedged(scene, residual):
+    """At rest with the contacts closed, the first strained by that much of its own friction."""
+    modal, (wedge, other) = scene.modal, scene.contacts
+    along, across = wedge.tangential @ modal.shapes.T, wedge.normal @ modal.shapes.T
+    stiffness = np.diag(modal.mass * modal.frequency**2) + wedge.k_u * np.outer(along, along)
+    stiffness += (wedge.k_v + other.k_v) * np.outer(across, across)
+    q = np.linalg.solve(stiffness, along * residual)
+    return State(q, np.zeros(2), np.array([wedge.k_u * (along @ q) - residual, 0.0]))
+
+
+def test_a_motion_with_one_contact_wedged_and_another_that_slips_is_told_with_its_extent():
+    """Marched from much residual friction the first sticks and the other slips; from little it comes loose."""
+    scene = fcm.load_scene(WEDGE.parent / "wedge_beside_slip.toml")
+    (curve,) = trace_exact(scene, [1.3]).curves
+    (beside,) = curve.orbits.stuck
+    assert "E" not in curve.regime and beside.states == ("E", "EPEN") and beside.friction[1] == 0.0
+    found = []
+    for share, sticks in ((0.3, False), (1.2, True), (8.0, True), (400.0, True)):
+        motion = simulate(scene, 1.3, 200, _wedged(scene, -share * beside.friction[0]))
+        assert (motion.cycles[-1].states[0] == "E") is sticks
+        (last,) = motion.measures(last=1)
+        inside = (last.amplitude > 0.999 * beside.least) & (last.amplitude < 1.001 * beside.greatest)
+        assert inside.all() if sticks else last.amplitude == pytest.approx(curve.amplitude[0], rel=1e-6)
+        found.append(last.amplitude)
+    assert found[1] == pytest.approx(beside.greatest, rel=0.01)
+    assert found[3] == pytest.approx(beside.least, rel=1e-4)
+    start = Start(np.zeros(2), np.zeros(2), beside.friction, 0.0)
+    chosen = [trace_exact(replace(scene, start=start), at).curves[0] for at in ([1.3], None)]
+    assert chosen[0].regime.tolist() == [list(beside.states)] * 2 and not chosen[0].orbits.stuck
+    assert ["E", "EPEN"] in chosen[1].regime.tolist()
+
+
 def test_an_extent_that_was_not_sought_to_its_end_is_told(monkeypatch, scenes=WEDGE.parent):
     """Even where all motions that were found are alike."""
-    alike = Family((0,), np.zeros((1, 2)), np.ones(3), np.ones(3), complete=False)
-    monkeypatch.setattr(orbit_curve, "family", lambda *_: alike)
+    alike = Family((0,), np.zeros((1, 2)), np.ones(2), np.ones(2), complete=False)
+    monkeypatch.setattr(not_unique, "family", lambda *_: alike)
     (curve,) = trace_exact(fcm.load_scene(scenes / "not_unique.toml"), [1.5]).curves
     assert curve.orbits.family_complete.tolist() == [0.0, 0.0]
     assert np.isnan(curve.orbits.family_greatest).all()

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
+_DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
 OF_NO_USE = {  # with --method exact, and why
     "table": "it needs no coefficients",
     "peaks_only": "its points say which of them are not unique",
@@ -135,10 +136,10 @@ def _stuck(response: Response, beside: list[Stuck]) -> str:
 
     first, unit = beside[0], response.frequency_unit
     pairs = zip(response.contacts, first.states, strict=True)
-    open_or_not = ", ".join(f"{name} {'closed' if one == 'E' else 'open'}" for name, one in pairs)
+    does = ", ".join(f"{name} {_DOES.get(one, one)}" for name, one in pairs)
     start = ", ".join(f"{force:.5g}" for force in first.friction)
     return (
-        f"other motions, in which no contact slips, and which no point belongs to: {len(beside)}; at "
-        f"{float(in_unit(first.frequency, unit)):.6g} {unit} one with {open_or_not} all through, which "
+        f"other motions, in which a contact never slips, and which no point belongs to: {len(beside)}; at "
+        f"{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}, which "
         f"[start] friction = [{start}] leads to (stuck_beside with --json)"
     )

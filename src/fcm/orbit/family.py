@@ -26,6 +26,7 @@ STEPS = 8  # from one limit of slip to the other
 SHORTEST = 1e-3  # part of a step below which the family has an end of its own
 ITERATIONS = 8  # of Newton's method: with more a shorter step is found sooner
 GROWTH = 4.0  # of a step to the next, at most
+FAR = 1e4  # times the first reach: a contact that its own residual friction presses together has no end
 TINY = 1e-12  # part of the reach that is none
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
 MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
@@ -48,7 +49,7 @@ class Family:
         return (self.greatest - self.least) / size
 
 
-def family(scene: Scene, frequency: float, state: State) -> Family | None:
+def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Family | None:
     """The family that a periodic motion belongs to; None if no contact of it always sticks.
 
     Parameters
@@ -58,6 +59,8 @@ def family(scene: Scene, frequency: float, state: State) -> Family | None:
         Of the external forces [rad/s].
     state : State
         Of a periodic motion at the forces' angle 0.
+    periods : int
+        Of the force, after which it repeats.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def family(scene: Scene, frequency: float, state: State) -> Family | None:
     """
     system = System(scene, frequency)
     x = np.concatenate((state.q, state.velocity, state.friction))
-    found = converged(Shot(system, x, resting_at(system, x)))
+    found = converged(Shot(system, x, resting_at(system, x), periods))
     if found is None:
         raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
     begun = found[0]
@@ -146,6 +149,7 @@ class _Way:
         self.reach = self.room.sum(axis=1)  # the greatest so far
         self.push = np.zeros(len(self.system.contacts))
         self.push[contacts] = sense * self.reach / STEPS
+        self.far = FAR * float(max(self.reach.max(), np.abs(_residual(begun)).max()))
         self.slope: FloatArray | None = None  # of x by the share of the push
 
     def shots(self, tries: int) -> Iterator[Shot]:
@@ -159,6 +163,7 @@ class _Way:
                 share, most = 0.25 * share, 1.0
                 continue
             self.ended = all(choice.limited for choice in new.chosen if self.push[choice.contact] != 0.0)
+            self.ended |= bool(np.abs(_residual(new)).max() > self.far)
             self.slope = (new.x - self.last.x) / share
             share, most = share * min(self._growth(new), most), GROWTH
             self.last, longest = new, max(longest, share)

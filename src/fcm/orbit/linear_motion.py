@@ -65,7 +65,7 @@ def _motion(
     if not stuck:
         return None
     try:
-        wave, mean, by_residual = _moved(system, closed, stuck)
+        wave, mean, by_residual = linear_answer(system, closed, stuck)
     except np.linalg.LinAlgError:  # a mode is free to drift, or resonates without damping
         return None
     limits = list(_limits(system, closed, stuck, wave, mean, by_residual))
@@ -81,7 +81,7 @@ def _motion(
     return Linear(tuple("E" if one else "S" for one in closed), residual, mean, wave, state)
 
 
-def _moved(
+def linear_answer(
     system: System, closed: npt.NDArray[np.bool_], stuck: list[int]
 ) -> tuple[npt.NDArray[np.complex128], FloatArray, FloatArray]:
     """The modes' harmonic answer, their mean without residual friction, and what that adds to it."""
@@ -110,17 +110,29 @@ def _limits(
 ) -> Iterator[tuple[FloatArray, float]]:
     """What keeps every contact as it is: rows of which row @ residual is to be no less than a number."""
     for j, contact in enumerate(system.scene.contacts):
-        press = contact.k_v * system.normal[j]
-        load = press @ by_residual, contact.n_0 + press @ mean, press @ wave
         if j not in stuck:
-            sign = 1.0 if closed[j] else -1.0
-            yield sign * load[0], abs(load[2]) - sign * load[1]
-            continue
-        pull = contact.k_u * system.tangential[j]
-        force = pull @ by_residual - (np.array(stuck) == j), pull @ mean, pull @ wave
-        for sign in (1.0, -1.0):
-            row, constant, swing = (contact.mu * n - sign * f for n, f in zip(load, force, strict=True))
-            yield row, abs(swing) - constant
+            press, sign = contact.k_v * system.normal[j], 1.0 if closed[j] else -1.0
+            yield sign * (press @ by_residual), abs(press @ wave) - sign * (contact.n_0 + press @ mean)
+        else:
+            yield from sticking(system, j, np.array(stuck) == j, wave, mean, by_residual)
+
+
+def sticking(
+    system: System,
+    j: int,
+    own: npt.NDArray[np.bool_],
+    wave: npt.NDArray[np.complex128],
+    mean: FloatArray,
+    by_residual: FloatArray,
+) -> Iterator[tuple[FloatArray, float]]:
+    """What keeps contact j from slipping either way; own: which of the residual friction is its own."""
+    contact = system.scene.contacts[j]
+    press, pull = contact.k_v * system.normal[j], contact.k_u * system.tangential[j]
+    load = press @ by_residual, contact.n_0 + press @ mean, press @ wave
+    force = pull @ by_residual - own, pull @ mean, pull @ wave
+    for sign in (1.0, -1.0):
+        row, constant, swing = (contact.mu * n - sign * f for n, f in zip(load, force, strict=True))
+        yield row, abs(swing) - constant
 
 
 def _inside(rows: FloatArray, least: FloatArray, wanted: FloatArray, just_that: bool) -> FloatArray | None:

@@ -18,6 +18,7 @@ from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
 from fcm.orbit.held import held
 from fcm.orbit.linear_motion import started_states
+from fcm.orbit.partly_stuck import partly_stuck_as_started
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
@@ -48,6 +49,8 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatA
             *_shot(scene, omega, guesses, look),
             *_shot(scene, omega, started_states(scene, omega), look),
         ]
+        if scene.start is not None:
+            orbits += _shot(scene, omega, partly_stuck_as_started(scene, omega), look)
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
                 orbits += _from_rest(scene, omega, bool(orbits), look)
@@ -149,7 +152,10 @@ def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
     SimulationError
         If there is none.
     """
-    near = [] if scene.start is None else list(_shot(scene, omega, started_states(scene, omega), look))
+    near = list[Orbit]()
+    if scene.start is not None:
+        near += _shot(scene, omega, started_states(scene, omega), look)
+        near += _shot(scene, omega, partly_stuck_as_started(scene, omega), look)
     near += near_balance(scene, omega, look)
     stable = [orbit for orbit in near if orbit.stable]
     return (stable or _from_rest(scene, omega, bool(near), look) or near)[0]

@@ -10,15 +10,13 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark, Path
-from fcm.motion.errors import SimulationError
-from fcm.motion.matrices import has_friction
-from fcm.orbit.family import family
 from fcm.orbit.landing import with_landings
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
+from fcm.response.not_unique import not_unique
 from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
 from fcm.results.jumps import Swept
@@ -27,7 +25,6 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.scene.model import Scene
 
-UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
@@ -85,9 +82,9 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
     rows = _told(amplitude, everywhere)
-    families = _families(scene, points, amplitude, rows)
+    others = not_unique(scene, points, amplitude, rows)
     regime = _regimes(points, len(scene.contacts))
-    told = everywhere | np.isfinite(families[2])
+    told = everywhere | np.isfinite(others.whole)
     stable = np.array([np.nan if p is None else float(p.stable) for p in points])
     at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
@@ -114,8 +111,10 @@ def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywher
             _numbers(points, "repeats"),
             _cycles(points, "least", empty),
             _cycles(points, "greatest", empty),
-            *families,
-            stuck=stuck_beside(scene, rows, frequency, regime, families[:2]),
+            others.least,
+            others.greatest,
+            others.whole,
+            stuck=[*others.beside, *stuck_beside(scene, rows, frequency, regime, others)],
         ),
     )
 
@@ -147,39 +146,6 @@ def _told(amplitude: FloatArray, everywhere: bool) -> list[int]:
     if everywhere:
         return np.flatnonzero(known).tolist()
     return sorted({int(k) for k in np.nanargmax(amplitude, axis=0)}) if known.any() else []
-
-
-def _families(
-    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int]
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The extent over residual friction at some points; nan where the amplitude is unique.
-
-    And whether it is that of all residual friction: (point,), nan where there is but one.
-    """
-    least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
-    whole = np.full(len(points), np.nan)
-    rough = all(has_friction(contact) for contact in scene.contacts)
-
-    def linear(point: Sample) -> bool:
-        """Whether the only contact does nothing but stick; of several another may begin to slip."""
-        return rough and len(scene.contacts) == 1 and set(point.states) == {"E"}
-
-    for k in rows:
-        point = points[k]
-        if point is None or "E" not in point.states or point.repeats != 1 or linear(point):
-            continue
-        try:
-            found = family(scene, point.frequency, point.state)
-        except SimulationError:  # its neighbourhood cannot be computed
-            whole[k] = 0.0
-            continue
-        if found is None:
-            continue
-        if found.spread.max() > UNIQUE:
-            least[k], greatest[k], whole[k] = found.least, found.greatest, found.complete
-        elif not found.complete:
-            whole[k] = 0.0
-    return least, greatest, whole
 
 
 def _regimes(points: Sequence[Sample | None], contacts: int) -> npt.NDArray[np.str_]:

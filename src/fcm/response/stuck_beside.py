@@ -7,7 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from fcm.orbit.linear_motion import Linear, linear_motions
+from fcm.orbit.linear_motion import linear_motions
+from fcm.response.not_unique import NotUnique
 from fcm.results.orbits import Stuck
 from fcm.scene.model import FloatArray, Scene
 
@@ -19,11 +20,12 @@ def stuck_beside(
     rows: Iterable[int],
     frequency: FloatArray,
     regime: npt.NDArray[np.str_],
-    extent: tuple[FloatArray, FloatArray],
+    others: NotUnique,
 ) -> list[Stuck]:
-    """Those at the frequencies of some points that are not of a point there, nor in the extent of its family.
+    """Those at the frequencies of some points that are not of a point there, nor in the extent of a family.
 
-    frequency, regime, extent : of all points, (point,), (point, contact) and twice (point, dof).
+    frequency, regime : of all points, (point,) and (point, contact).
+    others : of which families are known there.
     """
     found = []
     for omega in np.unique([frequency[k] for k in rows]).tolist():
@@ -31,15 +33,18 @@ def stuck_beside(
         across = (frequency[:-1] - omega) * (frequency[1:] - omega) < 0.0
         near = here | np.append(across, False) | np.append(False, across)
         known = {tuple(states) for states in regime[near].tolist()}
-        least, greatest = extent[0][here], extent[1][here]
+        beside = [one for one in others.beside if one.frequency == omega]
+        least = np.array([*others.least[here], *(one.least for one in beside)])
+        greatest = np.array([*others.greatest[here], *(one.greatest for one in beside)])
         for one in linear_motions(scene, omega):
-            if one.states not in known and not _within(scene, one, least, greatest):
-                found.append(Stuck(omega, one.states, 0.0 - one.residual))
+            amplitude = np.abs(scene.modal.shapes.T @ one.wave)
+            if one.states not in known and not _within(amplitude, least, greatest):
+                found.append(Stuck(omega, one.states, 0.0 - one.residual, amplitude, amplitude))
     return found
 
 
-def _within(scene: Scene, one: Linear, least: FloatArray, greatest: FloatArray) -> bool:
-    """Whether its amplitudes lie in the extent of a point."""
-    amplitude, room = np.abs(scene.modal.shapes.T @ one.wave), SAME * greatest
+def _within(amplitude: FloatArray, least: FloatArray, greatest: FloatArray) -> bool:
+    """Whether amplitudes lie in one of some extents."""
+    room = SAME * greatest
     inside = (amplitude >= least - room) & (amplitude <= greatest + room)
     return bool(inside.all(axis=1).any())

@@ -16,8 +16,10 @@ class Stuck:
     """A motion that no point is of, in which contacts stick all through the period."""
 
     frequency: float  # [rad/s]
-    states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open
+    states: tuple[str, ...]  # of each contact: E sticks, or is closed without friction; S is open; or others
     friction: FloatArray  # (contact,) of [start], which leads to it
+    least: FloatArray  # (dof,) amplitude over the residual friction of those that stick
+    greatest: FloatArray  # (dof,)
 
 
 @dataclass

@@ -189,6 +189,9 @@ class Curve:
             "frequency": float(in_unit(one.frequency, unit)),
             "regime": list(one.states),
             "start_friction": one.friction.tolist(),
+            "amplitude": {
+                dof: [float(one.least[i]), float(one.greatest[i])] for i, dof in enumerate(self.peaks)
+            },
         }
 
 
