@@ -51,6 +51,19 @@ def test_the_phases_follow_the_curves(fcm, both):
     assert "kept: 64 displacements of every cycle" in done.err
 
 
+def test_a_start_beyond_what_a_contact_can_carry_is_said(fcm, scene):
+    """The limit is 0.4 * 5, or 0.4 * 6.35 where the scene starts displaced along v; none at n_0 = 0."""
+    text = scene.read_text()
+    for start, count in (("friction = [1.0]", 1), ("friction = [-2.1]", 2)):
+        scene.write_text(text + SCHEDULE + SWEEP + f"[start]\n{start}\n")
+        done = fcm("respond", scene)
+        assert done.code == 0 and f"in {count} of 2 curves, the first with contact.shroud.n_0 = " in done.err
+        assert "start.friction[0]: " in done.err and "a [[schedule]] starts from the limit" in done.err
+    for start in ("friction = [1.9]", "friction = [2.1]\ndisplacement = [1.0, -1.293]"):
+        scene.write_text(text + SCHEDULE + f"[start]\n{start}\n")
+        assert "start.friction" not in fcm("respond", scene).err
+
+
 def test_a_schedule_alone_has_no_curves(fcm, alone):
     done = fcm("respond", alone, "--json")
     result = json.loads(done.out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))

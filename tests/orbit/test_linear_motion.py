@@ -88,7 +88,7 @@ def _wedged(scene, residual):
 
 
 def test_a_motion_with_one_contact_wedged_and_another_that_slips_is_told_with_its_extent():
-    """Marched from much residual friction the first sticks and the other slips; from little it comes loose."""
+    """Marched from much of that friction the first sticks and the other slips; from little it comes loose."""
     scene = fcm.load_scene(WEDGE.parent / "wedge_beside_slip.toml")
     (curve,) = trace_exact(scene, [1.3]).curves
     (beside,) = curve.orbits.stuck

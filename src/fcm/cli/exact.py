@@ -10,7 +10,7 @@ from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
     from fcm.response import Response
-    from fcm.results.orbits import Orbits, Stuck
+    from fcm.results.orbits import Orbits
     from fcm.scene.model import Scene
 
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
@@ -118,8 +118,7 @@ def remarks(response: Response) -> list[str]:
             f"points that may not be unique: {unsure}; a contact never slips there, and not every residual "
             "friction of it was reached (family_complete is 0)"
         )
-    beside = [one for orbits in found for one in orbits.stuck]
-    return [*out, _stuck(response, beside)] if beside else out
+    return [*out, *_stuck(response)]
 
 
 def _unsure(orbits: Orbits) -> int:
@@ -130,16 +129,20 @@ def _unsure(orbits: Orbits) -> int:
     return int(((orbits.family_complete == 0.0) & none).sum())
 
 
-def _stuck(response: Response, beside: list[Stuck]) -> str:
+def _stuck(response: Response) -> list[str]:
     """The first of the motions that no point is of, how many there are, and what leads to it."""
     from fcm.units import in_unit
 
-    first, unit = beside[0], response.frequency_unit
+    beside = [(curve, one) for curve in response.curves if curve.orbits for one in curve.orbits.stuck]
+    if not beside:
+        return []
+    (curve, first), unit = beside[0], response.frequency_unit
     pairs = zip(response.contacts, first.states, strict=True)
     does = ", ".join(f"{name} {_DOES.get(one, one)}" for name, one in pairs)
     start = ", ".join(f"{force:.5g}" for force in first.friction)
-    return (
+    swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
+    return [
         f"other motions, in which a contact never slips, and which no point belongs to: {len(beside)}; at "
-        f"{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}, which "
+        f"{swept}{float(in_unit(first.frequency, unit)):.6g} {unit} one with {does}, which "
         f"[start] friction = [{start}] leads to (stuck_beside with --json)"
-    )
+    ]

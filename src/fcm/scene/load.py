@@ -41,6 +41,7 @@ from fcm.scene.parts import (
 )
 from fcm.scene.schedule import read_schedule, read_start
 from fcm.scene.section import Section
+from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, read_sweep
 from fcm.scene.toml import read_toml
 
@@ -137,7 +138,7 @@ def scene_from_dict(
         draft=draft,
     )
     scene = replace(scene, curves=tuple(draft.curve(scene, values) for values in combinations(swept)))
-    scene = replace(scene, notes=(*scene.notes, *note_of_stability(scene)))
+    scene = replace(scene, notes=(*scene.notes, *note_of_stability(scene), *note_of_start(scene)))
     _check_curves(scene, mistakes)
     return scene
 
