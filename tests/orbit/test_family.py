@@ -143,3 +143,19 @@ def test_it_goes_on_where_another_contact_begins_to_slip(name, omega, stress, re
     assert (np.array(found) <= greatest * (1.0 + 1e-4)).all()
     assert max(one[0] for one in found) == pytest.approx(reached, abs=1e-4)
     assert greatest[0] == pytest.approx(reached, abs=1e-4)
+
+
+def test_the_extent_holds_motions_between_its_limits_and_beyond_a_gap():
+    """Amplitudes are greatest where no contact is at a limit, and where others slip than at first."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/in_parts.toml")
+    (curve,) = trace_exact(scene, [1.01345]).curves
+    least, greatest = curve.orbits.family_least[0], curve.orbits.family_greatest[0]
+    found = []
+    for friction in (-10.0, -8.0, -6.4, -5.0, -3.0, 0.0, 3.5, 4.0):
+        rest = State(np.zeros(3), np.zeros(3), np.array([friction, 0.0, 0.0]))
+        found.append(simulate(scene, 1.01345, 400, rest).measures(last=1)[0].amplitude)
+    found = np.array(found)
+    assert (found >= least * (1.0 - 1e-3)).all() and (found <= greatest * (1.0 + 1e-3)).all()
+    assert found[:, 0].max() > 1.02 * found[0, 0] and found[:, 0].max() == pytest.approx(
+        greatest[0], rel=0.01
+    )

@@ -8,8 +8,8 @@ one begins to slip, or to stick, the family goes on from there with those that s
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -18,17 +18,15 @@ from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.periodic import Look, converged, without_end
-from fcm.orbit.residual_friction import always_stuck, resting_at, rooms
+from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
+from fcm.orbit.way import SHORTEST, Way, between, moved, residual_of, stuck_in
 from fcm.scene.model import FloatArray, Scene
 
-STEPS = 8  # from one limit of slip to the other
-SHORTEST = 1e-3  # part of a step below which the family has an end of its own
-ITERATIONS = 8  # of Newton's method: with more a shorter step is found sooner
-GROWTH = 4.0  # of a step to the next, at most
-FAR = 1e4  # times the first reach: a contact that its own residual friction presses together has no end
-TINY = 1e-12  # part of the reach that is none
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
+WITHIN = (1e-6, 0.25)  # part of bounds, by which a motion may be beyond: of one contact, of several by lines
+HALVINGS = 4  # of the way between motions, about the one with the greatest or the least amplitude
+SAME = 1e-6  # relative range of amplitudes below which they are the same
 MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
 
 
@@ -84,12 +82,12 @@ def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Fa
     if found is None:
         raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
     begun = found[0]
-    contacts = _stuck(begun)
+    contacts = stuck_in(begun)
     if not contacts:
         return None
     shots, complete = _members(begun)
     amplitude = np.array([measure(shot.cycle).amplitude for shot in shots])
-    friction = np.array([_residual(shot)[contacts] for shot in shots if contacts == _stuck(shot)])
+    friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
     return Family(
         tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
         amplitude.min(axis=0), amplitude.max(axis=0), complete,
@@ -98,98 +96,79 @@ def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Fa
 
 def _members(begun: Shot) -> tuple[list[Shot], bool]:
     """Motions of the family up to its ends, and whether these were reached on every way."""
-    shots, waiting, seen, complete = [begun], [begun], set[tuple[int, ...]](), True
+    shots, waiting, seen, complete = [begun], [begun], list[_Seen](), True
     left = MOST_TRIED
     while waiting:
         first = waiting.pop(0)
-        contacts = _stuck(first)
-        if not contacts or tuple(contacts) in seen:
+        contacts = stuck_in(first)
+        if not contacts or any(one.has(contacts, first) for one in seen):
             continue
-        seen.add(tuple(contacts))
-        for sense in _senses(len(contacts)):
-            way = _Way(first, contacts, sense)
-            shots += way.shots(min(left, MOST_TRIED // 5))
-            left -= way.tried
-            complete &= way.ended
-            if way.beyond is not None:
-                shots.append(way.beyond)
-                waiting.append(way.beyond)
+        found = [first]
+        for direction in _directions(len(contacts)):
+            ways = [Way(first, contacts, sign * direction) for sign in (-1.0, 1.0)]
+            behind, ahead = (list(way.shots(min(left, MOST_TRIED // 5))) for way in ways)
+            left -= sum(way.tried for way in ways)
+            complete &= all(way.ended for way in ways)
+            line = [*reversed(behind), first, *ahead]
+            found += [*line, *_finer(line)]
+            beyond = [way.beyond for way in ways if way.beyond is not None]
+            shots += beyond
+            waiting += beyond
+        seen.append(_Seen(contacts, np.array([residual_of(shot) for shot in found])))
+        shots += found
     return shots, complete
 
 
-def _stuck(shot: Shot) -> list[int]:
-    return always_stuck(shot.system, shot.segments)
+class _Seen:
+    """What has been followed with the same contacts that stick, by their residual friction."""
+
+    def __init__(self, contacts: list[int], residual: FloatArray) -> None:
+        self.contacts = contacts
+        self.low, self.high = residual[:, contacts].min(axis=0), residual[:, contacts].max(axis=0)
+
+    def has(self, contacts: list[int], shot: Shot) -> bool:
+        """Whether a motion lies within; another part may be beyond a gap in which other contacts stick."""
+        if contacts != self.contacts:
+            return False
+        residual, room = residual_of(shot)[contacts], WITHIN[len(contacts) > 1] * (self.high - self.low)
+        return bool(((residual >= self.low - room) & (residual <= self.high + room)).all())
 
 
-def _senses(count: int) -> list[FloatArray]:
-    """The directions in which the family is followed: each contact alone, and all together."""
-    alone = [sign * row for row in np.eye(count) for sign in (1.0, -1.0)]
+def _finer(line: list[Shot]) -> list[Shot]:
+    """More motions beside those, within a line, at which an amplitude is greatest or least."""
+    amplitude = np.array([measure(shot.cycle).amplitude for shot in line])
+    added = list[Shot]()
+    for sense in (1.0, -1.0):
+        tops = np.argmax(sense * amplitude, axis=0).tolist()
+        flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
+        for k, dof in {k: dof for dof, k in enumerate(tops) if not flat[dof]}.items():
+            if 0 < k < len(line) - 1:
+                added += _about(line[k - 1 : k + 2], sense, dof)
+    return added
+
+
+def _about(near: list[Shot], sense: float, dof: int) -> list[Shot]:
+    """Motions ever nearer to the greatest, or least, amplitude of a degree of freedom among three."""
+    added = list[Shot]()
+    for _ in range(HALVINGS):
+        one, other = between(near[0], near[1]), between(near[1], near[2])
+        if one is None or other is None:
+            break
+        added += [one, other]
+        five = [near[0], one, near[1], other, near[2]]
+        top = max((1, 2, 3), key=lambda i: sense * float(measure(five[i].cycle).amplitude[dof]))
+        near = five[top - 1 : top + 2]
+    return added
+
+
+def _directions(count: int) -> list[FloatArray]:
+    """In which the family is followed, either way: each contact alone, and all together."""
+    alone = list(np.eye(count))
     if count == 1:
         return alone
     if count > MOST_TOGETHER:
-        return [*alone, np.ones(count), -np.ones(count)]
-    together = np.array(np.meshgrid(*([(1.0, -1.0)] * count))).reshape(count, -1).T
-    return [*alone, *together]
-
-
-def _residual(shot: Shot) -> FloatArray:
-    """The friction forces that are left when the displacement is taken away, -k_u w: (contact,)."""
-    force: FloatArray = -shot.system.k_u * resting_at(shot.system, shot.x)
-    return force
-
-
-class _Way:
-    """The family in one direction, until every contact that is pushed is at its limit, or others stick."""
-
-    def __init__(self, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
-        self.system, self.last, self.contacts, self.ended = begun.system, begun, contacts, False
-        self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
-        self.tried = 0  # motions that were looked for
-        self.room = self._rooms(begun)
-        self.reach = self.room.sum(axis=1)  # the greatest so far
-        self.push = np.zeros(len(self.system.contacts))
-        self.push[contacts] = sense * self.reach / STEPS
-        self.far = FAR * float(max(self.reach.max(), np.abs(_residual(begun)).max()))
-        self.slope: FloatArray | None = None  # of x by the share of the push
-
-    def shots(self, tries: int) -> Iterator[Shot]:
-        """The motions on the way, the last one at the limits, as far as so many trials lead."""
-        share = longest = 1.0
-        most = GROWTH
-        while share > SHORTEST * longest and not self.ended and self.tried < tries:
-            self.tried += 1
-            new = self._further(share)
-            if new is None:
-                share, most = 0.25 * share, 1.0
-                continue
-            self.ended = all(choice.limited for choice in new.chosen if self.push[choice.contact] != 0.0)
-            self.ended |= bool(np.abs(_residual(new)).max() > self.far)
-            self.slope = (new.x - self.last.x) / share
-            share, most = share * min(self._growth(new), most), GROWTH
-            self.last, longest = new, max(longest, share)
-            yield new
-        self.ended |= self.beyond is not None
-
-    def _growth(self, new: Shot) -> float:
-        """Of a step to the next: most of it moves the structure where that is softer than the contact."""
-        before, self.room = self.room, self._rooms(new)
-        self.reach = np.maximum(self.reach, before.sum(axis=1))
-        used = np.abs(self.room - before).max(axis=1) / np.where(self.reach > 0.0, self.reach, 1.0)
-        return 1.0 / (STEPS * max(float(used.max()), TINY))
-
-    def _rooms(self, shot: Shot) -> FloatArray:
-        """How far each contact's force is from its limits, (contact, 2)."""
-        found = rooms(self.system, shot.segments, self.contacts)
-        return np.array([(found[j][0].value, found[j][1].value) for j in self.contacts])
-
-    def _further(self, share: float) -> Shot | None:
-        """The motion when the contacts are stressed a little more."""
-        guess = None if self.slope is None else self.last.x + share * self.slope
-        new = _moved(self.last, -(_residual(self.last) + share * self.push), guess)
-        if new is None:
-            return None
-        self.beyond = None if _stuck(new) == self.contacts else new
-        return new if self.beyond is None else None
+        return [*alone, np.ones(count)]
+    return [*alone, *(np.array((1.0, *signs)) for signs in product((1.0, -1.0), repeat=count - 1))]
 
 
 def chosen(shot: Shot, wanted: FloatArray, look: Look = without_end) -> Shot | None:
@@ -202,30 +181,13 @@ def chosen(shot: Shot, wanted: FloatArray, look: Look = without_end) -> Shot | N
     wanted : (contact,)
         The slip motions w of the contacts where the scene starts: `Shooting.resting`.
     """
-    begin, end = -_residual(shot), shot.system.k_u * wanted
+    begin, end = -residual_of(shot), shot.system.k_u * wanted
     done, share = 0.0, 1.0
     while done < 1.0 and share > SHORTEST:
         reach = min(done + share, 1.0)
-        new = _moved(shot, begin + reach * (end - begin), look=look)
+        new = moved(shot, begin + reach * (end - begin), look=look)
         if new is None:
             share *= 0.25
         else:
             shot, done, share = new, reach, 2.0 * share
     return shot if done == 1.0 else None
-
-
-def _moved(
-    shot: Shot, force: FloatArray, guess: FloatArray | None = None, look: Look = without_end
-) -> Shot | None:
-    """The motion near another whose contacts rest where they would have the friction forces k_u w."""
-    system, x = shot.system, shot.x.copy() if guess is None else guess
-    change = -(force + _residual(shot))
-    for choice in shot.chosen:
-        if guess is None and not choice.limited:  # else it may be sent further beyond
-            x[system.f.start + choice.contact] += change[choice.contact]
-    w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
-    try:
-        found = converged(Shot(system, x, w, shot.periods), ITERATIONS, look)
-    except SimulationError:
-        return None
-    return None if found is None else found[0]
