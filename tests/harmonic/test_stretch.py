@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic import stretch
+from fcm.harmonic import corrected, stretch
 from fcm.response import trace
 
 
@@ -28,5 +28,25 @@ def test_past_corners_and_by_way_of_them_a_curve_is_the_same(monkeypatch):
 
 
 def test_where_the_work_is_limited_the_error_cannot_be_told(monkeypatch):
-    monkeypatch.setattr(stretch, "EFFORT", 1.0)
+    monkeypatch.setattr(corrected, "EFFORT", 1.0)
     assert np.isnan(errors("beam")).any()
+
+
+def test_all_stretches_of_a_curve_share_its_effort(monkeypatch):
+    """One that just does for a stretch does not do for the same one again."""
+    found = []
+    own = stretch.heights
+
+    def twice(curve, *ends):
+        before = curve.effort
+        first = own(curve, *ends)
+        taken = before - curve.effort
+        curve.effort = 0.5 * taken
+        found.append((first, taken, own(curve, *ends)))
+        return first
+
+    monkeypatch.setattr("fcm.harmonic.error.heights", twice)
+    errors("beam")
+    ((first, taken, again),) = found
+    assert first is not None and 0.0 < taken < corrected.EFFORT
+    assert again is None

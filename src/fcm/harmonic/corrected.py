@@ -20,6 +20,7 @@ STEEP = 100.0  # relative change of an amplitude over that of the frequency, up 
 UNSETTLED = 5e-4  # a displacement at a top, relative, that is worth to be settled
 TOGETHER = 8  # points, within which tops of degrees of freedom lie together
 ALONE = 0  # the same where to settle them is cheap: each has other harmonics that do most
+EFFORT = 8e7  # evaluations times the square of the unknowns, some second of work, for what is followed
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
 
 Indices = npt.NDArray[np.intp]
@@ -31,6 +32,7 @@ class Corrected:
     unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
     freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is to be corrected.
+    effort is what is left of EFFORT for stretches along which the corrected curve is followed.
     """
 
     def __init__(
@@ -39,7 +41,7 @@ class Corrected:
         self.path, self.amplitude, self.linear = path, amplitude, _with_ends(path, linear)
         self.unit = np.maximum(amplitude, LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
-        self.corrector = corrector_of(system)
+        self.corrector, self.effort = corrector_of(system), EFFORT
         count, dofs = amplitude.shape
         self.place, self.weight = np.zeros((2, count))
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)

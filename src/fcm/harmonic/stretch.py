@@ -2,7 +2,7 @@
 
 Where a corner or a pair of folds has moved, no point of the corrected curve lies normal to the curve. But it
 does on both sides, and from one of them the corrected curve can be followed to the other. With many contacts
-that is dear, and may lead through any number of folds, so that there is a limit to the work.
+that is dear, and may lead through any number of folds, so that all stretches of a curve have one effort.
 """
 
 from __future__ import annotations
@@ -21,11 +21,7 @@ from fcm.scene.model import FloatArray
 
 STEP = 0.1  # longest, along the corrected curve
 PATIENCE = 30  # reports of the follower, of 16 steps each, before it is given up
-EFFORT = (
-    8e7  # evaluations times the square of the unknowns, some second of work, before a stretch is given up
-)
 DEAR = 100  # unknowns from which on corners are passed by short steps: so many contacts have many, and slight
-LONGER = 4.0  # times what is left of that: a stretch that took more is not followed with more harmonics
 SAME = 0.02  # relative difference of amplitudes, up to which the curve has come to the other side
 BEYOND = 1.0  # times the width of a stretch, how far beyond it the curve is followed
 TRIES = 8  # points at an end of a stretch, from which it is sought
@@ -36,15 +32,20 @@ class _LostError(Exception):
 
 
 class _Budget:
-    """Evaluations of a balance that are left for a stretch."""
+    """What is left of the effort of a corrected curve, for evaluations of a balance."""
 
-    def __init__(self, unknowns: int) -> None:
-        self.left = EFFORT / unknowns**2
+    def __init__(self, corrected: Corrected, unknowns: int) -> None:
+        self.corrected, self.each = corrected, float(unknowns**2)
+
+    @property
+    def left(self) -> float:
+        """Evaluations."""
+        return self.corrected.effort / self.each
 
     def take(self) -> None:
         """One more."""
-        self.left -= 1.0
-        if self.left < 0.0:
+        self.corrected.effort -= self.each
+        if self.corrected.effort < 0.0:
             raise _LostError
 
 
@@ -107,8 +108,8 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
     behind = _end(corrected, more, range(last, min(last + TRIES, len(path.z))))
     span = _span(corrected, before, behind)
     balance = corrected.corrector.system.with_harmonics(more).balance()
-    budget = _Budget(balance.unknowns)
-    if path.evaluations * (last - first) / len(path.z) > LONGER * budget.left:
+    budget = _Budget(corrected, balance.unknowns)
+    if path.evaluations * (last - first) / len(path.z) > budget.left:
         return None
     pieces = []
     for begin, end in ((before, behind), (behind, before)):
