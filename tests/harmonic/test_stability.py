@@ -146,6 +146,9 @@ def test_flips_are_where_the_exact_motion_has_them():
     )
     assert between.any()
     np.testing.assert_array_equal(result.stable, np.where(between, 0.0, 1.0))
+    unsaid = stability(of, found, between)
+    np.testing.assert_array_equal(unsaid.stable, np.where(between, np.nan, 1.0))
+    assert not unsaid.crossings and unsaid.evaluations < result.evaluations
 
 
 @pytest.mark.parametrize(

@@ -59,23 +59,25 @@ class Stability:
         return sorted((*self.crossings, *self.inside), key=lambda one: one.place)
 
 
-def stability(system: System, path: Path) -> Stability:
+def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None = None) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
     A fold counts to the stable side. What is stable with the balanced harmonics and not with the next ones
-    that their forces make, or the other way round, is nan.
+    that their forces make, or the other way round, is nan; and so is what is beyond belief (point,) and that
+    the determinant allows to be stable, which is not looked at.
     """
-    return _Along(system, path).run()
+    return _Along(system, path).run(np.zeros(path.z.shape[0], dtype=np.bool_) if beyond is None else beyond)
 
 
 class _Along:
     def __init__(self, system: System, path: Path) -> None:
         self.path, self.verdicts = path, Verdicts(system, path)
 
-    def run(self) -> Stability:
-        stable = np.zeros(self.path.z.shape[0])
+    def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
+        even = self._even()
+        stable = np.where(even & beyond, np.nan, 0.0)
         crossings: list[Crossing] = []
-        for first, last in _runs(self._even()):
+        for first, last in _runs(even & ~beyond):
             self._look(first, last)
             self._hidden(first, last)
             places = self.verdicts.among(first, last)

@@ -175,7 +175,7 @@ def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     paths, shown, errors, stable = [], [], [], []
     lost: list[Lost] = []
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
-        judged = stability(found.system, path)
+        judged = stability(found.system, path, astray(error.truncation))
         inserted = judged.inserted
         if accuracy is not None:
             lost += lost_along(found.system, path, judged.crossings, accuracy)
