@@ -160,3 +160,26 @@ def test_no_more_harmonics_are_added_than_some_seconds_allow():
         assert len(fewer) == count + 1 and {1} < set(fewer) <= set(every)
         assert found.seconds_with(fewer) <= seconds
     assert enlarged(found, 1e-4, 0.0) == (1,)
+
+
+def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
+    """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
+    own = choice.foreseen
+    monkeypatch.setattr(
+        choice, "foreseen", lambda *a: replace(own(*a), told=False, harmonics=(1, 2, 3, 5, 9))
+    )
+    monkeypatch.setattr(choice, "DOUBTFUL", 0.0)
+    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    assert found.system.harmonics == (1, 2, 3) and not found.reached
+    assert found.further == (1, 2, 3, 5, 9) and not found.begun
+    monkeypatch.setattr(choice, "DOUBTFUL", np.inf)
+    assert accurate(System(scene("yang1998", 5)), 1e-4).system.harmonics == (1, 2, 3, 5, 9)
+
+
+def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():
+    found = outlined(System(scene("yang1998", 5)))
+    every = (1, 2, 3, 5, 9)
+    for count in (3, 4, 5):
+        assert found.within(found.seconds_with(every[:count]), every) == every[:count]
+    assert found.within(0.0, every) == (1, 2, 3)
+    assert found.within(0.0, (1, 2)) == (1, 2)

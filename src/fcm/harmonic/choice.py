@@ -11,7 +11,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
 from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_of
 from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
-from fcm.harmonic.foreseen import NOTHING, UNKNOWN, Foreseen, foreseen, needed
+from fcm.harmonic.foreseen import LOW, NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
@@ -20,6 +20,7 @@ from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
 ROUNDS = 8  # of tracing, estimating, choosing
+DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they bring the accuracy nearer
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,17 @@ class Outline:
             return 0.0
         grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
         return self.seconds * grown * many / few
+
+    def within(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
+        """More harmonics without the highest of those that are new, until following them takes no longer.
+
+        The lowest stay: a branch of one harmonic may be of no motion at all.
+        """
+        least = {*self.system.harmonics, *range(1, LOW + 1)}
+        while self.seconds_with(more) > seconds and not least.issuperset(more):
+            highest = max(set(more) - least)
+            more = tuple(h for h in more if h != highest)
+        return more
 
     def ahead(self, accuracy: float) -> Foreseen:
         """What more harmonics would do, and those that an accuracy takes."""
@@ -99,7 +111,10 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
                     return sure
             else:
                 more = enlarged(sure, accuracy)
+        if not ahead.told:
+            more = found.within(DOUBTFUL - work.seconds, more)
         if more == found.system.harmonics:
+            further = ahead.harmonics if not ahead.told and ahead.harmonics != more else ()
             break
         if work.seconds + found.seconds_with(more) > PATIENCE:
             further = more
