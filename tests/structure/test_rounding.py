@@ -100,6 +100,55 @@ def test_rigid_bodies_of_matrices_written_with_few_digits(digits):
             assert abs(frequency[6] / exact - 1.0) <= max(2.0 * found.rounding, 1e-12)
 
 
+def uneven_beam(rng, elements=100):
+    """A beam that nothing holds, its elements of different lengths, widths and densities."""
+    K, M = np.zeros((2, 2 * elements + 2, 2 * elements + 2))
+    lengths = rng.uniform(0.5, 1.5, elements)
+    for e, length in enumerate(lengths / lengths.sum()):
+        k, m, _ = beams.beam(1, clamped=False)
+        scale = np.array([1.0, length, 1.0, length])
+        at = np.s_[2 * e : 2 * e + 4, 2 * e : 2 * e + 4]
+        K[at] += rng.uniform(0.5, 2.0) / length**3 * k.toarray() * np.outer(scale, scale)
+        M[at] += rng.uniform(0.5, 2.0) * length * m.toarray() * np.outer(scale, scale)
+    return K, M
+
+
+@pytest.mark.parametrize("uneven", [True, False])
+@pytest.mark.parametrize("digits", [10, 9, 8, "single"])
+def test_a_fine_mesh_written_with_few_digits(digits, uneven):
+    """Both rigid-body motions, and the first bending mode, off by no more than what is said."""
+    for seed in range(2):
+        if uneven:
+            K, M = uneven_beam(np.random.default_rng(seed))
+        else:
+            K, M = (np.pi * one.toarray() for one in beams.beam(97 + seed, clamped=False)[:2])
+        first = scipy.linalg.eigh(K, M, eigvals_only=True, subset_by_index=(2, 2))[0]
+        rounded = scipy.sparse.csc_array(written(K, digits))
+        found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 10.0, 8, True)
+        assert found.rigid == 2
+        assert abs(np.sqrt(found.modes.stiffness[2] / first) - 1.0) <= 1.5 * found.rounding < 0.5
+        # a soft spring that would make a mode just there is not seen in what was written
+        assert found.unclear > 0.03 or digits == 10
+
+
+def test_modes_that_the_digits_do_not_tell_from_rigid_bodies_are_said():
+    K, M = uneven_beam(np.random.default_rng(3))
+
+    def notes(digits):
+        structure = {"stiffness": written(K, digits).tolist(), "mass": M.tolist(), "damping": 0.01}
+        data = {
+            "structure": structure | {"dofs": [f"x{i}" for i in range(len(K))], "modes": 6},
+            "force": [{"dof": "x5", "amplitude": 1.0}],
+            "response": {"frequency": [5.0, 30.0]},
+        }
+        return scene_from_dict(data).notes
+
+    said = " ".join(notes(8))
+    assert "written with 8 digits, by which modes below" in said and "2 rigid-body modes" in said
+    assert "as its stiffness was written with 8 digits" in said
+    assert not any("digits" in note for note in notes(17))
+
+
 def test_numbers_that_somebody_has_typed_are_exact():
     """A soft spring beside a stiff one, in the seventh digit of an entry."""
     K, M = np.array([[1e7 + 10.0, -1e7], [-1e7, 1e7]]), np.eye(2)

@@ -44,7 +44,7 @@ def modal_of_matrices(
         "added": found.modes.count - found.kept,
         "complete": not np.isfinite(found.beyond),
     }
-    said += of_rounding([found.rounding], ratio[found.rigid :])
+    said += of_rounding([found], ratio[found.rigid :])
     return (
         draft,
         found.modes.shapes,
@@ -75,15 +75,23 @@ def at_many(matrices: Matrices, count: int, aside: tuple[float, float]) -> list[
     ]
 
 
-def of_rounding(frequencies: list[float], ratios: FloatArray) -> list[str]:
-    """What is to be said of frequencies that are off by that much: at resonance it is more than that."""
-    off = max(frequencies, default=0.0)
-    if not off > max(WORTH_SAYING * float(ratios.min(initial=1.0)), UNDAMPED):
-        return []
-    return [
-        f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "
-        "as its stiff parts hide the energy of the soft ones"
-    ]
+def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
+    """What is to be said of frequencies that rounding moves: at resonance the response changes by more."""
+    off, digits = max(one.rounding for one in parts), next((one.digits for one in parts if one.digits), None)
+    said = []
+    if unclear := max(one.unclear for one in parts):
+        said.append(
+            f"structure: its stiffness was written with {digits} digits, by which modes below "
+            f"{100 * unclear:.2g} % of the first elastic frequency cannot be told from rigid-body modes, and "
+            "are taken for such: write it with more"
+        )
+    if off > max(WORTH_SAYING * float(ratios.min(initial=1.0)), UNDAMPED):
+        why = f"was written with {digits} digits" if digits else "has stiff parts that hide the soft ones"
+        said.append(
+            f"structure: rounding moves the frequencies of its modes by up to {_upwards(off)} of themselves, "
+            f"as its stiffness {why}"
+        )
+    return said
 
 
 def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:

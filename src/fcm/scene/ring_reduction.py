@@ -125,5 +125,5 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
         numbers = [str(one.number) for one, flag in zip(diameters, which, strict=True) if flag]
         notes += [f"structure: nodal diameter {', '.join(numbers)} {what}"] if numbers else []
     ratios = np.concatenate([one.damping[one.found.rigid :] for one in diameters])
-    notes += of_rounding([one.rounding for one in all_found], ratios)
+    notes += of_rounding(all_found, ratios)
     return [*notes, *dict.fromkeys(text for one in diameters for text in one.said)]

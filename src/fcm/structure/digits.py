@@ -2,7 +2,7 @@
 
 A program that writes a matrix as text rounds every entry, and one of single precision does too. The elastic
 energy of a rigid-body motion, whose terms cancel, is then no longer zero but some sum of those roundings:
-independent of each other, uniform within half a unit of the last digit.
+independent of each other but for those of equal entries, uniform within half a unit of the last digit.
 """
 
 from __future__ import annotations
@@ -16,7 +16,11 @@ FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
 
 SAMPLE = 1000  # entries that are looked at
-FEWEST, MOST = 7, 15  # digits: fewer may be exact, as somebody has typed them, more are all that there are
+FEWEST, MOST = 5, 15  # digits: fewer leave no structure, more are all that there are
+TYPED, MANY = (
+    7,
+    20,
+)  # fewer digits than that may be exact, as somebody typed them, unless so many numbers differ
 SINGLE = 7  # digits of a number of single precision
 
 
@@ -31,16 +35,28 @@ def digits_of(K: Matrix) -> int | None:
     """
     if K.dtype.kind != "f":
         return None
-    entries = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * SAMPLE))]))
-    entries = entries[entries > 0.0][:: max(1, entries.size // SAMPLE)]
+    entries = _some(K)
     if not entries.size:
         return None
-    if (entries.astype(np.float32) == entries).all():
+    if _single(entries):
         return SINGLE if _most_need(entries, SINGLE) else None
-    for digits in range(FEWEST, MOST + 1):
+    for digits in range(FEWEST if entries.size >= MANY else TYPED, MOST + 1):
         if (_rounded(entries, digits) == entries).all():
             return digits if _most_need(entries, digits - 1) else None
     return None
+
+
+def _some(K: Matrix) -> FloatArray:
+    """Sizes of entries that are not 0, each once."""
+    entries: FloatArray = np.unique(np.abs(K.data[:: max(1, K.nnz // (10 * SAMPLE))]))
+    entries = entries[entries > 0.0]
+    return entries[:: max(1, entries.size // SAMPLE)]
+
+
+def _single(values: FloatArray) -> bool:
+    """Whether these are numbers of single precision."""
+    with np.errstate(over="ignore"):
+        return bool((values.astype(np.float32) == values).all())
 
 
 def _most_need(values: FloatArray, digits: int) -> bool:
@@ -57,11 +73,23 @@ def energy_uncertain(K: Matrix, shapes: FloatArray) -> FloatArray:
     digits = digits_of(K)
     if digits is None:
         return np.zeros(shapes.shape[1])
-    unit = K.copy()
-    size = np.abs(unit.data)
-    exponent = np.floor(np.log10(size, out=np.zeros_like(size), where=size > 0.0))
-    unit.data = np.where(size > 0.0, 10.0 ** (exponent + 1 - digits), 0.0) ** 2
-    square = shapes**2
-    # two entries across the diagonal are one number, of variance unit^2 / 12
-    deviation: FloatArray = np.sqrt(np.einsum("ij,ij->j", square, unit @ square) / 6.0)
-    return deviation
+    entries = K.tocoo()
+    size, number = np.unique(np.abs(entries.data), return_inverse=True)
+    unit, sign = _unit(size, digits), np.sign(entries.data)
+    found = np.zeros(shapes.shape[1])
+    for mode, shape in enumerate(shapes.T):
+        # what is rounded alike adds up: the two across the diagonal, and those of equal elements
+        alike = np.bincount(number, sign * shape[entries.row] * shape[entries.col])
+        found[mode] = np.sqrt((unit**2 * alike**2).sum() / 12.0)
+    return found
+
+
+def _unit(size: FloatArray, digits: int) -> FloatArray:
+    """The distance of a number of so many digits to the next; 0 of 0, which is exact."""
+    unit: FloatArray
+    if digits == SINGLE and _single(size):
+        unit = np.spacing(size.astype(np.float32)).astype(np.float64)
+    else:
+        exponent = np.floor(np.log10(size, out=np.zeros_like(size), where=size > 0.0))
+        unit = 10.0 ** (exponent + 1 - digits)
+    return np.where(size > 0.0, unit, 0.0)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fcm.structure.digits import digits_of
 from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, shifted, system_of
 from fcm.structure.flexibility import bound_aside, flexibility
-from fcm.structure.rigid_body import rigid_by_energy
+from fcm.structure.rigid_body import rigid_by_energy, unclear_below
 from fcm.structure.rounding import of_frequencies, of_receptances
 
 FEWEST = 10  # modes that are kept at least, where none are asked for
@@ -31,6 +32,8 @@ class Reduced:
     damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
     rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
     aside: tuple[float, float] = (0.0, 0.0)  # see `flexibility.bound_aside`, with rounding
+    digits: int | None = None  # with which the stiffness was written, if these are few
+    unclear: float = 0.0  # see `rigid_body.unclear_below`
 
 
 def reduced(
@@ -59,11 +62,15 @@ def reduced(
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
     lost, off = missed(system, found), float(of_frequencies(K, kept).max(initial=0.0))
+    unclear = unclear_below(K, found, rigid)
+    plain = Reduced(
+        kept, wanted, rigid, np.inf, 0.0, lost, rounding=off, digits=digits_of(K), unclear=unclear
+    )
     if found.count == wanted and (wanted == system.rows or not rest):
-        return Reduced(kept, wanted, rigid, np.inf, 0.0, lost, rounding=off)
+        return plain
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
     if not rest:
-        return Reduced(kept, wanted, rigid, float(np.sqrt(beyond)), np.nan, lost, rounding=off)
+        return replace(plain, beyond=float(np.sqrt(beyond)), bound=np.nan)
     more = flexibility(system, kept, loads, top, beyond)
     both = Modes(
         np.concatenate((kept.stiffness, more.modes.stiffness)),
@@ -74,7 +81,7 @@ def reduced(
     if others is not None and others.shape[1] and loads.shape[1]:
         own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
         aside = own + of_receptances(K, M, both, _stiffest(both, others)), damped
-    return Reduced(both, wanted, rigid, first, bound, lost, more.damping, off, aside)
+    return replace(plain, modes=both, beyond=first, bound=bound, damping=more.damping, aside=aside)
 
 
 def _stiffest(modes: Modes, others: FloatArray) -> FloatArray:

@@ -15,7 +15,8 @@ FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come
 MOST = 6  # rigid-body modes of one body
 CANCELLED = 4e-16  # share of the elastic energy's terms that is left of their sum: rounding of its entries
 NEARLY = {1e-13: 0.03, 1e-6: 1e-4}  # the same, of a matrix written with fewer digits: of the next frequency
-DEVIATIONS, BELOW = 4.0, 0.03  # of the energy by the digits of the entries; of the next frequency
+DEVIATIONS, BELOW = 4.0, 0.3  # of the energy by the digits of the entries; of the next frequency
+WORTH_SAYING = 0.03  # of the first elastic frequency: so near to it a soft mode may be taken for a rigid one
 AT_REST = 1e-3  # the share of the elastic forces of a row: a soft mode of stiff parts has some of its own
 
 
@@ -41,6 +42,25 @@ def rigid_by_energy(K: Matrix, modes: Modes) -> int:
     negative, number = int((modes.stiffness <= 0.0).sum()), np.arange(left.size)
     for most, below in NEARLY.items():
         none |= (left <= most) & (number < negative + rigid_by_gap(frequency, below))
-    uncertain = modes.stiffness <= DEVIATIONS * energy_uncertain(K, modes.shapes)
-    none |= uncertain & (number < negative + rigid_by_gap(frequency, BELOW))
+    none |= number < _uncertain(K, modes, frequency)
     return int((none & (of_rows.max(axis=0, initial=0.0) <= AT_REST)).sum())
+
+
+def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray) -> int:
+    """How many of the lowest modes may have no stiffness, by the digits of K, far below the next that has."""
+    may = modes.stiffness <= DEVIATIONS * energy_uncertain(K, modes.shapes)
+    count = may.size if may.all() else int(may.argmin())
+    apart = 0 < count < may.size and count <= MOST and frequency[count - 1] <= BELOW * frequency[count]
+    return count if apart else 0
+
+
+def unclear_below(K: Matrix, modes: Modes, rigid: int) -> float:
+    """Up to which part of the first elastic frequency the digits of K do not tell modes from rigid-body ones.
+
+    0 where that is too little to be said, or nothing is rigid.
+    """
+    if not 0 < rigid < modes.count:
+        return 0.0
+    uncertain = DEVIATIONS * energy_uncertain(K, modes.shapes[:, :rigid]).max()
+    part = float(np.sqrt(uncertain / modes.stiffness[rigid]))
+    return part if part > WORTH_SAYING else 0.0
