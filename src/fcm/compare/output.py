@@ -12,6 +12,7 @@ import fcm
 from fcm.compare.comparison import Comparison, contributions
 from fcm.compare.errors import MARGIN, MEANINGS, MEASURES, Shown
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
+from fcm.compare.startup import Startup
 from fcm.files import replacing
 from fcm.units import UNIT
 
@@ -159,46 +160,29 @@ def write_netcdf(out: Comparison, path: str | Path) -> None:
 
 
 def _of_runs(out: Comparison) -> list[tuple[str, Any, dict[str, str]]]:
-    """One value for each run."""
-    runs, none = out.runs, (float("nan"), float("nan"))
-    starts = [out.startups.get(one.method, none) for one in runs]
-    seconds = {"units": "s"}
+    """One value for each run: name, values, attributes."""
+    unknown, seconds = Startup(np.nan, np.nan), {"units": "s"}
+    starts = [out.startups.get(run.method, unknown) for run in out.runs]
+    to_begin = {"long_name": "time to begin and end a program", **seconds}
+    to_open = {"long_name": "of it, to open the table", **seconds}
+
+    def of_runs(name: str, meaning: str, **units: str) -> tuple[str, Any, dict[str, str]]:
+        return name, [getattr(run, name) for run in out.runs], {"long_name": meaning, **units}
+
+    def flags(name: str, meaning: str) -> tuple[str, Any, dict[str, str]]:
+        values = np.array([getattr(run, name) for run in out.runs], dtype=np.int8)
+        return name, values, {"long_name": f"1 where {meaning}"}
+
+    equations = "evaluations of the balanced equations; of exact: periods of the motion"
     return [
-        ("method", [one.method for one in runs], {"long_name": "method"}),
-        (
-            "corrected",
-            np.array([one.corrected for one in runs], dtype=np.int8),
-            {"long_name": "1 where points found with a table are corrected with the closed form"},
-        ),
-        (
-            "left_out",
-            np.array([one.left_out for one in runs], dtype=np.int8),
-            {"long_name": "1 where what the scene does not need was left out"},
-        ),
-        (
-            "max_step",
-            [one.max_step for one in runs],
-            {"long_name": "longest step, relative to the extent of a curve", "units": "1"},
-        ),
-        ("points", [one.points for one in runs], {"long_name": "points of all curves", "units": "1"}),
-        ("seconds", [one.seconds for one in runs], {"long_name": "time to solve all curves", **seconds}),
-        (
-            "processor_seconds",
-            [one.processor_seconds for one in runs],
-            {"long_name": "processor time to solve all curves", **seconds},
-        ),
-        (
-            "start_seconds",
-            [s[0] for s in starts],
-            {"long_name": "time to begin and end a program", **seconds},
-        ),
-        ("table_seconds", [s[1] for s in starts], {"long_name": "of it, to open the table", **seconds}),
-        (
-            "evaluations",
-            [one.evaluations for one in runs],
-            {
-                "long_name": "evaluations of the balanced equations; of exact: periods of the motion",
-                "units": "1",
-            },
-        ),
+        of_runs("method", "method"),
+        flags("corrected", "points found with a table are corrected with the closed form"),
+        flags("left_out", "what the scene does not need was left out"),
+        of_runs("max_step", "longest step, relative to the extent of a curve", units="1"),
+        of_runs("points", "points of all curves", units="1"),
+        of_runs("seconds", "time to solve all curves", **seconds),
+        of_runs("processor_seconds", "processor time to solve all curves", **seconds),
+        ("start_seconds", [one.total for one in starts], to_begin),
+        ("table_seconds", [one.table for one in starts], to_open),
+        of_runs("evaluations", equations, units="1"),
     ]

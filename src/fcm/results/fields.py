@@ -61,7 +61,7 @@ def fields_of(response: Response) -> dict[str, Field]:
     if response.tracking is not None:
         from fcm.results.tracked_fields import tracked_fields
 
-        out |= {name: Field(*parts) for name, parts in tracked_fields(response, response.tracking).items()}
+        out |= tracked_fields(response, response.tracking)
     if response.histories is not None:
         from fcm.motion import output
 

@@ -22,9 +22,7 @@ class Gist:
     """Numbers of a curve for which all its points are needed."""
 
     points: int
-    ends: tuple[
-        float, float
-    ]  # [rad/s] lowest and highest frequency sought; of a single point, and of none, NaN
+    ends: tuple[float, float]  # [rad/s] lowest and highest frequency sought; of one point, or none, NaN
     stable: bool | None  # whether all of the curve is; None where that is not known
     swept: Swept  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known

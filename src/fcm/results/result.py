@@ -10,17 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.results.gist import Gist, gist_of, worst
-from fcm.results.jumps import Jump, Swept, Untold, swept
+from fcm.results.curve_summary import curve_summary
+from fcm.results.gist import Gist
+from fcm.results.jumps import Jump, Swept, swept
 from fcm.results.peak import Peak
 from fcm.scene.model import Scene
-from fcm.units import in_unit
 
 if TYPE_CHECKING:
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
     from fcm.results.nonlinear_mode import NonlinearMode
-    from fcm.results.orbits import Orbits, Stuck
+    from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
 
 DEFECT = "a defect of fcm"  # how the reason of a curve begins that was lost to one
@@ -92,107 +92,9 @@ class Curve:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
         return self.swept().jumps
 
-    def _jump(self, jump: Jump, unit: str) -> dict[str, Any]:
-        return {
-            "sweep": jump.sweep,
-            "frequency": float(in_unit(jump.frequency, unit)),
-            "before": dict(zip(self.peaks, jump.before.tolist(), strict=True)),
-            "after": dict(zip(self.peaks, jump.after.tolist(), strict=True)),
-        }
-
-    def _untold(self, one: Untold, unit: str) -> dict[str, Any]:
-        return {
-            "sweep": one.sweep,
-            "from": float(in_unit(one.start, unit)),
-            "to": float(in_unit(one.end, unit)),
-            "before": dict(zip(self.peaks, one.before.tolist(), strict=True)),
-        }
-
-    def _peak(self, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
-        """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
-        at_edge = self.complete and self.level is None and peak.frequency in gist.ends
-        return {
-            "amplitude": peak.amplitude,
-            "frequency": float(in_unit(peak.frequency, unit)),
-            "error": peak.error,
-            "stable": None if np.isnan(peak.stable) else bool(peak.stable),
-            "at_edge": bool(at_edge),
-        }
-
     def summary(self, unit: str = "rad/s") -> dict[str, Any]:
         """The curve as `fcm respond --json` prints it, frequencies in unit."""
-        gist = self.gist or gist_of(self)
-        untold = gist.swept.untold
-        return {
-            "parameters": self.parameters,
-            "points": gist.points,
-            "complete": self.complete,
-            **({} if self.complete else {"reason": self.reason}),
-            **({"harmonics": list(self.harmonics)} if self.harmonics else {}),
-            **({"short_of_accuracy": self.short_of} if self.short_of else {}),
-            **({"branches_unsure_at": in_unit(self.unsure, unit).tolist()} if self.unsure else {}),
-            **({"may_not_be_unique": self.loose} if self.loose else {}),
-            "peak": {d: self._peak(peak, gist, unit) for d, peak in self.peaks.items()},
-            "folds": in_unit(self.folds, unit).tolist(),
-            **({} if self.sensitivity is None else {"sensitivity": self._of_numbers(self.sensitivity, unit)}),
-            **({} if self.level is None else {"level_folds": self.level_folds}),
-            "jumps": [self._jump(jump, unit) for jump in gist.swept.jumps],
-            **({"stability_untold": [self._untold(one, unit) for one in untold]} if untold else {}),
-            "stable": gist.stable,
-            "table_error": gist.table_error,
-            "truncation_error": gist.truncation_error,
-            **({} if self.orbits is None else self._of_orbits(self.orbits, unit)),
-            **({} if self.mode is None else {"mode": self.mode.summary(self.frequency, unit, self.peaks)}),
-            "seconds": self.seconds,
-        }
-
-    def _of_numbers(self, found: Sensitivities, unit: str) -> dict[str, Any]:
-        """Derivatives of each peak in the summary; relative: share of the peak by share of the number."""
-        out: dict[str, Any] = {}
-        for dof, kind, height, frequency in zip(
-            self.peaks, found.kind, found.height, in_unit(found.frequency, unit), strict=True
-        ):
-            top = self.peaks[dof].amplitude
-            out[dof] = {"peak": kind.value, "numbers": {}}
-            for key, value, by, by_frequency in zip(
-                found.numbers, found.values, height, frequency, strict=True
-            ):
-                relative = float(by * value / top) if top > 0.0 else np.nan
-                out[dof]["numbers"][key] = {
-                    "value": float(value),
-                    "amplitude": float(by),
-                    "frequency": float(by_frequency),
-                    "relative": relative,
-                }
-        return out
-
-    def _of_orbits(self, orbits: Orbits, unit: str) -> dict[str, Any]:
-        """What only exact motions have, in the summary."""
-        here = np.isfinite(self.frequency)
-        known = np.isfinite(orbits.family_greatest).any(axis=1)
-        families = {
-            dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
-            for i, (dof, peak) in enumerate(self.peaks.items())
-            for k in np.flatnonzero(known & (self.frequency == peak.frequency))[:1]
-        }
-        return {
-            "closure_error": worst(orbits.closure_error),
-            "repeats": sorted({int(x) for x in orbits.repeats[here]}),
-            "not_unique": int(known.sum()),
-            **({} if orbits.span is None else {"only": "peaks"}),
-            **({"peak_range": families} if families else {}),
-            **({"stuck_beside": [self._stuck(one, unit) for one in orbits.stuck]} if orbits.stuck else {}),
-        }
-
-    def _stuck(self, one: Stuck, unit: str) -> dict[str, Any]:
-        return {
-            "frequency": float(in_unit(one.frequency, unit)),
-            "regime": list(one.states),
-            "start_friction": one.friction.tolist(),
-            "amplitude": {
-                dof: [float(one.least[i]), float(one.greatest[i])] for i, dof in enumerate(self.peaks)
-            },
-        }
+        return curve_summary(self, unit)
 
 
 _EMPTY: dict[tuple[Any, ...], npt.NDArray[Any]] = {}  # by shape and kind

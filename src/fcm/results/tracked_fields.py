@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.results.field import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
 from fcm.units import in_unit
@@ -24,12 +25,10 @@ MEANINGS = {  # of what is known of each point of a tracked curve
     "corner": "onset at which the response has a corner there, if it has",
 }
 
-Parts = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, str]]
 
-
-def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Parts]:
+def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Field]:
     """The curves on dimensions track, tracked (padded); optima on optimum, varied."""
-    out: dict[str, Parts] = {}
+    out: dict[str, Field] = {}
     if tracking.curves:
         out |= _curves(response, tracking)
     if tracking.optima:
@@ -37,7 +36,7 @@ def tracked_fields(response: Response, tracking: Tracking) -> dict[str, Parts]:
     return out
 
 
-def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
+def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
     unit, curves, dims = response.frequency_unit, tracking.curves, ("track", "tracked")
     values = {name: _padded([getattr(curve, name) for curve in curves]) for name in MEANINGS}
     values["frequency"] = in_unit(values["frequency"], unit)
@@ -45,31 +44,26 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Parts]:
         "number": {"key": tracking.key},
         "frequency": {"units": {"rad/s": "rad s-1", "Hz": "Hz"}[unit]},
     }
-    out: dict[str, Parts] = {
-        "track_what": (
-            ("track",),
-            np.array([curve.what for curve in curves], dtype=str),
-            {"long_name": WHAT},
-        ),
-        "track_complete": (
-            ("track",),
-            np.array([int(curve.complete) for curve in curves], dtype=np.int8),
-            {"long_name": "1 where the curve is whole", "units": "1"},
-        ),
+    what = np.array([curve.what for curve in curves], dtype=str)
+    whole = np.array([int(curve.complete) for curve in curves], dtype=np.int8)
+    about_whole = {"long_name": "1 where the curve is whole", "units": "1"}
+    out = {
+        "track_what": Field(("track",), what, {"long_name": WHAT}),
+        "track_complete": Field(("track",), whole, about_whole),
     }
     for name, meaning in MEANINGS.items():
         of = (*dims, "dof") if name == "amplitude" else dims
         meaning = meaning.format(key=tracking.key)
-        out[f"tracked_{name}"] = of, values[name], {"long_name": meaning, **more.get(name, {})}
+        out[f"tracked_{name}"] = Field(of, values[name], {"long_name": meaning, **more.get(name, {})})
     if tracking.what != "optimum":
         out |= _errors(tracking)
     for key in curves[0].parameters:
         swept = np.array([curve.parameters[key] for curve in curves])
-        out[f"track_{key}"] = (("track",), swept, {"long_name": f"{key} of the curve"})
+        out[f"track_{key}"] = Field(("track",), swept, {"long_name": f"{key} of the curve"})
     return out
 
 
-def _errors(tracking: Tracking) -> dict[str, Parts]:
+def _errors(tracking: Tracking) -> dict[str, Field]:
     """What the harmonics left out would change, where that was looked at."""
     told = [np.full((3, curve.number.size), np.nan) for curve in tracking.curves]
     for out, curve in zip(told, tracking.curves, strict=True):
@@ -78,66 +72,37 @@ def _errors(tracking: Tracking) -> dict[str, Parts]:
     relative, number, known = (_padded([one[i] for one in told]) for i in range(3))
     of = "amplitude" if tracking.what == "peaks" else "frequency"
     dims, by = ("track", "tracked"), "by the harmonics left out"
+    about_relative = f"estimated relative error of the {of} {by}, at ends, turns, extremes"
+    about_number = f"estimated error of {tracking.key} {by}, at turns"
+    about_known = "1 where the error was estimated, 0 where it was tried and cannot be told"
     return {
-        "tracked_error": (
-            dims,
-            relative,
-            {
-                "long_name": f"estimated relative error of the {of} {by}, at ends, turns, extremes",
-                "units": "1",
-            },
-        ),
-        "tracked_number_error": (
-            dims,
-            number,
-            {"long_name": f"estimated error of {tracking.key} {by}, at turns"},
-        ),
-        "tracked_error_told": (
-            dims,
-            known,
-            {"long_name": "1 where the error was estimated, 0 where it was tried and cannot be told"},
-        ),
+        "tracked_error": Field(dims, relative, {"long_name": about_relative, "units": "1"}),
+        "tracked_number_error": Field(dims, number, {"long_name": about_number}),
+        "tracked_error_told": Field(dims, known, {"long_name": about_known}),
     }
 
 
-def _optima(response: Response, tracking: Tracking) -> dict[str, Parts]:
-    optima = tracking.optima
+def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
+    optima, unit = tracking.optima, response.frequency_unit
     minimised = " and ".join(optima[0].minimised)
-    keys = list(optima[0].values)
-    places = [np.array([omega for _, omega in one.active]) for one in optima]
-    return {
-        "varied": (("varied",), np.array(keys, dtype=str), {"long_name": "number that was chosen"}),
-        "optimum_number": (
-            ("optimum", "varied"),
-            np.array([list(one.values.values()) for one in optima]),
-            {"long_name": "number with which the greatest peak is least"},
-        ),
-        "optimum_peak": (
-            ("optimum",),
-            np.array([one.value for one in optima]),
-            {"long_name": f"the greatest of {minimised} with it"},
-        ),
-        "optimum_error": (
-            ("optimum",),
-            np.array([one.error for one in optima]),
-            {"long_name": "estimated relative error of that peak", "units": "1"},
-        ),
-        "optimum_frequency": (
-            ("optimum", "equal"),
-            in_unit(_padded(places), response.frequency_unit),
-            {"long_name": "excitation frequency of that peak, or of those that are equal"},
-        ),
-        "optimum_stable": (
-            ("optimum", "equal"),
-            _padded([np.array(one.stable) for one in optima]),
-            {"long_name": "1 where the motion at that peak, or those, is stable, 0 where not", "units": "1"},
-        ),
-        "optimum_kind": (
-            ("optimum",),
-            np.array([one.kind for one in optima], dtype=str),
-            {"long_name": f"{KINDS}, bound, trials"},
-        ),
-    }
+    varied = np.array(list(optima[0].values), dtype=str)
+    out = {"varied": Field(("varied",), varied, {"long_name": "number that was chosen"})}
+
+    def add(name: str, dims: tuple[str, ...], values: Any, meaning: str, **attrs: str) -> None:
+        out[f"optimum_{name}"] = Field(("optimum", *dims), values, {"long_name": meaning, **attrs})
+
+    numbers = np.array([list(one.values.values()) for one in optima])
+    add("number", ("varied",), numbers, "number with which the greatest peak is least")
+    add("peak", (), np.array([one.value for one in optima]), f"the greatest of {minimised} with it")
+    errors = np.array([one.error for one in optima])
+    add("error", (), errors, "estimated relative error of that peak", units="1")
+    places = in_unit(_padded([np.array([omega for _, omega in one.active]) for one in optima]), unit)
+    add("frequency", ("equal",), places, "excitation frequency of that peak, or of those that are equal")
+    stable = _padded([np.array(one.stable) for one in optima])
+    dies = "1 where the motion at that peak, or those, is stable, 0 where not"
+    add("stable", ("equal",), stable, dies, units="1")
+    add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials")
+    return out
 
 
 def _padded(values: Sequence[npt.NDArray[Any]]) -> npt.NDArray[Any]:

@@ -1,0 +1,134 @@
+"""A curve in the summary of a response: its peaks, folds and jumps in words that JSON knows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fcm.results.gist import Gist, gist_of, worst
+from fcm.results.jumps import Jump, Untold
+from fcm.results.orbits import Orbits, Stuck
+from fcm.results.peak import Peak
+from fcm.units import in_unit
+
+if TYPE_CHECKING:
+    from fcm.harmonic.sensitivity import Sensitivities
+    from fcm.results.result import Curve
+
+
+def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
+    """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
+    gist = curve.gist or gist_of(curve)
+    swept, dofs = gist.swept, tuple(curve.peaks)
+    out: dict[str, Any] = {"parameters": curve.parameters, "points": gist.points, "complete": curve.complete}
+    if not curve.complete:
+        out["reason"] = curve.reason
+    if curve.harmonics:
+        out["harmonics"] = list(curve.harmonics)
+    if curve.short_of:
+        out["short_of_accuracy"] = curve.short_of
+    if curve.unsure:
+        out["branches_unsure_at"] = in_unit(curve.unsure, unit).tolist()
+    if curve.loose:
+        out["may_not_be_unique"] = curve.loose
+    out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
+    out["folds"] = in_unit(curve.folds, unit).tolist()
+    if curve.sensitivity is not None:
+        out["sensitivity"] = _sensitivity(curve, curve.sensitivity, unit)
+    if curve.level is not None:
+        out["level_folds"] = curve.level_folds
+    out["jumps"] = [_jump(jump, dofs, unit) for jump in swept.jumps]
+    if swept.untold:
+        out["stability_untold"] = [_untold(one, dofs, unit) for one in swept.untold]
+    out |= {name: getattr(gist, name) for name in ("stable", "table_error", "truncation_error")}
+    if curve.orbits is not None:
+        out |= _of_orbits(curve, curve.orbits, unit)
+    if curve.mode is not None:
+        out["mode"] = curve.mode.summary(curve.frequency, unit, curve.peaks)
+    return out | {"seconds": curve.seconds}
+
+
+def _jump(jump: Jump, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
+    return {
+        "sweep": jump.sweep,
+        "frequency": float(in_unit(jump.frequency, unit)),
+        "before": dict(zip(dofs, jump.before.tolist(), strict=True)),
+        "after": dict(zip(dofs, jump.after.tolist(), strict=True)),
+    }
+
+
+def _untold(one: Untold, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
+    return {
+        "sweep": one.sweep,
+        "from": float(in_unit(one.start, unit)),
+        "to": float(in_unit(one.end, unit)),
+        "before": dict(zip(dofs, one.before.tolist(), strict=True)),
+    }
+
+
+def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
+    """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
+    at_edge = curve.complete and curve.level is None and peak.frequency in gist.ends
+    return {
+        "amplitude": peak.amplitude,
+        "frequency": float(in_unit(peak.frequency, unit)),
+        "error": peak.error,
+        "stable": None if np.isnan(peak.stable) else bool(peak.stable),
+        "at_edge": bool(at_edge),
+    }
+
+
+def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any]:
+    """Derivatives of each peak by each number; relative: share of the peak by share of the number."""
+    out: dict[str, Any] = {}
+    for dof, kind, height, frequency in zip(
+        curve.peaks, found.kind, found.height, in_unit(found.frequency, unit), strict=True
+    ):
+        top = curve.peaks[dof].amplitude
+        numbers = zip(found.numbers, found.values, height, frequency, strict=True)
+        out[dof] = {
+            "peak": kind.value,
+            "numbers": {
+                key: {
+                    "value": float(value),
+                    "amplitude": float(by),
+                    "frequency": float(by_frequency),
+                    "relative": float(by * value / top) if top > 0.0 else np.nan,
+                }
+                for key, value, by, by_frequency in numbers
+            },
+        }
+    return out
+
+
+def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
+    """What only exact motions have."""
+    here = np.isfinite(curve.frequency)
+    known = np.isfinite(orbits.family_greatest).any(axis=1)
+    families = {
+        dof: [float(orbits.family_least[k, i]), float(orbits.family_greatest[k, i])]
+        for i, (dof, peak) in enumerate(curve.peaks.items())
+        for k in np.flatnonzero(known & (curve.frequency == peak.frequency))[:1]
+    }
+    return {
+        "closure_error": worst(orbits.closure_error),
+        "repeats": sorted({int(x) for x in orbits.repeats[here]}),
+        "not_unique": int(known.sum()),
+        **({} if orbits.span is None else {"only": "peaks"}),
+        **({"peak_range": families} if families else {}),
+        **(
+            {"stuck_beside": [_stuck(one, tuple(curve.peaks), unit) for one in orbits.stuck]}
+            if orbits.stuck
+            else {}
+        ),
+    }
+
+
+def _stuck(one: Stuck, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
+    return {
+        "frequency": float(in_unit(one.frequency, unit)),
+        "regime": list(one.states),
+        "start_friction": one.friction.tolist(),
+        "amplitude": {dof: [float(one.least[i]), float(one.greatest[i])] for i, dof in enumerate(dofs)},
+    }
