@@ -20,6 +20,7 @@ from fcm.scene import Contact, Force, Modal, Scene
 from fcm.scene.model import Held, Load
 
 SAME = 1e-8  # of amplitudes, of curves that are known to a few 1e-10
+OMEGA = 1.2  # of the one point that is looked at
 
 
 def contact(along, across, n_0, name):
@@ -42,6 +43,15 @@ def scene():
         "three", modal, contacts, (Force(np.array([1.0, 0.0, 0.0]), 1.0, 0.0),), (0.9, 1.5), 0.1,
         name="three", reported=("x", "y", "z"), loads=(Load(np.array([0.0, 0.4, 0.0]), 1.0),),
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def lightened(scene):
+    """The scene without the two that keep their state, and a point of its exact curve."""
+    w = held.resting(scene)
+    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
+    problem, orbit = OrbitProblem(light), next(near_balance(light, OMEGA))
+    return light, problem.shot(first_point(problem, orbit))
 
 
 @pytest.fixture(scope="module")
@@ -84,26 +94,20 @@ def test_of_a_sweep_it_is_told_in_how_many_curves(scene):
     assert {len(row) for row in response.curves[1].regime} == {3}
 
 
-def test_a_point_is_a_motion_of_all_contacts(scene):
+def test_a_point_is_a_motion_of_all_contacts(scene, lightened):
     """Marched for some periods with all contacts, the state comes back."""
-    omega, w = 1.2, held.resting(scene)
-    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
-    problem, orbit = OrbitProblem(light), next(near_balance(light, omega))
-    first = problem.shot(first_point(problem, orbit))
+    light, first = lightened
     state = held.whole_state(light, first.state)
-    motion = simulate(scene, omega, 3, state)
+    motion = simulate(scene, OMEGA, 3, state)
     assert motion.cycles[0].states == held.whole_states(light, first.cycle.states)
     assert motion.end.q == pytest.approx(state.q, abs=1e-9)
     assert motion.end.friction == pytest.approx(state.friction, abs=1e-9)
 
 
-def test_what_a_contact_keeps_is_that_of_its_motion(scene):
+def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
     """Of its slip limit and of its gap, sampled from a motion with all contacts."""
-    omega, w = 1.2, held.resting(scene)
-    light = scene.holding((Held(1, scene.contacts[1], False, w[1]), Held(2, scene.contacts[2], True)))
-    problem, orbit = OrbitProblem(light), next(near_balance(light, omega))
-    first = problem.shot(first_point(problem, orbit))
-    motion = simulate(scene, omega, 1, held.whole_state(light, first.state))
+    light, first = lightened
+    motion = simulate(scene, OMEGA, 1, held.whole_state(light, first.state))
     cycle = motion.cycles[0]
     rows = np.zeros((3, cycle.system.size))
     rows[0, cycle.system.f.start + 1] = rows[1, cycle.system.n.start + 1] = 1.0

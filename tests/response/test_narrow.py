@@ -42,19 +42,24 @@ def linear(scene, omega: float) -> float:
     return float(abs(modal.shapes[:, 0] @ (q / (natural**2 - omega**2 + 2j * damping * natural * omega))))
 
 
-@pytest.mark.parametrize("step", STEPS)
-def test_a_narrow_peak_of_an_open_contact(step):
-    scene = with_mode(-60.0, 1.31, 1e-5, 0.005)
-    (curve,) = trace(replace(scene, max_step=step), harmonics=1).curves
+def narrow_peak(scene) -> tuple[float, float]:
+    """The same at the mode of 1.31 rad/s and damping 1e-5: its peak, and where that is."""
     top = minimize_scalar(
         lambda d: -linear(scene, 1.31 + 1e-5 * d),
         bounds=(-3.0, 3.0),
         method="bounded",
         options={"xatol": 1e-9},
     )
-    assert -top.fun > 1.25 * linear(scene, 1.3)
-    assert curve.peaks["u"].amplitude == pytest.approx(-top.fun, rel=1e-8)
-    assert curve.peaks["u"].frequency == pytest.approx(1.31 + 1e-5 * top.x, rel=1e-8)
+    return -top.fun, 1.31 + 1e-5 * top.x
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_a_narrow_peak_of_an_open_contact(step):
+    scene = with_mode(-60.0, 1.31, 1e-5, 0.005)
+    (curve,) = trace(replace(scene, max_step=step), harmonics=1).curves
+    top = narrow_peak(scene)
+    assert top[0] > 1.25 * linear(scene, 1.3)
+    assert curve.peaks["u"][:2] == pytest.approx(top, rel=1e-8)
 
 
 def test_a_narrow_peak_of_the_third_harmonic():
@@ -95,11 +100,5 @@ def around(scene):
 def test_a_narrow_peak_of_a_ring(step):
     alone = with_mode(-60.0, 1.31, 1e-5, 0.005)
     (curve,) = trace(replace(around(alone), max_step=step), harmonics=3).curves
-    top = minimize_scalar(
-        lambda d: -linear(alone, 1.31 + 1e-5 * d),
-        bounds=(-3.0, 3.0),
-        method="bounded",
-        options={"xatol": 1e-9},
-    )
-    assert curve.peaks["u"].amplitude == pytest.approx(-top.fun, rel=1e-8)
-    assert curve.peaks["u"].frequency == pytest.approx(1.31 + 1e-5 * top.x, rel=1e-8)
+    top = narrow_peak(alone)
+    assert curve.peaks["u"][:2] == pytest.approx(top, rel=1e-8)

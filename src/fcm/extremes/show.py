@@ -11,6 +11,7 @@ import numpy as np
 from fcm.cli.columns import aligned
 from fcm.extremes.row import Row
 from fcm.extremes.verdict import excess, faults
+from fcm.results.output import without_nan
 
 HEADER = ["scene", "points", "time [s]", "residual", "tolerance", "table"]
 HEADER += ["exact", "estimate", "found", "condition", ""]
@@ -50,12 +51,4 @@ def _short(value: float) -> str:
 
 def as_data(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """The rows for JSON; a number that does not exist is None."""
-    return [_plain({**asdict(row), "passes": not faults(row), "faults": faults(row)}) for row in rows]
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value
+    return [without_nan({**asdict(row), "passes": not faults(row), "faults": faults(row)}) for row in rows]

@@ -39,9 +39,7 @@ class Flow(NamedTuple):
     series: FloatArray  # (linear, exit * (ORDER + 1)) the Taylor coefficients of the exits
     sizes: FloatArray  # (linear, linear) of the terms of which a step is summed
     table: FloatArray  # (linear, (BLOCK + 1) * 3 * exit) the exits on the steps of a block
-    pushes: (
-        FloatArray  # (ORDER, 4, linear) h (A h)**k B for the forces B of sin and cos, and of omega^2 these
-    )
+    pushes: FloatArray  # (ORDER, 4, linear) h (A h)**k B; B: the forces of sin, cos and omega^2 times these
 
 
 def made(system: System, states: Codes) -> Flow:

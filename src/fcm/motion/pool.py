@@ -17,13 +17,34 @@ BLOCK = 8  # steps that are looked at together: a power of two
 WATCHED = 3  # g, g' h and g'''' h**4 of each exit
 OPEN, STICK, POSITIVE, NEGATIVE = 0, 1, 2, 3  # states of a contact
 SMALL = 256  # components up to which the Taylor coefficients of exp(A h x) are kept
-FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most
-_FITS = cython.declare(cython.double, 1.0 + 1e-12)
+FITS = 1.0 + 1e-12  # radians of the forces that a step lasts at most: one, and rounding
+_FITS = cython.declare(cython.double, FITS)
 FEWEST, MOST_BYTES = 8, 2**30  # flows that are kept at least, and the memory that they otherwise have
 # of (A h)**k in what a force that grows as the j-th power of the time does in a step, for k + j < ORDER
 PUSHED = np.array(
     [[1.0 / factorial(k + j + 1) if k + j < ORDER else 0.0 for k in range(ORDER)] for j in range(ORDER)]
 )
+
+
+# arrays of the pool that are no floating-point numbers
+KINDS = dict.fromkeys(("states", "halved", "goal"), np.int8) | dict.fromkeys(
+    ("exits", "owner", "first", "used", "reached", "watched", "spread", "squared", "spelled"), np.intp
+)
+
+
+def _shapes(n: int, contacts: int) -> dict[str, tuple[int, ...]]:
+    """What the pool keeps of one flow whose state has n components."""
+    e = max(2 * contacts, 1)  # exits: of a contact two at most
+    wide = (BLOCK + 1) * WATCHED * e
+    return {
+        "states": (contacts,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,),
+        "first": (e,), "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n),
+        "power": (POWERS, n, n), "forced": (POWERS, 4, n), "rotation": (POWERS, 2), "reached": (),
+        "watched": (), "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
+        "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
+        "push": (2, 4, n), "pushed": (4, ORDER, n), "kick": (e, 4, ORDER), "spread": (e,),
+        "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
+    }  # fmt: skip
 
 
 @cython.cclass
@@ -128,34 +149,10 @@ class Pool:
         return int(self.count - 1)
 
     def _make_room(self, capacity: int) -> None:
-        n, c, e = self.linear, self.contacts, max(2 * self.contacts, 1)
-        wide = (BLOCK + 1) * WATCHED * e
-        shapes = {
-            "states": (c,), "step": (), "halved": (), "exits": (), "owner": (e,), "goal": (e,), "first": (e,),
-            "made_for": (), "used": (), "squared": (), "spelled": (), "row": (e, n), "power": (POWERS, n, n),
-            "forced": (POWERS, 4, n), "rotation": (POWERS, 2), "reached": (), "watched": (),
-            "terms": (ORDER + 1 if n <= SMALL else 0, n * n), "sizes": (n, n),
-            "sizes_forced": (2, n), "table": (n, wide), "table_forced": (2, wide),
-            "push": (2, 4, n), "pushed": (4, ORDER, n), "kick": (e, 4, ORDER), "spread": (e,),
-            "series": (n, e * (ORDER + 1)), "series_forced": (2, e * (ORDER + 1)),
-        }  # fmt: skip
-        kinds = {
-            "states": np.int8,
-            "halved": np.int8,
-            "goal": np.int8,
-            "exits": np.intp,
-            "owner": np.intp,
-            "first": np.intp,
-            "used": np.intp,
-            "reached": np.intp,
-            "watched": np.intp,
-            "spread": np.intp,
-            "squared": np.intp,
-            "spelled": np.intp,
-        }
+        """Arrays for so many flows, with those that are there; typed views of them for the kernels."""
         old, made = self._pool, {}
-        for name, shape in shapes.items():
-            made[name] = np.zeros((capacity, *shape), kinds.get(name, np.float64))
+        for name, shape in _shapes(self.linear, self.contacts).items():
+            made[name] = np.zeros((capacity, *shape), KINDS.get(name, np.float64))
             if self.count:
                 made[name][: self.count] = old[name][: self.count]
         self.states, self.step, self.exits = made["states"], made["step"], made["exits"]

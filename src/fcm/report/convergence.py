@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -15,9 +14,8 @@ import numpy as np
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.compare.exact import exact_lines
-from fcm.files import replacing
 from fcm.plot.convergence import Balanced, Line, draw_convergence
-from fcm.plot.style import save
+from fcm.report.measured import write_measured
 from fcm.response.sweep import trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
@@ -29,7 +27,6 @@ from fcm.table import Table, open_table
 HARMONICS = (1, 2, 3, 5, 9, 15)
 FIRST = 2  # harmonics from which the order is taken: with one alone the error is not yet of the series
 REPEATS = 5
-DPI = 150  # of a page that is read on a screen
 SINE = 10e-6  # [ms] a value, of the machine to which times are scaled
 ANGLES = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, 200_000)
 
@@ -59,10 +56,7 @@ def convergence(messages: Messages, output: Path, picture: Path) -> None:
     """Write the numbers as JSON to OUTPUT and draw them; print them as a table."""
     table = open_table()
     lines = [_measured(case, table) for case in CASES]
-    with replacing(output) as partial_file:
-        partial_file.write_text(json.dumps([asdict(line) for line in lines], indent=1), encoding="utf-8")
-    with replacing(picture) as partial_file:
-        save(draw_convergence(lines), partial_file, dpi=DPI)
+    write_measured(output, lines, picture, draw_convergence(lines))
     click.echo("\n".join(as_text(lines)))
     messages.info(f"wrote {output} and {picture}")
 

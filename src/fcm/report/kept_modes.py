@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import copy
-import json
 import re
 import tomllib
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,16 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.cli.messages import Messages, pass_messages
-from fcm.files import replacing
 from fcm.plot.kept_modes import Kept, draw_kept_modes
-from fcm.plot.style import save
+from fcm.report.measured import write_measured
 from fcm.report.plane_blade import blade, blade_scene
 from fcm.response.sweep import trace
 from fcm.scene import scene_from_dict
 
 COUNTS = (3, 5, 10, 30, 100)
 MANY = 300  # modes, with the flexibility of the rest, that errors are measured against
-DPI = 150  # of a page that is read on a screen
 COLUMNS = (
     "modes kept", "height", "its bound", "frequency", "bound", "height without", "frequency without",
 )  # fmt: skip
@@ -45,10 +41,7 @@ def kept_modes(messages: Messages, output: Path, picture: Path, scene: Path | No
     if (scene is None) != (dof is None):
         raise click.UsageError("--scene and --dof go together.")
     rows = measured() if scene is None or dof is None else measured_of(scene, dof)
-    with replacing(output) as partial_file:
-        partial_file.write_text(json.dumps([asdict(one) for one in rows], indent=1), encoding="utf-8")
-    with replacing(picture) as partial_file:
-        save(draw_kept_modes(rows), partial_file, dpi=DPI)
+    write_measured(output, rows, picture, draw_kept_modes(rows))
     click.echo("\n".join("  ".join(f"{cell:>20s}" for cell in line) for line in (COLUMNS, *texts(rows))))
     messages.info(f"wrote {output} and {picture}")
 

@@ -15,12 +15,12 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
 from fcm.plot.others import Points, draw_others
 from fcm.plot.style import save
+from fcm.report.measured import DPI
 from fcm.report.page import Section, Table
 
 PACKAGES = {"pyharm": "pyHarm-os", "tmdsimpy": "tmdsimpy"}  # by the files of their results
 OURS = "fcm"
 AGREE = 0.01  # relative difference of a random scene's peak, within which it is that of fcm
-DPI = 150
 COLUMNS = ("harmonics", "package", "samples", "curves", "points", "CPU [s]", "greatest error", "median error",
            "folds right", "time over fcm")  # fmt: skip
 RANDOM_COLUMNS = ("package", "complete", "peak as fcm's", "CPU [s], median", "why not, most often")

@@ -12,12 +12,12 @@ import click
 
 from fcm.cli.messages import Messages, pass_messages
 from fcm.files import replacing
+from fcm.plot.style import DPI
 from fcm.report import contact_figures, response_figures
 from fcm.report.made import facts
 from fcm.report.page import Page, Section, Table, render
 from fcm.report.rows import Row
 
-DPI = 300.0  # of the pictures, `savefig.dpi` in fcm.plot.style
 COLUMNS = ("quantity", "paper", "obtained")
 
 

@@ -48,14 +48,15 @@ def summary(response: Response) -> dict[str, Any]:
         data["tracked"] = response.tracking.summary(unit)
         if response.tracking.optima:
             data["optimum"] = [one.summary(unit) for one in response.tracking.optima]
-    return _without_nan(data)  # type: ignore[no-any-return]
+    return without_nan(data)  # type: ignore[no-any-return]
 
 
-def _without_nan(value: Any) -> Any:
+def without_nan(value: Any) -> Any:
+    """The same for JSON: a number that does not exist is None."""
     if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
+        return {key: without_nan(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_without_nan(item) for item in value]
+        return [without_nan(item) for item in value]
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
