@@ -17,6 +17,9 @@ from fcm.cli.table_study import write_study
 from fcm.cli.terminal import plain
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from fcm.table import Table
     from fcm.table.locate import Resolution
 
 DEFAULT_OUTPUT = "table.nc"
@@ -144,29 +147,16 @@ def _build(
 
 def _verify(messages: Messages, path: Path, to_json: bool) -> None:
     from fcm.table import open_table
-    from fcm.table.error import disagreement, error_of, sample
+    from fcm.table.error import disagreement
 
     table = open_table(path)
     began = time.perf_counter()
     recorded = table.error
     if "points" not in recorded:
         raise click.UsageError(f"{path} records no error that could be verified.")
-    drawn = sample if table.part.whole else table.part.sample
     with Interruptible(messages, "the table was not verified") as progress:
-        again = error_of(
-            table,
-            recorded["points"],
-            recorded["seed"],
-            lambda share: progress(share / 2, "same points"),
-            drawn,
-        )
-        fresh = error_of(
-            table,
-            recorded["points"],
-            recorded["seed"] + 1,
-            lambda share: progress((1 + share) / 2, "new points"),
-            drawn,
-        )
+        again = _measured(table, 0, lambda share: progress(share / 2, "same points"))
+        fresh = _measured(table, 1, lambda share: progress((1 + share) / 2, "new points"))
     found = disagreement(recorded, again, fresh)
     result = {
         "file": str(path),
@@ -181,6 +171,14 @@ def _verify(messages: Messages, path: Path, to_json: bool) -> None:
         messages.error(f"error: {path}: the recorded error is not true: {found}")
         click.get_current_context().exit(NOT_COMPLETED)
     messages.info(f"{path}: as recorded, in {result['seconds']:.1f} s; {_error_line(fresh)}")
+
+
+def _measured(table: Table, later: int, progress: Callable[[float], None]) -> dict[str, Any]:
+    """The error at as many points as the table's own; at the same ones, or those of a later seed."""
+    from fcm.table.error import error_of, sample
+
+    recorded, drawn = table.error, sample if table.part.whole else table.part.sample
+    return error_of(table, recorded["points"], recorded["seed"] + later, progress, drawn)
 
 
 def _as_table(error: dict[str, Any]) -> str:

@@ -34,13 +34,13 @@ LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
 _DOTS: LineStyle = (0, (1.0, 1.0))
-_FADED = "may err by more than 20 %"  # what is faded,
+_DOUBTFUL = 0.2  # estimated error beyond which a curve is faded,
+_FADED = f"may err by more than {100 * _DOUBTFUL:g} %"  # what is said of it,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
 _MOST_TICKS = 9  # of a colour bar
-_DOUBTFUL = 0.2  # estimated error beyond which a curve is faded
-_UNSTABLE = "_unstable"  # label of a dashed line; the underscore keeps it out of legends
+_UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 _MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
 
@@ -58,12 +58,7 @@ def draw_response(
     motion are drawn over the curves.
     """
     column = column_of(response.dofs, dof)
-    curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
-    if not curves:
-        raise PlotError("the file holds no point of any curve")
-    if log and not any((curve.amplitude[:, column] > 0.0).any() for curve in curves):
-        name = response.dofs[column]
-        raise PlotError(f"{name} does not move, so that its amplitude has no logarithmic axis; try --linear")
+    curves = _drawable(response, column, bool(log))
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
         colours = sequence_colours(len(curves))
@@ -88,6 +83,17 @@ def draw_response(
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
     return figure
+
+
+def _drawable(response: DrawnResponse, column: int, log: bool) -> list[DrawnCurve]:
+    """The curves that have points of a degree of freedom."""
+    curves = [curve for curve in response.curves if np.isfinite(curve.amplitude[:, column]).any()]
+    if not curves:
+        raise PlotError("the file holds no point of any curve")
+    if log and not any((curve.amplitude[:, column] > 0.0).any() for curve in curves):
+        name = response.dofs[column]
+        raise PlotError(f"{name} does not move, so that its amplitude has no logarithmic axis; try --linear")
+    return curves
 
 
 def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
@@ -126,7 +132,7 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
         if np.isfinite(values).any():
             axes.plot(
                 curve.frequency, values, color=line.get_color(), linewidth=width, linestyle=style,
-                alpha=alpha, label=_UNSTABLE,
+                alpha=alpha, label=_UNNAMED,
             )  # fmt: skip
 
 
@@ -188,7 +194,7 @@ def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: i
 
 def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
-    lines = [line for line in axes.get_lines() if line.get_label() != _UNSTABLE]
+    lines = [line for line in axes.get_lines() if line.get_label() != _UNNAMED]
     several = len(curves[0].parameters) > 1
     if len(lines) > _MOST_NAMES:
         _colour_bar(figure, curves)
