@@ -274,7 +274,7 @@ PAIR = [0.6 + 0.9j, 0.6 - 0.9j]
     ],
 )
 def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
-    found = even(*(Spectrum.of([complex(v) for v in values]) for values in (fine, plain)))
+    found = even(*(Spectrum([complex(v) for v in values]) for values in (fine, plain)))
     assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
     assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
 
@@ -288,8 +288,8 @@ def test_multipliers_beyond_all_bounds_are_no_trouble():
 
 
 def test_a_pair_and_a_flip_are_told_apart():
-    assert Spectrum.of([0.5 + 0j, *PAIR]).verdict().kind is Kind.PAIR
-    assert Spectrum.of([0.5 + 0j, -1.2 + 0j]).verdict().kind is Kind.FLIP
+    assert Spectrum([0.5 + 0j, *PAIR]).verdict().kind is Kind.PAIR
+    assert Spectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Kind.FLIP
 
 
 def test_small_disturbances_grow_as_the_multipliers_say():

@@ -41,7 +41,7 @@ class Front(Step):
     @cython.exceptval(-1, check=False)
     def begin(self, z: cython.double[::1], row: cython.double[::1]) -> cython.int:
         """Start from near z, moved to the curve in the plane of row; 0 if there is no curve."""
-        self.past, self.here.shift, self.there.shift = 0.0, 0.0, 0.0
+        self.past, self.here.shift, self.there.shift, self.between.shift = 0.0, 0.0, 0.0, 0.0
         self.here.slope[:] = 0.0
         self.problem.measure(z)
         self.newton.scale[:] = self.problem.scale

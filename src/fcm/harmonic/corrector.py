@@ -18,7 +18,8 @@ LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from wh
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
 SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
-MOST = 16  # balances, and correctors, that are kept for the next system
+MOST = 16  # balances, and correctors, that are kept for the next system,
+MANY = 64  # and of balances so many, where each is small
 NAN = cython.declare(cython.double, float("nan"))
 
 
@@ -150,7 +151,7 @@ class Corrector:
         if made is not None:
             made.take([(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts])
             return made
-        if len(self.spare) == MOST:
+        if len(self.spare) == (MANY if self.ranking.cheap else MOST):
             self.spare.clear()
         balance = system.with_harmonics(more).balance()
         made = self.spare[more] = Lifted(balance, list(system.harmonics), list(more), self.enough)

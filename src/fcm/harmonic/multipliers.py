@@ -90,7 +90,7 @@ class Multipliers:
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._found(Spectrum.of(values), omega, turning, enough)
+        found = self._found(Spectrum(values), omega, turning, enough)
         return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
 
     def _found(self, fine: Spectrum, omega: float, turning: bool, enough: Sequence[float]) -> Verdict:
@@ -102,7 +102,7 @@ class Multipliers:
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
             return even(fine, fine, turning)
         values = self._values(self.plain, omega)
-        return UNKNOWN if values is None else even(fine, Spectrum.of(values), turning)
+        return UNKNOWN if values is None else even(fine, Spectrum(values), turning)
 
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
@@ -134,7 +134,7 @@ class Multipliers:
         self.see(transitions, self.finer.x)
         values = self._values(self.fine, omega) if transitions.moving else []
         transitions.yielding = True
-        return UNKNOWN if values is None else Spectrum.of(values).verdict()
+        return UNKNOWN if values is None else Spectrum(values).verdict()
 
 
 def far_above(natural: FloatArray, highest: float, harmonics: list[int]) -> npt.NDArray[np.bool_]:

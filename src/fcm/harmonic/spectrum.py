@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import cmath
 import math
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-STABLE = 1e-7  # by which a multiplier may exceed 1
+import cython
+from cython.cimports.libc.math import atan2, fabs, hypot, log
+
+STABLE = cython.declare(cython.double, 1e-7)  # by which a multiplier may exceed 1
 SURELY = 0.02  # logarithm of a real multiplier that truncation may put on the wrong side of 1 in any case
 SHIFTED = 2.0  # or, of one that it shifts, as far as this many times the shift
 SMALL = 0.75  # multipliers below are far from growth, wherever they turn
+FAR_FROM_GROWTH = cython.declare(cython.double, SMALL)
+PI = cython.declare(cython.double, 3.141592653589793)
+NAN = cython.declare(cython.double, float("nan"))
+INFINITY = cython.declare(cython.double, float("inf"))
 
 
 class Kind(Enum):
@@ -38,50 +43,62 @@ PASSIVE = Verdict(1.0, -math.inf, Kind.PAIR, passive=True)
 UNKNOWN = Verdict(math.nan, math.nan, Kind.PAIR)
 
 
-@dataclass
+@cython.cclass
 class Spectrum:
-    """Multipliers sorted by how stability is lost through them; logarithms of their magnitudes."""
+    """All multipliers of a solution sorted by how stability is lost through them; logarithms of their sizes.
 
-    positive: list[float]  # of the real ones above 0, which leave at folds
-    other: float  # greatest of the others, -inf if there is none
-    kind: Kind  # of that
-    before_flip: float  # as in `Verdict`
-    values: tuple[complex, ...] = ()
+    nearest: of the real multiplier above 0 that is nearest to 1, nan if there is none; odd: whether the
+    number of those above 1 is odd.
+    """
 
-    @classmethod
-    def of(cls, values: list[complex]) -> Spectrum:
-        """All multipliers of a solution."""
-        positive, other, kind, before_flip = [], 0.0, Kind.PAIR, math.pi
+    values: tuple[complex, ...]
+    nearest = cython.declare(cython.double, visibility="readonly")
+    odd = cython.declare(cython.bint, visibility="readonly")
+    real: cython.double  # greatest of the real ones above 1, which leave at folds; -inf if there is none
+    real_but_nearest: cython.double
+    other: cython.double  # greatest of the others, -inf if there is none
+    kind: object  # of that
+    before_flip: cython.double  # as in `Verdict`
+
+    def __init__(self, values: list[complex]) -> None:
+        value: cython.doublecomplex
+        size: cython.double
+        self.values, self.kind, self.before_flip = tuple(values), Kind.PAIR, PI
+        self.nearest, self.odd, self.real, self.real_but_nearest = NAN, False, -INFINITY, -INFINITY
+        self.other = 0.0
         for value in values:
-            size = abs(value)
+            size = hypot(value.real, value.imag)
             if value.imag == 0.0 and value.real > 0.0:
-                positive.append(math.log(size))
+                self.leaves_at_folds(log(size))
                 continue
-            if size > other:
-                other, kind = size, Kind.PAIR if value.imag else Kind.FLIP
-            if size > SMALL and value.imag != 0.0:
-                before_flip = min(before_flip, math.pi - abs(cmath.phase(value)))
-        size = math.log(other) if other > 0.0 else -math.inf
-        return cls(positive, size, kind, before_flip, tuple(values))
+            if size > self.other:
+                self.other, self.kind = size, Kind.PAIR if value.imag != 0.0 else Kind.FLIP
+            if size > FAR_FROM_GROWTH and value.imag != 0.0:
+                self.before_flip = min(self.before_flip, PI - fabs(atan2(value.imag, value.real)))
+        self.other = log(self.other) if self.other > 0.0 else -INFINITY
 
-    @property
-    def odd(self) -> bool:
-        """Whether the number of real multipliers above 1 is odd."""
-        return len([size for size in self.positive if size > STABLE]) % 2 == 1
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def leaves_at_folds(self, size: cython.double) -> cython.void:
+        """Take a real multiplier above 0."""
+        farther: cython.double = size
+        if not fabs(size) >= fabs(self.nearest):
+            farther, self.nearest = self.nearest, size
+        if farther > STABLE:
+            self.real_but_nearest = max(self.real_but_nearest, farther)
+        if size > STABLE:
+            self.odd = not self.odd
+            self.real = max(self.real, size)
 
-    @property
-    def nearest(self) -> float:
-        """Of the real multiplier nearest to 1, nan if there is none."""
-        return min(self.positive, key=abs, default=math.nan)
-
-    def verdict(self, without_nearest: bool = False) -> Verdict:
+    def verdict(self, without_nearest: cython.bint = False) -> Verdict:
         """By all multipliers but the real ones between 0 and 1, and if wanted the nearest to that."""
-        most = -math.inf
-        if self.positive:
-            real = sorted(self.positive, key=abs)[without_nearest:]
-            most = max((size for size in real if size > STABLE), default=most)
-        growth, kind = (self.other, self.kind) if self.other >= most else (most, Kind.REAL)
-        return Verdict(float(growth <= STABLE), growth, kind, self.before_flip, values=self.values)
+        most: cython.double = self.real_but_nearest if without_nearest else self.real
+        kind = self.kind
+        growth: cython.double = self.other
+        if not growth >= most:
+            growth, kind = most, Kind.REAL
+        stable = 1.0 if growth <= STABLE else 0.0
+        return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
 
 
 def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:

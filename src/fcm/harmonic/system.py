@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+from collections import OrderedDict
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -26,6 +28,9 @@ from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear
 from fcm.structure.travelling import TravellingReceptance
 from fcm.table.lookup import Table
+
+SMALL = 20  # contacts times harmonics, up to which workspaces are kept for the next system
+MOST = 4  # of them
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,7 @@ class System:
         found = copy(self)
         for name, value in other.items():
             object.__setattr__(found, name, value)
-        for made in ("looking", "front", "raised", "unit", "normal"):
+        for made in ("_workspace", "unit", "normal"):
             found.__dict__.pop(made, None)
         return found
 
@@ -83,27 +88,31 @@ class System:
 
         return at_rest(self)
 
-    @cached_property
+    @property
     def looking(self) -> Balance:
         """A balance for what looks at points or follows curves, one after the other."""
-        return self.balance()
+        return self._workspace.taken_by(self).balance
 
-    @cached_property
+    @property
     def front(self) -> Front:
         """Of `looking`, for whoever follows it."""
-        return Front(self.looking)
+        return self._workspace.taken_by(self).front
 
-    @cached_property
+    @property
     def raised(self) -> tuple[Level, Front]:
         """`looking` in the level of its forces."""
-        level = Level(self.looking)
-        return level, Front(level)
+        return self._workspace.taken_by(self).raised
+
+    @cached_property
+    def _workspace(self) -> _Workspace:
+        return _workspace_of(self)
 
     def afresh(self) -> Balance:
         """`looking` at the level 1, as if nothing had been followed yet."""
-        self.looking.largest[:] = 0.0
-        self.looking.load = 1.0
-        return self.looking
+        balance = self.looking
+        balance.largest[:] = 0.0
+        balance.load = 1.0
+        return balance
 
     def balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
@@ -130,6 +139,54 @@ class System:
         """Stiffnesses of all contacts, (port,): all stuck, or all open."""
         k = [k for c in self.scene.contacts for k in (c.k_u if c.mu > 0.0 else 0.0, c.k_v)]
         return np.array(k) * float(stuck)
+
+
+class _Workspace:
+    """A balance and its fronts, for one after the other of the systems whose contacts alone are others."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.balance = system, system.balance()
+
+    def taken_by(self, system: System) -> _Workspace:
+        """As if it were new."""
+        if self.system is not system:
+            self.system, self.balance.laws = system, system.laws()
+            system.afresh()
+        return self
+
+    @cached_property
+    def front(self) -> Front:
+        return Front(self.balance)
+
+    @cached_property
+    def raised(self) -> tuple[Level, Front]:
+        level = Level(self.balance)
+        return level, Front(level)
+
+
+class _Kept(threading.local):
+    """The workspaces that each thread used last, by what they are for."""
+
+    def __init__(self) -> None:
+        self.of: OrderedDict[tuple[object, ...], _Workspace] = OrderedDict()
+
+
+_KEPT = _Kept()
+
+
+def _workspace_of(system: System) -> _Workspace:
+    """For a system: if it is small, that of one before it, as in a sweep."""
+    scene, kept = system.scene, _KEPT.of
+    if scene.ring is not None or scene.loads or len(scene.contacts) * len(system.harmonics) > SMALL:
+        return _Workspace(system)
+    approximate = system.table is not None, system.corrected
+    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
+    if key not in kept:
+        kept[key] = _Workspace(system)
+        if len(kept) > MOST:
+            kept.popitem(last=False)
+    kept.move_to_end(key)
+    return kept[key]
 
 
 def _displacements(linear: Linear, seen: Receptance) -> Displacements:

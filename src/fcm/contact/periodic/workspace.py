@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from fcm.contact.periodic.forces import PeriodicContact
 
-MOST = 32  # kernels of a thread
+MOST = 128  # kernels of a thread: a sweep's curves ask for further harmonics in some eighty sets
 
 
 class _Kernels(threading.local):
