@@ -37,12 +37,12 @@ def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
 
 def paid(system: System, front: Front, progress: Progress | None, follow: Callable[[Progress], Path]) -> Path:
     """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
-    known = 0
+    known, each = 0, seconds_of(system, 1, len(system.harmonics))
 
     def add(evaluations: int) -> None:
         nonlocal known
         new, known = evaluations - known, evaluations
-        system.work.take(seconds_of(system, new, len(system.harmonics)))
+        system.work.take(new * each)
 
     def report(share: float) -> None:
         add(front.newton.evaluations)

@@ -108,5 +108,5 @@ def least(system: System, omega: float) -> float:
 def _motions(system: System, ports: ComplexArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
     """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
     for contact, (U, V) in zip(system.scene.contacts, ports.reshape(-1, 2).tolist(), strict=True):
-        over, under = (abs(contact.k_u * U + sign * contact.mu * contact.k_v * V) for sign in (-1.0, 1.0))
-        yield contact.k_v * abs(V), (over, under), contact
+        along, across = contact.k_u * U, contact.mu * contact.k_v * V
+        yield contact.k_v * abs(V), (abs(along - across), abs(along + across)), contact

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 
@@ -136,8 +137,31 @@ def amplitudes(
     return found
 
 
+class _Last(threading.local):
+    """The structure that each thread asked for last, and what it is of: curves of a sweep have the same."""
+
+    def __init__(self) -> None:
+        self.key: tuple[object, ...] = ()
+        self.linear: Linear | None = None
+
+
+_LAST = _Last()
+
+
 def linear_of(scene: Scene) -> Linear:
     """The structure of a scene (of one curve)."""
+    if scene.ring is not None or not scene.modal.frequency.all():  # others have the contacts' stiffness in it
+        return _made(scene)
+    modal, forces = scene.modal, [(one.amplitude, one.phase, one.power) for one in scene.forces]
+    arrays = (modal.frequency, modal.damping, modal.mass, modal.shapes, *scene.directions())
+    loads = [one.force for one in scene.loads]
+    key = (len(scene.contacts), *forces, None, *loads, *(one.tobytes() for one in arrays))
+    if _LAST.linear is None or _LAST.key != key:
+        _LAST.key, _LAST.linear = key, _made(scene)
+    return _LAST.linear
+
+
+def _made(scene: Scene) -> Linear:
     modal, adrift = settled(scene)
     unit = 1.0 / np.sqrt(modal.mass)[:, None]
     directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
