@@ -57,7 +57,7 @@ class Spectrum:
     real: cython.double  # greatest of the real ones above 1, which leave at folds; -inf if there is none
     real_but_nearest: cython.double
     other: cython.double  # greatest of the others, -inf if there is none
-    kind: object  # of that
+    kind: Kind  # of that
     before_flip: cython.double  # as in `Verdict`
 
     def __init__(self, values: list[complex]) -> None:
