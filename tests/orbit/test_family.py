@@ -17,7 +17,9 @@ from fcm.orbit.family import chosen, family
 from fcm.orbit.periodic import converged
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
+from fcm.response import orbit_curve
 from fcm.response.exact import trace_exact
+from fcm.response.legs import TimeOver
 
 from ..motion.cases import yang
 
@@ -98,6 +100,21 @@ def test_a_curve_tells_the_extent_at_its_peak(scene):
     assert curve.summary()["not_unique"] == known.size
     low, high = curve.summary()["peak_range"]["v"]
     assert (low, high) == (curve.orbits.family_least[k, 1], curve.orbits.family_greatest[k, 1])
+
+
+def test_where_there_is_no_time_for_the_extent_it_is_said_to_be_unknown(scene, monkeypatch):
+    """The search asks for the time; the curve is complete without it."""
+
+    def over(*_):
+        raise TimeOver
+
+    with pytest.raises(TimeOver):
+        family(scene, OMEGA, periodic(scene, OMEGA, settled(scene, 0.0).end).state, over)
+    monkeypatch.setattr(orbit_curve, "family", over)
+    (curve,) = trace_exact(replace(scene, frequency_range=(1.4, OMEGA), max_step=0.2)).curves
+    k = int(np.argmax(curve.amplitude[:, 1]))
+    assert curve.complete and curve.orbits.family_complete[k] == 0.0
+    assert np.isnan(curve.orbits.family_greatest).all()
 
 
 def test_where_nothing_feels_it_the_amplitude_is_unique():

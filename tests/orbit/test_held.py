@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from fcm.motion import simulate
+from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.start import first_point, near_balance
 from fcm.reduction import held
 from fcm.response import exact_work
 from fcm.response.exact import trace_exact
-from fcm.response.legs import Leg, Legs
+from fcm.response.legs import Leg, Legs, TimeOver
 from fcm.response.trace import traced_curve
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
@@ -128,6 +129,39 @@ def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, res
     curve, whole = response.curves[0], responses[1].curves[0]
     assert curve.peaks["x"].amplitude == pytest.approx(whole.peaks["x"].amplitude, rel=SAME)
     assert set(curve.regime[:, 2]) == {"S"}
+
+
+def test_with_a_contact_that_loses_its_state_no_curve_is_followed_to_its_end(scene, monkeypatch):
+    w, finished, made = held.resting(scene), [], exact_work.orbit_curve
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
+
+    def noted(problem, *rest):
+        finished.append([one.place for one in problem.scene.held])
+        return made(problem, *rest)
+
+    monkeypatch.setattr(exact_work, "foreseen", lambda *_: wrong)
+    monkeypatch.setattr(exact_work, "orbit_curve", noted)
+    assert trace_exact(scene).curves[0].complete
+    assert finished == [[1]]
+
+
+def over(*_):
+    raise TimeOver
+
+
+def test_a_limit_of_time_before_the_first_point(scene, monkeypatch):
+    """In the balance that tells which contacts keep their state; and where the first motion is sought."""
+    curve = trace_exact(scene, limit=1e-9).curves[0]
+    assert curve.points == 0 and curve.reason == "not finished in 1e-09 s of processor time, at the start"
+    monkeypatch.setattr(exact_work, "explore", over)
+    curve = trace_exact(scene, limit=100.0).curves[0]
+    assert curve.points == 0 and curve.reason == "not finished in 100 s of processor time, at the start"
+
+
+def test_the_balance_that_guesses_come_from_is_ended_by_a_look(scene):
+    assert balanced_states(scene, 1.2)
+    with pytest.raises(TimeOver):
+        balanced_states(scene, 1.2, over)
 
 
 def test_contacts_are_foreseen_only_with_room(scene):

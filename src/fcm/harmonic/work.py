@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -13,13 +13,15 @@ class TooLongError(Exception):
 
 
 class Work:
-    """Of a system and all that are made from it with other harmonics."""
+    """Of a system and all that are made from it with other harmonics; look is called now and then."""
 
     def __init__(self) -> None:
         self.seconds, self.most = 0.0, np.inf
+        self.look: Callable[[], object] = int
 
     def take(self, seconds: float) -> None:
         """So much more; `TooLongError` where that is more than may be."""
+        self.look()
         self.seconds += seconds
         if self.seconds > self.most:
             raise TooLongError

@@ -21,7 +21,9 @@ def states_along(scene: Scene, look: Look) -> Iterator[list[Place]]:
 
     whole = scene.whole()
     harmonics = SOME if len(whole.contacts) < MANY else SOME[:1]
-    found = outlined(Balanced(whole, harmonics), lambda _: look())
+    balanced = Balanced(whole, harmonics)
+    balanced.work.look = look
+    found = outlined(balanced)
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
         for top, even in tops(path, shown.amplitude):
             places = around(even, top)

@@ -47,7 +47,9 @@ class Family:
         return (self.greatest - self.least) / size
 
 
-def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Family | None:
+def family(
+    scene: Scene, frequency: float, state: State, periods: int = 1, look: Look = without_end
+) -> Family | None:
     """The family that a periodic motion belongs to; None if no contact of it always sticks.
 
     Parameters
@@ -59,6 +61,8 @@ def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Fa
         Of a periodic motion at the forces' angle 0.
     periods : int
         Of the force, after which it repeats.
+    look : callable, optional
+        Called now and then; raises what ends the search.
 
     Raises
     ------
@@ -78,14 +82,14 @@ def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Fa
     """
     system = System(scene, frequency)
     x = np.concatenate((state.q, state.velocity, state.friction))
-    found = converged(Shot(system, x, resting_at(system, x), periods))
+    found = converged(Shot(system, x, resting_at(system, x), periods), look=look)
     if found is None:
         raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
     begun = found[0]
     contacts = stuck_in(begun)
     if not contacts:
         return None
-    shots, complete = _members(begun)
+    shots, complete = _members(begun, look)
     amplitude = np.array([measure(shot.cycle).amplitude for shot in shots])
     friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
     return Family(
@@ -94,7 +98,7 @@ def family(scene: Scene, frequency: float, state: State, periods: int = 1) -> Fa
     )  # fmt: skip
 
 
-def _members(begun: Shot) -> tuple[list[Shot], bool]:
+def _members(begun: Shot, look: Look) -> tuple[list[Shot], bool]:
     """Motions of the family up to its ends, and whether these were reached on every way."""
     shots, waiting, seen, complete = [begun], [begun], list[_Seen](), True
     left = MOST_TRIED
@@ -105,12 +109,12 @@ def _members(begun: Shot) -> tuple[list[Shot], bool]:
             continue
         found = [first]
         for direction in _directions(len(contacts)):
-            ways = [Way(first, contacts, sign * direction) for sign in (-1.0, 1.0)]
+            ways = [Way(first, contacts, sign * direction, look) for sign in (-1.0, 1.0)]
             behind, ahead = (list(way.shots(min(left, MOST_TRIED // 5))) for way in ways)
             left -= sum(way.tried for way in ways)
             complete &= all(way.ended for way in ways)
             line = [*reversed(behind), first, *ahead]
-            found += [*line, *_finer(line)]
+            found += [*line, *_finer(line, look)]
             beyond = [way.beyond for way in ways if way.beyond is not None]
             shots += beyond
             waiting += beyond
@@ -134,7 +138,7 @@ class _Seen:
         return bool(((residual >= self.low - room) & (residual <= self.high + room)).all())
 
 
-def _finer(line: list[Shot]) -> list[Shot]:
+def _finer(line: list[Shot], look: Look) -> list[Shot]:
     """More motions beside those, within a line, at which an amplitude is greatest or least."""
     amplitude = np.array([measure(shot.cycle).amplitude for shot in line])
     added = list[Shot]()
@@ -143,15 +147,15 @@ def _finer(line: list[Shot]) -> list[Shot]:
         flat = np.ptp(amplitude, axis=0) <= SAME * amplitude.max(axis=0)
         for k, dof in {k: dof for dof, k in enumerate(tops) if not flat[dof]}.items():
             if 0 < k < len(line) - 1:
-                added += _about(line[k - 1 : k + 2], sense, dof)
+                added += _about(line[k - 1 : k + 2], sense, dof, look)
     return added
 
 
-def _about(near: list[Shot], sense: float, dof: int) -> list[Shot]:
+def _about(near: list[Shot], sense: float, dof: int, look: Look) -> list[Shot]:
     """Motions ever nearer to the greatest, or least, amplitude of a degree of freedom among three."""
     added = list[Shot]()
     for _ in range(HALVINGS):
-        one, other = between(near[0], near[1]), between(near[1], near[2])
+        one, other = between(near[0], near[1], look), between(near[1], near[2], look)
         if one is None or other is None:
             break
         added += [one, other]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -76,8 +77,11 @@ def harmonic_state(
     return _modal(system, wave, steady, friction)
 
 
-def balanced_states(scene: Scene, frequency: float) -> list[State]:
-    """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there."""
+def balanced_states(scene: Scene, frequency: float, look: Callable[[], None] | None = None) -> list[State]:
+    """Guesses from the scene's own harmonic balance at a frequency [rad/s]; none if it has none there.
+
+    look is called now and then.
+    """
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
         return []
@@ -85,6 +89,7 @@ def balanced_states(scene: Scene, frequency: float) -> list[State]:
     from fcm.harmonic.system import System as Balanced
 
     balanced = Balanced(whole, FEW if len(whole.contacts) < MANY else (1,))
+    balanced.work.look = look or balanced.work.look
     found = solutions(balanced, frequency).solutions
     return [computed_state(scene, balanced.harmonics, z) for z in found]
 

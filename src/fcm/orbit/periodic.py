@@ -22,6 +22,7 @@ from fcm.scene.model import FloatArray, Scene
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
 MOST_ITERATIONS = 25  # of Newton's method
+SHORTEST = 1e-3  # part of one of its steps, below which it leads nowhere
 RANK = 1e-10  # singular values below are directions in which nothing changes: a contact that never slips
 STABLE = 1e-7  # by which a multiplier may exceed 1
 DRIFT = 0.2  # part of the range of cycle amplitudes by which their mean may differ from half to half
@@ -170,13 +171,18 @@ def shoot(system: System, guess: State, look: Look = without_end) -> Orbit | Non
     return None if found is None else closed(*found)
 
 
-def converged(shot: Shot, most: int = MOST_ITERATIONS, look: Look = without_end) -> tuple[Shot, int] | None:
-    """The shot that closes, by Newton's method from one that does not, and the number of steps it took."""
+def converged(
+    shot: Shot, most: int = MOST_ITERATIONS, look: Look = without_end, shortest: float = SHORTEST
+) -> tuple[Shot, int] | None:
+    """The shot that closes, by Newton's method from one that does not, and the number of steps it took.
+
+    None after the most steps, or where only a shorter part of one than the shortest brings it nearer.
+    """
     for iteration in range(most):
         look()
         if shot.residual <= TOLERANCE:
             return shot, iteration
-        better = _improved(shot)
+        better = _improved(shot, shortest)
         if better is None:
             return (shot, iteration) if shot.residual <= 100.0 * TOLERANCE else None
         shot = better
@@ -200,10 +206,10 @@ def _step(shot: Shot) -> FloatArray:
     return step
 
 
-def _improved(shot: Shot) -> Shot | None:
+def _improved(shot: Shot, shortest: float) -> Shot | None:
     """The shot after Newton's step, shortened until the orbit closes better; None if it never does."""
     step, size = _step(shot), 1.0
-    while size > 1e-3:
+    while size > shortest:
         try:
             new = Shot(shot.system, shot.x + size * step, shot.resting, shot.periods)
         except SimulationError:  # too far away to be computed

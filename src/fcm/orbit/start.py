@@ -44,7 +44,7 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatA
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
     inside, apart = inner_resonances(scene), False
     for omega in (*scene.frequency_range, *inside):
-        guesses, before = balanced_states(scene, omega), len(found)
+        guesses, before = balanced_states(scene, omega, look), len(found)
         orbits = [
             *_shot(scene, omega, guesses, look),
             *_shot(scene, omega, started_states(scene, omega), look),
@@ -99,7 +99,7 @@ def _anywhere(problem: OrbitProblem, look: Look) -> list[FloatArray]:
     """The first point that the balance leads to, at frequencies across the range."""
     scene = problem.scene
     for omega in np.linspace(*scene.frequency_range, PLACES + 1)[::-1].tolist():
-        for orbit in _shot(scene, omega, _corrected_states(scene, omega), look):
+        for orbit in _shot(scene, omega, _corrected_states(scene, omega, look), look):
             try:
                 return [first_point(problem, orbit, look)]
             except SimulationError:
@@ -115,7 +115,7 @@ def _by_damping(problem: OrbitProblem, look: Look) -> Iterator[list[FloatArray]]
         return
     easier, factor = more
     for omega in np.linspace(*scene.frequency_range, FEWER + 1).tolist():
-        for orbit in near_balance(easier, omega):
+        for orbit in near_balance(easier, omega, look):
             look()
             with suppress(SimulationError):
                 z = less_damped(scene, first_point(OrbitProblem(easier), orbit, look), factor)
@@ -123,7 +123,7 @@ def _by_damping(problem: OrbitProblem, look: Look) -> Iterator[list[FloatArray]]
                     yield [z]
 
 
-def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
+def _corrected_states(scene: Scene, omega: float, look: Look) -> Iterator[State]:
     """Guesses from the balance of one harmonic, with more of them where Newton's method leads to that.
 
     To follow the level of the forces with as many takes a hundred times as long.
@@ -136,6 +136,7 @@ def _corrected_states(scene: Scene, omega: float) -> Iterator[State]:
     from fcm.harmonic.system import System as Balanced
 
     one, newton = Balanced(whole, ONE), Newton(Balanced(whole, MORE).balance())
+    one.work.look = look
     for solution in solutions(one, omega).solutions:
         z = padded(solution, ONE, MORE)
         yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
@@ -163,7 +164,7 @@ def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
 
 def near_balance(scene: Scene, omega: float, look: Look = without_end) -> Iterator[Orbit]:
     """The motions that shooting finds from the solutions of the balance."""
-    return _shot(scene, omega, balanced_states(scene, omega), look)
+    return _shot(scene, omega, balanced_states(scene, omega, look), look)
 
 
 def _shot(scene: Scene, omega: float, guesses: Iterable[State], look: Look = without_end) -> Iterator[Orbit]:

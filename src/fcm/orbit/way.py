@@ -14,7 +14,8 @@ from fcm.scene.model import FloatArray
 
 STEPS = 8  # from one limit of slip to the other
 SHORTEST = 1e-3  # part of a step below which the family has an end of its own
-ITERATIONS = 8  # of Newton's method: with more a shorter step is found sooner
+ITERATIONS = 8  # of Newton's method: with more a shorter step is found sooner,
+LEAST = 0.1  # and where only a smaller part of one of them brings it nearer
 GROWTH = 4.0  # of a step to the next, at most
 FAR = 1e4  # times the first reach: a contact that its own residual friction presses together has no end
 TINY = 1e-12  # part of the reach that is none
@@ -23,8 +24,9 @@ TINY = 1e-12  # part of the reach that is none
 class Way:
     """The family in one direction, until every contact that is pushed is at its limit, or others stick."""
 
-    def __init__(self, begun: Shot, contacts: list[int], sense: FloatArray) -> None:
+    def __init__(self, begun: Shot, contacts: list[int], sense: FloatArray, look: Look = without_end) -> None:
         self.system, self.last, self.contacts, self.ended = begun.system, begun, contacts, False
+        self.look = look
         self.beyond: Shot | None = None  # the motion just beyond the end, where others stick
         self.tried = 0  # motions that were looked for
         self.room = self._rooms(begun)
@@ -67,7 +69,7 @@ class Way:
     def _further(self, share: float) -> Shot | None:
         """The motion when the contacts are stressed a little more."""
         guess = None if self.slope is None else self.last.x + share * self.slope
-        new = moved(self.last, -(residual_of(self.last) + share * self.push), guess)
+        new = moved(self.last, -(residual_of(self.last) + share * self.push), guess, self.look)
         if new is None:
             return None
         self.beyond = None if stuck_in(new) == self.contacts else new
@@ -85,15 +87,15 @@ def moved(
             x[system.f.start + choice.contact] += change[choice.contact]
     w = force / np.where(system.k_u > 0.0, system.k_u, 1.0)
     try:
-        found = converged(Shot(system, x, w, shot.periods), ITERATIONS, look)
+        found = converged(Shot(system, x, w, shot.periods), ITERATIONS, look, LEAST)
     except SimulationError:
         return None
     return None if found is None else found[0]
 
 
-def between(one: Shot, other: Shot) -> Shot | None:
+def between(one: Shot, other: Shot, look: Look = without_end) -> Shot | None:
     """The motion with the mean of the residual friction of two that are near to one another."""
-    return moved(one, -0.5 * (residual_of(one) + residual_of(other)), 0.5 * (one.x + other.x))
+    return moved(one, -0.5 * (residual_of(one) + residual_of(other)), 0.5 * (one.x + other.x), look)
 
 
 def stuck_in(shot: Shot) -> list[int]:

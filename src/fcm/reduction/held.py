@@ -94,6 +94,22 @@ def _rows(system: System, one: Held) -> list[FloatArray]:
     return [contact.mu * load, contact.mu * load - force, contact.mu * load + force]
 
 
+class NotKeptError(Exception):
+    """Contacts that are held, their `places`, would not have kept their state in a motion."""
+
+    def __init__(self, places: tuple[int, ...]) -> None:
+        super().__init__()
+        self.places = places
+
+
+def check(system: System, segments: Segments) -> None:
+    """`NotKeptError` if a contact that is held would not have kept its state over a motion."""
+    pairs = zip(system.scene.held, rooms(system, segments).tolist(), strict=True)
+    lost = tuple(one.place for one, room in pairs if room <= 0.0)
+    if lost:
+        raise NotKeptError(lost)
+
+
 def lost_by(kept: FloatArray) -> IntArray:
     """The contacts that have not kept their state, of what each keeps: (contact, 2)."""
     return np.flatnonzero((kept <= 0.0).any(axis=1))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-
-import numpy as np
+from functools import partial
 
 from fcm.continuation import Path as Followed
 from fcm.harmonic.rigid import too_stiff
@@ -13,16 +12,16 @@ from fcm.harmonic.system import System
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.problem import OrbitProblem
-from fcm.reduction.held import foreseen, lost_by
+from fcm.reduction.held import NotKeptError, check, foreseen, lost_by
 from fcm.response.groups import Group, lost_curve
-from fcm.response.legs import Legs, TimeOver
+from fcm.response.legs import Clock, Legs, TimeOver
 from fcm.response.only_peaks import peaks_alone, peaks_of
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
-from fcm.scene.model import Held, Scene
+from fcm.scene.model import FloatArray, Held, Scene
 
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
@@ -53,58 +52,83 @@ class ExactWork:
         return curve
 
     def _made(self, scene: Scene, report: Report) -> Curve:
+        if self.at is not None:
+            return _visited(scene, self.at, report, self.limit)
+        stiff, limit = _too_stiff(scene, self.limit)
+        clock = Clock(limit)
+        try:
+            return self._in_time(scene, report, clock, stiff)
+        except TimeOver as stop:  # before the first point was looked for
+            return lost_curve(scene, f"{_cut_off(stop, limit)}the start{stiff}")
+
+    def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
         if self.only_peaks:
-            alone = peaks_alone(scene, report)
-            return peaks_of(*_followed(scene, report, self.limit)) if alone is None else alone
-        if self.at is None and (self.whole or len(scene.contacts) < FEWEST):
-            return _traced(scene, report, self.limit)
-        if self.at is None:
-            return _traced_lightly(scene, report, self.limit)
-        return _visited(scene, self.at, report, self.limit)
+            alone = peaks_alone(scene, report, clock.look)
+            if alone is not None:
+                return alone
+            return peaks_of(*_followed(scene, report, clock, stiff), clock.look)
+        if self.whole or len(scene.contacts) < FEWEST:
+            return _traced(scene, report, clock, stiff)
+        return _traced_lightly(scene, report, clock, stiff)
 
 
-def _traced_lightly(scene: Scene, report: Report, limit: float | None) -> Curve:
+def _traced_lightly(scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
     """The curve, followed without the contacts that keep their state all along it."""
-    held = foreseen(scene, balance_of(scene))
-    end = None if limit is None else time.process_time() + limit
+    held = foreseen(scene, balance_of(scene, look=clock.look))
     while True:
-        left = None if end is None else end - time.process_time()
-        curve = _held_or_lost(scene, held, report, left) if held else _traced(scene, report, left)
-        lost = np.zeros(0) if curve.orbits is None else lost_by(curve.orbits.held)
-        if not (held and (lost.size or not curve.points)):
+        try:
+            curve = _held_or_lost(scene, held, report, clock, stiff)
+            lost = () if curve.orbits is None else tuple(lost_by(curve.orbits.held).tolist())
+        except NotKeptError as found:
+            curve, lost = lost_curve(scene, ""), found.places
+        if not (held and (lost or not curve.points)):
             return curve
-        if curve.reason.startswith(STOPPED) or (end is not None and time.process_time() > end):
+        if curve.reason.startswith(STOPPED) or clock.over:
             return lost_curve(scene, curve.reason)  # what there is of it is not the motion of these contacts
-        held = tuple(one for one in held if curve.points and one.place not in lost)
+        held = tuple(one for one in held if lost and one.place not in lost)
 
 
-def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, limit: float | None) -> Curve:
+def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, clock: Clock, stiff: str) -> Curve:
     """The curve with contacts held; without a point, if it cannot be begun."""
+    if not held:
+        return _traced(scene, report, clock, stiff)
     try:
-        return _traced(scene.holding(held), report, limit)
+        return _traced(scene.holding(held), report, clock, stiff)
     except SimulationError as error:
         return lost_curve(scene, str(error))
 
 
-def _traced(scene: Scene, report: Report, limit: float | None) -> Curve:
-    return orbit_curve(*_followed(scene, report, limit))
+def _traced(scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
+    return orbit_curve(*_followed(scene, report, clock, stiff), clock.look)
 
 
-def _followed(scene: Scene, report: Report, limit: float | None) -> tuple[OrbitProblem, list[Followed], str]:
-    """All branches, and why they are not complete, else ''.
+def _followed(
+    scene: Scene, report: Report, clock: Clock, stiff: str
+) -> tuple[OrbitProblem, list[Followed], str]:
+    """All branches, and why they are not complete, else ''; what is stiff is said then, too.
 
-    Where a contact is too stiff for that to end, it is said after so long; a limit of one's own is kept.
+    Raises
+    ------
+    NotKeptError
+        If a contact that is held would not have kept its state.
     """
-    stiff, limit = _too_stiff(scene, limit)
-    problem, legs = OrbitProblem(scene), Legs(scene.frequency_range, report, limit)
+    problem = OrbitProblem(scene)
+    legs = Legs(scene.frequency_range, report, clock.look, partial(_watched, problem) if scene.held else None)
     try:
         paths, without = explore(problem, legs, legs.look)
         reason = incomplete(scene, paths, without)
     except (KeyboardInterrupt, TimeOver) as stop:
         legs.keep()
         paths = legs.paths()
-        reason = _cut_off(stop, limit) + reached(scene, paths)
+        reason = _cut_off(stop, clock.limit) + reached(scene, paths)
     return problem, paths, reason + stiff if reason else ""
+
+
+def _watched(problem: OrbitProblem, z: FloatArray) -> None:
+    """`NotKeptError` if a contact that is held would not have kept its state in the motion at z."""
+    shot = problem.shot(z)
+    if shot is not None:
+        check(shot.system, shot.segments)
 
 
 def _cut_off(stop: BaseException, limit: float | None) -> str:
@@ -115,7 +139,7 @@ def _cut_off(stop: BaseException, limit: float | None) -> str:
 def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
     """Which contact is too stiff for its motion to be followed, and what to take instead; else ''.
 
-    And the limit of time, if there is none of one's own.
+    And the limit of time: where that never ends it is said after so long, if there is none of one's own.
     """
     whole = scene.whole()
     resists = whole.contacts and whole.modal.frequency.all()
@@ -126,7 +150,7 @@ def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
 def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
-    visitor, reason = Visitor(around, Legs(around.frequency_range, report, limit).look), ""
+    visitor, reason = Visitor(around, Clock(limit).look), ""
     try:
         visitor.run(at, report)
     except (KeyboardInterrupt, TimeOver) as stop:

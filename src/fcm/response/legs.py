@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 from fcm.continuation import Mark, Path, Stage, Status, follow
 from fcm.continuation.trail import Kept, Points
+from fcm.orbit.periodic import without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.run import Report
 from fcm.scene.model import FloatArray
@@ -34,21 +35,48 @@ class TimeOver(Exception):  # noqa: N818
     """A curve has taken as long as it may."""
 
 
+class Clock:
+    """Of the processor time that a curve may take [s], from the beginning; without end if that is None."""
+
+    def __init__(self, limit: float | None) -> None:
+        self.limit, self._ask = limit, 0.0
+        self._end = None if limit is None else time.process_time() + limit
+
+    @property
+    def over(self) -> bool:
+        """Whether it is taken."""
+        return self._end is not None and time.process_time() > self._end
+
+    def look(self) -> None:
+        """Raise `TimeOver` when it is."""
+        if self._end is not None and time.monotonic() > self._ask:
+            if self.over:
+                raise TimeOver
+            self._ask = time.monotonic() + SELDOM
+
+
 class Legs:
     """Follows curves as `fcm.continuation.follow` does, one after the other.
 
     The same curves in the same order after an interruption: those that were finished are not followed again,
     and the one that was begun goes on from its last point.
 
-    limit : processor time [s] after which `TimeOver` is raised, from the beginning.
+    look : called before every step, as a `Clock` looks.
+    passing : called with every point from which a step is made.
     """
 
-    def __init__(self, span: tuple[float, float], report: Report, limit: float | None = None) -> None:
+    def __init__(
+        self,
+        span: tuple[float, float],
+        report: Report,
+        look: Callable[[], None] = without_end,
+        passing: Callable[[FloatArray], None] | None = None,
+    ) -> None:
         self.report, self.low, self.high = report, *span
-        self.end = None if limit is None else time.process_time() + limit
+        self.look, self.passing = look, passing
         self.finished: list[Path] = []
         self._last: Stage | None = None
-        self._seen, self._took, self._ask = time.monotonic(), 0.0, 0.0
+        self._seen, self._took = time.monotonic(), 0.0
         self._saved: dict[int, Leg] = {}
         for leg in report.saved:
             if isinstance(leg, Leg):
@@ -88,14 +116,9 @@ class Legs:
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
         self.report(covered, f"{stage.kept.number} points")
+        if self.passing is not None:
+            self.passing(stage.z)
         self.look()
-
-    def look(self) -> None:
-        """Raise `TimeOver` when it is."""
-        if self.end is not None and time.monotonic() > self._ask:
-            if time.process_time() > self.end:
-                raise TimeOver
-            self._ask = time.monotonic() + SELDOM
 
     def keep(self) -> None:
         """Save the curve that is being followed as far as it is there."""

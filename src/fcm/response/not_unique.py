@@ -11,7 +11,9 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.matrices import has_friction
 from fcm.orbit.family import Family, family
 from fcm.orbit.partly_stuck import partly_stuck_motions
+from fcm.orbit.periodic import Look
 from fcm.orbit.sample import Sample
+from fcm.response.legs import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.scene.model import FloatArray, Scene
 
@@ -29,35 +31,44 @@ class NotUnique:
 
 
 def not_unique(
-    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int]
+    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int], look: Look
 ) -> NotUnique:
     """What is found at some of the points; amplitude : of all, (point, dof)."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     out = NotUnique(least, greatest, np.full(len(points), np.nan))
     told = [(k, point) for k in rows if (point := points[k]) is not None]
     for omega in sorted({point.frequency for _, point in told}):
-        _tell(scene, omega, [one for one in told if one[1].frequency == omega], amplitude, out)
+        _tell(scene, omega, [one for one in told if one[1].frequency == omega], amplitude, out, look)
     return out
 
 
 def _tell(
-    scene: Scene, omega: float, here: list[tuple[int, Sample]], amplitude: FloatArray, out: NotUnique
+    scene: Scene,
+    omega: float,
+    here: list[tuple[int, Sample]],
+    amplitude: FloatArray,
+    out: NotUnique,
+    look: Look,
 ) -> None:
     """What is found at the points of one frequency, into their rows."""
     families = dict[int, Family]()
     for k, point in here:
         same = [one for one in families if np.allclose(amplitude[one], amplitude[k], rtol=UNIQUE, atol=0.0)]
-        found = families[same[0]] if same else _family(scene, point, out.whole, k)
+        found = families[same[0]] if same else _family(scene, point, out.whole, k, look)
         if found is not None:
             families[k] = found
-    others = partly_stuck_motions(scene, omega, list(families.values()))
+    try:
+        others, all_looked_for = partly_stuck_motions(scene, omega, list(families.values()), look), True
+    except TimeOver:
+        others, all_looked_for = [], False
     for k, found in families.items():
         those = [one for one in others if not set(one.family.contacts).isdisjoint(found.contacts)]
         least = np.min([found.least, *(one.family.least for one in those)], axis=0)
         greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
+        whole = found.complete and all_looked_for
         if (greatest - least > UNIQUE * greatest).any():
-            out.least[k], out.greatest[k], out.whole[k] = least, greatest, found.complete
-        elif not found.complete:
+            out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
+        elif not whole:
             out.whole[k] = 0.0
     for one in others:
         if all(set(one.family.contacts).isdisjoint(found.contacts) for found in families.values()):
@@ -65,16 +76,16 @@ def _tell(
             out.beside.append(Stuck(omega, one.states, 0.0 - one.residual, *extent))
 
 
-def _family(scene: Scene, point: Sample, whole: FloatArray, k: int) -> Family | None:
+def _family(scene: Scene, point: Sample, whole: FloatArray, k: int, look: Look) -> Family | None:
     """The family of a point; None if it has none, or, with 0 for the whole, if it cannot be told."""
     alone = len(scene.contacts) == 1 and has_friction(scene.contacts[0])
     if "E" not in point.states or (alone and set(point.states) == {"E"}):  # of several another may slip
         return None
     try:
         if point.repeats:
-            return family(scene, point.frequency, point.state, point.repeats)
+            return family(scene, point.frequency, point.state, point.repeats, look)
         if point.steady is not None and (point.steady.shares[:, 0] == 1.0).any():
             whole[k] = 0.0
-    except SimulationError:  # its neighbourhood cannot be computed
+    except (SimulationError, TimeOver):  # its neighbourhood cannot be computed, or not any more
         whole[k] = 0.0
     return None

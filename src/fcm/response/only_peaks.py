@@ -13,6 +13,7 @@ from fcm.continuation import Mark, Path
 from fcm.motion.errors import SimulationError
 from fcm.orbit.harmonic import state_of
 from fcm.orbit.located import SAME, Guess, located
+from fcm.orbit.periodic import Look
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import near_balance
@@ -28,15 +29,16 @@ from fcm.scene.model import FloatArray, Scene
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
 
 
-def peaks_alone(scene: Scene, report: Report) -> Curve | None:
+def peaks_alone(scene: Scene, report: Report, look: Look) -> Curve | None:
     """The curve of a scene with its peaks, folds and jumps alone; None where the balance has others."""
-    balanced = traced_curve(scene, Wanted(None, ACCURACY))
+    balanced = traced_curve(scene, Wanted(None, ACCURACY), look)
     if not balanced.complete:
         return None
     problem, known, folds = OrbitProblem(scene), list[Sample](), dict[float, Sample]()
     guesses = list(_guesses(scene, balanced))
     for number, guess in enumerate(guesses):
         report(number / len(guesses), f"{number} of {len(guesses)} peaks and folds")
+        look()
         found = located(problem, guess, known)
         if found is None:
             return None
@@ -50,20 +52,22 @@ def peaks_alone(scene: Scene, report: Report) -> Curve | None:
     there = [jump for jump in jumps if jump is not None]
     if swept.untold or len(there) < len(jumps):
         return None
-    return _curve(scene, points, Swept(there, []), problem.periods)
+    return _curve(scene, points, Swept(there, []), problem.periods, look)
 
 
-def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
+def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str, look: Look) -> Curve:
     """The peaks, folds and jumps of a curve that was followed."""
-    whole = orbit_curve(problem, paths, reason)
+    whole = orbit_curve(problem, paths, reason, look)
     tops = {peak.frequency for peak in whole.peaks.values()}
     points = [one for path in paths for one in samples(problem, path)]
     points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
-    return _curve(problem.scene, points, whole.swept(), problem.periods, reason)
+    return _curve(problem.scene, points, whole.swept(), problem.periods, look, reason)
 
 
-def _curve(scene: Scene, points: list[Sample], swept: Swept, periods: int, reason: str = "") -> Curve:
-    curve = curve_of_points(scene, points, reason)
+def _curve(
+    scene: Scene, points: list[Sample], swept: Swept, periods: int, look: Look, reason: str = ""
+) -> Curve:
+    curve = curve_of_points(scene, points, reason, look)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
     if curve.orbits is not None:
         curve.orbits.span, curve.orbits.periods = scene.frequency_range, periods

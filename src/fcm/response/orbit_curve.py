@@ -11,10 +11,12 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark, Path
 from fcm.orbit.landing import with_landings
+from fcm.orbit.periodic import Look, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
+from fcm.response.legs import TimeOver
 from fcm.response.loose import loose
 from fcm.response.not_unique import not_unique
 from fcm.response.stuck_beside import stuck_beside
@@ -28,15 +30,18 @@ from fcm.scene.model import Scene
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def orbit_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str) -> Curve:
-    """The points of paths, with a point of NaN between one and the next; complete without a reason."""
+def orbit_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str, look: Look = without_end) -> Curve:
+    """The points of paths, with a point of NaN between one and the next; complete without a reason.
+
+    look raises `TimeOver` where no more is to be found out about them.
+    """
     points, folds, scene = list[Sample | None](), list[float](), problem.scene
     branches = with_landings(problem, [samples(problem, path) for path in paths])
     for found in branches:
         folds += [point.frequency for point in found if point.mark & Mark.FOLD]
         found = [_of_whole(scene, point) for point in found]
         points += [None, *found] if points else found
-    curve = replace(_curve(scene.whole(), points, reason, everywhere=False), folds=folds)
+    curve = replace(_curve(scene.whole(), points, reason, look), folds=folds)
     if curve.orbits is not None:
         curve.orbits.periods = problem.periods
         if scene.held:
@@ -56,16 +61,18 @@ def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
     scene = problem.scene
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
     shots = [shot for shot in (problem.shot(point.z) for point in points) if shot is not None]
+    if not shots:
+        return kept
     least = np.min([rooms(shot.system, shot.segments) for shot in shots], axis=0, initial=1.0)
     for one, room in zip(scene.held, least, strict=True):
         kept[one.place, int(one.open)] = room
     return kept
 
 
-def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str) -> Curve:
+def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str, look: Look = without_end) -> Curve:
     """Points that no curve joins: one of NaN between each and the next."""
     apart = [one for point in points for one in (None, point)]
-    return _curve(scene, apart[1:], reason, everywhere=False)
+    return _curve(scene, apart[1:], reason, look)
 
 
 def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
@@ -77,12 +84,18 @@ def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
     return curve
 
 
-def _curve(scene: Scene, points: Sequence[Sample | None], reason: str, everywhere: bool) -> Curve:
+def _curve(
+    scene: Scene,
+    points: Sequence[Sample | None],
+    reason: str,
+    look: Look = without_end,
+    everywhere: bool = False,
+) -> Curve:
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
     rows = _told(amplitude, everywhere)
-    others = not_unique(scene, points, amplitude, rows)
+    others = not_unique(scene, points, amplitude, rows, look)
     regime = _regimes(points, len(scene.contacts))
     told = everywhere | np.isfinite(others.whole)
     stable = np.array([np.nan if p is None else float(p.stable) for p in points])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -37,12 +37,15 @@ BEYOND = 0.2  # estimated error, beyond which a solution is not called stable
 Rows = npt.NDArray[np.intp]
 
 
-def traced_curve(scene: Scene, wanted: Wanted = ONE_HARMONIC) -> Curve:
-    """The response curve of a scene without a sweep."""
+def traced_curve(
+    scene: Scene, wanted: Wanted = ONE_HARMONIC, look: Callable[[], None] | None = None
+) -> Curve:
+    """The response curve of a scene without a sweep; look is called now and then."""
     from fcm.response.groups import lost_curve
 
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
+    system.work.look = look or system.work.look
     by_need = wanted.harmonics is None
     try:
         found = accurate(system, wanted.accuracy) if by_need else given(system)
