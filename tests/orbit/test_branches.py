@@ -12,11 +12,14 @@ from scipy.optimize import minimize_scalar
 
 import fcm
 from fcm.continuation import Status, follow
+from fcm.continuation.newton import Newton
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic
-from fcm.orbit.branch import incomplete
+from fcm.orbit.apart import passes
+from fcm.orbit.branch import explore, incomplete
 from fcm.orbit.damped import less_damped, more_damped
+from fcm.orbit.held import held
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
 from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
@@ -61,6 +64,18 @@ def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
     assert last.amplitude == pytest.approx(curve.amplitude[k], rel=1e-6)
     rest = simulate(scene, omega, 400).measures(last=1)[0]
     assert rest.amplitude[1] < 0.5 * last.amplitude[1]
+
+
+def test_a_motion_between_points_of_a_path_is_on_it_and_on_no_other():
+    problem = OrbitProblem(fcm.load_scene(Path(__file__).parent / "scenes/isolated.toml"))
+    paths, missed = explore(problem)
+    assert len(paths) == 2 and not missed
+    for path, other in (paths, paths[::-1]):
+        k, newton = len(path.z) // 2, Newton(problem)
+        assert held(newton, 0.3 * path.z[k] + 0.7 * path.z[k + 1])
+        z = np.array(newton.z)
+        assert passes(path, z, problem) and not passes(other, z, problem)
+        assert not passes(path, np.append(1.01 * z[:-1], z[-1]), problem)
 
 
 def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range():
@@ -112,7 +127,7 @@ def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
 def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
     scene = lightly_damped(20)
     problem = OrbitProblem(scene)
-    found, missed = starts(problem)
+    found, missed, _ = starts(problem)
     (z,) = found
     low, high = scene.frequency_range
     assert low < z[-1] < high and set(missed) == {low, high}

@@ -37,6 +37,7 @@ def all_branches(
     max_step: float,
     progress: Progress | None = None,
     along: Follow = follow,
+    known: Sequence[Path] = (),
 ) -> Branches:
     """Follow every solution that no branch followed before contains.
 
@@ -49,9 +50,11 @@ def all_branches(
         it both ways.
     along : callable
         Follows a path, as `follow` does.
+    known : sequence of Path
+        Branches that were followed before, which are the first of those returned.
     """
     stations = sorted({float(z[-1]) for z in solutions})
-    paths: list[Path] = []
+    paths: list[Path] = list(known)
     lost: list[FloatArray] = []
     for z in solutions:
         problem = new_problem() if paths else None

@@ -4,13 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from fcm.continuation import Path
+from fcm.continuation.branches import SAME
+from fcm.continuation.newton import Newton
 from fcm.motion.state import State
 from fcm.orbit.harmonic import MANY, computed_state
+from fcm.orbit.held import held
 from fcm.orbit.periodic import Look
-from fcm.scene.model import Scene
+from fcm.orbit.problem import OrbitProblem
+from fcm.scene.model import FloatArray, Scene
 
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
+
+
+def passes(path: Path, z: FloatArray, problem: OrbitProblem) -> bool:
+    """Whether a path passes the motion z, which need not be one of its points."""
+    before, after = path.z[:-1], path.z[1:]
+    rise, ahead = after[:, -1] - before[:, -1], z[-1] - before[:, -1]
+    across = np.flatnonzero(ahead * (z[-1] - after[:, -1]) <= 0.0)
+    if not across.size:
+        return False
+    problem.measure(z)
+    scale, newton = np.array(problem.scale), Newton(problem)
+    share = np.divide(ahead, rise, out=np.zeros_like(rise), where=rise != 0.0)[across, None]
+    guesses = before[across] + share * (after[across] - before[across])
+    width = np.linalg.norm((after[across] - before[across]) / scale, axis=1)
+    off = np.linalg.norm((guesses - z) / scale, axis=1)
+    return any(_leads_to(newton, guess, z, scale) for guess in guesses[off <= width + SAME])
+
+
+def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArray) -> bool:
+    """Whether Newton's method leads from a guess to the motion z, at its frequency."""
+    there = held(newton, np.append(guess[:-1], z[-1]))
+    return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
 
 
 def states_along(scene: Scene, look: Look) -> Iterator[list[Place]]:

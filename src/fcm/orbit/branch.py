@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.motion.errors import SimulationError
+from fcm.orbit.apart import passes
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
-from fcm.orbit.start import first_point, starts
+from fcm.orbit.start import beside_tops, first_point, starts
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
 
@@ -90,8 +92,14 @@ def explore(
 ) -> tuple[list[Path], str]:
     """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
-    found, missed = starts(problem, look)
-    paths = all_branches(lambda: problem, found, scene.frequency_range, scene.max_step, along=along).paths
+    found, missed, apart = starts(problem, look)
+    branches = partial(all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step)
+    paths = branches(found, along=along).paths
+    if apart:  # what is passed already is known without being followed again
+        beside = [
+            z for z in beside_tops(problem, look) if not any(passes(path, z, problem) for path in paths)
+        ]
+        paths = branches(beside, along=along, known=paths).paths
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join(missed[end] for end in ends)
 

@@ -71,16 +71,20 @@ class OrbitProblem(Problem):
         shot = self._shots.get(key)
         if shot is None and key not in self._shots:
             shot = self._made(z)
-            self._numbers += _size(shot)
+            self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             if self._numbers > KEPT:
                 self._forget()
             self._shots[key] = shot
         return shot
 
     def _forget(self) -> None:
-        """Forget the periods that no curve has come to; all of them, if those are too many."""
+        """Forget the periods that no curve has come to, and of the others what is not reported; all of them,
+        if those are too many."""
         self._shots = {key: self._shots[key] for key in self._points if key in self._shots}
-        self._numbers = sum(_size(shot) for shot in self._shots.values())
+        kept = [shot for shot in self._shots.values() if shot is not None]
+        for shot in kept:
+            shot.settle()
+        self._numbers = sum(shot.numbers for shot in kept)
         if self._numbers > LASTING * KEPT:
             self._shots, self._points, self._numbers = {}, set(), 0
 
@@ -149,11 +153,6 @@ class OrbitProblem(Problem):
         change = 0.5 * ((rates[least.size :] - rates[: least.size]) * shapes.T).sum(axis=1)
         output[:], growth[:] = np.where(moves, amplitude, 0.0), np.where(moves, change, 0.0)
         return 0
-
-
-def _size(shot: Shot | None) -> int:
-    """Numbers that a period consists of."""
-    return 0 if shot is None else shot.segments.y.size + 3 * shot.x.size**2
 
 
 def _label(shot: Shot) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,14 +32,22 @@ ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then 
 DISTINCT = 1e-6  # solutions further apart than this, relative to their size, are different
 
 
-def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatArray], dict[float, str]]:
-    """Points z from which all branches are followed, and of ends of the range why one was not found there.
+class Starts(NamedTuple):
+    """What there is to begin with."""
+
+    points: list[FloatArray]  # z, from which branches are followed
+    missed: dict[float, str]  # of ends of the range why there is none
+    apart: bool  # whether the balance has more solutions than there are points: see `beside_tops`
+
+
+def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
+    """Points from which branches are followed.
 
     At both ends, and at the resonances inside, near every solution of the balance, and from motions in which
-    contacts stick as the scene starts; where the balance has more than the motion, also beside the tops of
-    its branches; where that leads to no stable motion at an end, also the one that a motion from rest comes
-    to. Where there is none at all, near the first solution of the balance of one harmonic that leads to a
-    motion, anywhere in the range; else from the first motion with more damping that leads to one without.
+    contacts stick as the scene starts; where that leads to no stable motion at an end, also the one that a
+    motion from rest comes to. Where there is none at all, near the first solution of the balance of one
+    harmonic that leads to a motion, anywhere in the range; else from the first motion with more damping that
+    leads to one without.
     look is called now and then.
     """
     scene, found, missed = problem.scene, list[FloatArray](), dict[float, str]()
@@ -62,23 +71,22 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> tuple[list[FloatA
             except SimulationError as error:
                 missed[omega] = str(error)
         apart = apart or len(found) - before < len(guesses)
-    if apart and found:
-        found += _beside_tops(problem, found, look)
-    return found or _anywhere(problem, look), {
-        omega: missed[omega] for omega in missed if omega not in inside
-    }
+    at_ends = {omega: missed[omega] for omega in missed if omega not in inside}
+    return Starts(found or _anywhere(problem, look), at_ends, apart and bool(found))
 
 
-def _beside_tops(problem: OrbitProblem, known: list[FloatArray], look: Look) -> list[FloatArray]:
+def beside_tops(problem: OrbitProblem, look: Look = without_end) -> list[FloatArray]:
     """Points beside the tops of the balance's branches, where it has more solutions than there are motions:
     a branch on which it leads away from an end of the range may be closed.
+
+    look is called now and then.
     """
-    found = list(known)
+    found = list[FloatArray]()
     for places in states_along(problem.scene, look):
         there = [z for place in places[:TRIED] for z in _points(problem, place, look)]
         if there:  # some may lead to a lower branch
             _add(problem, found, max(there, key=lambda z: _height(problem, z)))
-    return found[len(known) :]
+    return found
 
 
 def _height(problem: OrbitProblem, z: FloatArray) -> float:
