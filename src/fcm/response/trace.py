@@ -173,12 +173,14 @@ def _curve(followed: _Followed) -> Curve:
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     """A response with points where stability changes between folds, and whether each point is stable.
 
-    With an accuracy, and how far it is from where more harmonics have these.
+    With an accuracy, and how far it is from where more harmonics have these; of a curve that has not come to
+    it, and is said not to, nothing is looked for where it has long lost that of more harmonics.
     """
+    short = accuracy is not None and not found.reached
     paths, shown, errors, stable = [], [], [], []
     lost: list[Lost] = []
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
-        judged = stability(found.system, path, astray(error.truncation))
+        judged = stability(found.system, path, astray(error.truncation) if short else None)
         inserted = judged.inserted
         if accuracy is not None:
             lost += lost_along(found.system, path, judged.crossings, accuracy)
