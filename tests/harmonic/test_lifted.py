@@ -35,3 +35,25 @@ def test_what_is_nowhere_is_given_up_within_few_evaluations(blade):
         z = np.append(factor * path.z[top, :-1], path.parameter[top])
         assert not lifted.beside(z, path.direction[top])
         assert 0 < lifted.newton.evaluations - before <= 8  # Newton steps of one guess
+
+
+def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(blade):
+    """Against Newton's method to the precision of numbers: it takes more Jacobians and comes to the same."""
+    path, lifted = blade
+    exact = Lifted(lifted.balance, [1], [1, 2, 3, 4, 5, 6], 1e-9)
+    moved = taken = needed = 0
+    for i in range(0, len(path.z), 16):
+        before = lifted.newton.evaluations, exact.newton.evaluations
+        if not lifted.beside(path.z[i], path.direction[i]):
+            continue
+        found = np.array(lifted.newton.z)
+        unit = np.array(lifted.balance.scale)
+        assert exact.beside(path.z[i], path.direction[i])
+        true, way = np.array(exact.newton.z), exact.newton.moved
+        if way > 1e-6:
+            moved += 1
+            assert np.linalg.norm((found - true) / unit) < 0.05 * way
+            taken += lifted.newton.evaluations - before[0]
+            needed += exact.newton.evaluations - before[1]
+    assert moved > 5
+    assert taken < 0.6 * needed

@@ -28,6 +28,15 @@ class Homotopy(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
+    def probe(self, z: cython.double[::1]) -> cython.int:
+        i: cython.Py_ssize_t
+        self.inner.probe(z)
+        for i in range(self.unknowns):
+            self.residual[i] = self.inner.residual[i] - self.taken * self.removed[i]
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
         return self.inner.condense(row, matrix)
 

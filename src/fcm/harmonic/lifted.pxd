@@ -17,4 +17,5 @@ cdef class Lifted:
     cdef bint corrected(self) except -1
     cdef bint onward(self) except -1
     cdef bint nearly(self) except -1
+    cdef bint again(self, double first) except -1
     cdef double away(self) except -1

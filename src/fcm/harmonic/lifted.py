@@ -18,6 +18,7 @@ GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where a
 # unknowns from which on what is not found at once is given up: there it is dear, and hundreds of such ways by
 # parts have led nowhere
 DEAR = cython.declare(cython.int, 240)
+MANY = cython.declare(cython.int, 60)  # unknowns from which on a Jacobian takes longer than the residual
 TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
 
 
@@ -127,8 +128,24 @@ class Lifted:
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()
+            if newton.problem.unknowns >= MANY and self.again(first):
+                return newton.direct()
             before = step
         return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def again(self, first: cython.double) -> cython.bint:
+        """Whether a step with the Jacobian from before the last is so short that it is the last one; else it
+        is not taken."""
+        i: cython.Py_ssize_t
+        newton: Newton = self.newton
+        newton.problem.probe(newton.z)
+        if not newton.step() < self.enough * first:
+            return False
+        for i in range(self.guess.shape[0]):
+            newton.z[i] += newton.scale[i] * newton.delta[i]
+        return True
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
