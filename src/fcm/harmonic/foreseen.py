@@ -131,6 +131,8 @@ def _ahead(
         if _greatest(before, places) <= SETTLED * accuracy:
             break
     change = _greatest(begin, places)
+    if told and change <= accuracy:
+        return Foreseen(change, told, system.harmonics)
     share = _share(many, places, height, system.harmonics)
     order = [int(k) + 1 for k in np.argsort(-share) if k + 1 in many.harmonics and share[k] > 0.0]
     allowed = SPARE * max(accuracy, BELIEVED * (change if told else max(change, 1.0)))
