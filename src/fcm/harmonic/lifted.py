@@ -18,7 +18,8 @@ GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where a
 # unknowns from which on what is not found at once is given up: there it is dear, and hundreds of such ways by
 # parts have led nowhere
 DEAR = cython.declare(cython.int, 240)
-MANY = cython.declare(cython.int, 60)  # unknowns from which on a Jacobian takes longer than the residual
+# unknowns from which on a Jacobian takes far longer than the residual: those of several contacts
+MANY = cython.declare(cython.int, 100)
 TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
 
 
