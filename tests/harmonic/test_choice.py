@@ -166,7 +166,7 @@ def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_s
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
     own = choice.foreseen
     monkeypatch.setattr(
-        choice, "foreseen", lambda *a: replace(own(*a), told=False, harmonics=(1, 2, 3, 5, 9))
+        choice, "foreseen", lambda *a: replace(own(*a), change=0.0, told=False, harmonics=(1, 2, 3, 5, 9))
     )
     monkeypatch.setattr(choice, "DOUBTFUL", 0.0)
     found = accurate(System(scene("yang1998", 5)), 1e-4)

@@ -111,10 +111,11 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
                     return sure
             else:
                 more = enlarged(sure, accuracy)
-        if not ahead.told:
+        blind = not ahead.told and ahead.change <= accuracy  # what is told of is no reason for more
+        if blind:
             more = found.within(DOUBTFUL - work.seconds, more)
         if more == found.system.harmonics:
-            further = ahead.harmonics if not ahead.told and ahead.harmonics != more else ()
+            further = ahead.harmonics if blind and ahead.harmonics != more else ()
             break
         if work.seconds + found.seconds_with(more) > PATIENCE:
             further = more
