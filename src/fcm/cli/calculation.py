@@ -37,6 +37,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
         return track.optimised(messages, scene, asked.method, options)
     if asked.method == "exact" and (scene.has_range or asked.at):
         options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
+        options["periods"] = asked.periods
         options["limit"] = None if asked.time_limit is None else math.inf  # that of the run is enough
         return exact.traced(messages, scene, asked.at, options)
     if asked.level is not None:

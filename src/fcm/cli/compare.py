@@ -19,6 +19,7 @@ OF_NO_USE = {  # with --compare, and why
     "method": "it runs every method",
     "at": "it compares whole curves",
     "only": "it compares whole curves",
+    "periods": "it compares motions that repeat after each period",
     "level": "it compares curves over the range of frequencies",
     "mode": "it compares curves over the range of frequencies",
     "force_levels": "it compares curves over the range of frequencies",

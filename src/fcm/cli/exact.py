@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fcm.results.orbits import Orbits
     from fcm.scene.model import Scene
 
+MOST_PERIODS = 8  # that --periods can ask for
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 _DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
@@ -50,8 +51,14 @@ def _values(text: str) -> list[float]:
     return ends if len(parts) == 1 else [float(value) for value in np.linspace(ends[0], ends[1], count)]
 
 
-def check_options(method: str, at: tuple[float, ...] | None, only: str | None, level: object = None) -> None:
+def check_options(
+    method: str, at: tuple[float, ...] | None, only: str | None, periods: int, level: object = None
+) -> None:
     """A usage error if an option was given that has no meaning with the method."""
+    if periods > 1 and (method != "exact" or at is not None or only is not None):
+        raise click.UsageError(
+            "--periods needs --method exact, and whole curves: no --only; --at finds such motions by itself."
+        )
     if only is not None and (method != "exact" or at is not None):
         raise click.UsageError("--only needs --method exact, and curves: no frequencies by --at.")
     if method != "exact":
@@ -94,7 +101,13 @@ def remarks(response: Response) -> list[str]:
     spread = [float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in loose]
     out = []
     if several:
-        out.append(f"points that repeat only after several periods of the force (repeats): {several}")
+        which = sorted({int(one) for orbits in found for one in orbits.repeats if one > 1})
+        out.append(
+            f"points that repeat only after several periods of the force (repeats): {several}, after "
+            f"{' or '.join(map(str, which))}"
+        )
+    if doubles := [one for orbits in found for one in orbits.doubles]:
+        out.append(_doubles(response, doubles, max(int(np.nanmax(orbits.repeats)) for orbits in found)))
     if irregular:
         out.append(
             "quasi-periodic or irregular points, or of more than 8 periods (repeats is 0; cycle_least to "
@@ -127,6 +140,15 @@ def _unsure(orbits: Orbits) -> int:
 
     none = np.isnan(orbits.family_greatest).all(axis=1)
     return int(((orbits.family_complete == 0.0) & none).sum())
+
+
+def _doubles(response: Response, doubles: list[float], periods: int) -> str:
+    """Where the period doubles to motions that are not followed, and what follows them."""
+    from fcm.units import in_unit
+
+    first = f"{float(in_unit(doubles[0], response.frequency_unit)):.6g} {response.frequency_unit}"
+    more = f": --periods {2 * periods} follows what begins there" if periods < MOST_PERIODS else ""
+    return f"places at which the period doubles: {len(doubles)}, the first at {first}{more}"
 
 
 def _stuck(response: Response) -> list[str]:

@@ -73,6 +73,11 @@ OPTIONS: list[Callable[[Any], Any]] = [  # in the order of the help
         help="Peaks, folds and jumps alone, near those of the balance. With --method exact.",
     ),
     click.option(
+        "--periods", type=click.Choice([1, 2, 4, 8]), default=1, show_default=True,
+        help="Follow also motions that repeat only after so many periods of the force, from where the period "
+        "doubles. With --method exact.",
+    ),
+    click.option(
         "--table", type=click.Path(), metavar="FILE", help="A table of your own.  [default: the shipped one]"
     ),
     click.option(
@@ -141,6 +146,7 @@ class Asked:
     low: float | None
     high: float | None
     only: str | None
+    periods: int
     table: str | None
     max_step: float | None
     jobs: int

@@ -60,7 +60,7 @@ def all_branches(
         problem = new_problem() if paths else None
         if problem is not None and any(contains(path, z, problem) for path in paths):
             continue
-        path = _through(new_problem, z, span, max_step, stations, progress, along)
+        path = through(new_problem, z, span, max_step, stations, progress, along)
         if not path.z.shape[0]:
             lost.append(z)
         elif problem is None or not _known(path, paths, problem):
@@ -88,7 +88,7 @@ def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
     return bool((np.sqrt((off * off).sum(axis=1)) < SAME).any())
 
 
-def _through(
+def through(
     new_problem: Callable[[], Problem],
     z: FloatArray,
     span: tuple[float, float],
@@ -97,7 +97,7 @@ def _through(
     progress: Progress | None,
     along: Follow,
 ) -> Path:
-    """The whole branch through a solution, from its lower end where it has one."""
+    """The whole branch through a solution, from its lower end where it has one; stations as of `follow`."""
     if z[-1] == span[0] or z[-1] == span[1]:
         path = along(new_problem(), z, span, z[-1] == span[0], max_step, stations, progress)
         return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path

@@ -20,14 +20,16 @@ from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.family import Family, family
 from fcm.orbit.linear_motion import MOST, linear_answer, sticking
-from fcm.orbit.periodic import Look, Orbit, shoot, without_end
+from fcm.orbit.periodic import Look, Orbit, closed, converged, shoot, within_unit_circle, without_end
 from fcm.orbit.residual_friction import always_stuck, resting, resting_at
+from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Held, Scene
 
 KEPT = (0.01, 1.0)  # of the forces, by which residual friction keeps away from two limits at a time
 APART = 0.2  # of the distance of the furthest two: residual friction nearer to another is not tried as well
 TRIED = 6  # at most for the same contacts
 SAME = 1e-3  # relative difference of amplitudes up to which a motion is within an extent
+CLOSED = 1e-6  # by which a motion that was found with contacts held may fail to close without
 CYCLES = (10, 40)  # simulated before each look whether the motion has become periodic
 Choices = list[FloatArray]
 
@@ -49,11 +51,12 @@ def partly_stuck_motions(
     Of more contacts than `MOST` none.
     """
     whole, found, families = scene.whole(), list[Partly](), list(known)
-    for stuck, residual in _tried(whole, omega):
+    system = System(whole, omega)
+    for stuck, residual in _tried(system):
         if any(_has(one, stuck, residual) for one in families):
             continue
         look()
-        orbit = _with_held(whole, omega, stuck, residual)
+        orbit = _with_held(system, stuck, residual)
         if orbit is None or any(_holds(one, orbit) for one in families):
             continue
         one = _partly(orbit)
@@ -66,12 +69,13 @@ def partly_stuck_motions(
 def partly_stuck_as_started(scene: Scene, omega: float) -> list[State]:
     """Guesses from those motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
-    wanted = System(whole, omega).k_u * resting(whole)
+    system = System(whole, omega)
+    wanted = system.k_u * resting(whole)
     return [
         State(orbit.state.q, orbit.state.velocity, orbit.state.friction[computed])
         for stuck in _sets(whole)
-        if _choices(whole, omega, stuck, wanted[list(stuck)])
-        and (orbit := _with_held(whole, omega, stuck, wanted[list(stuck)])) is not None
+        if _choices(system, stuck, wanted[list(stuck)])
+        and (orbit := _with_held(system, stuck, wanted[list(stuck)])) is not None
     ]
 
 
@@ -83,16 +87,16 @@ def _sets(scene: Scene) -> Iterator[tuple[int, ...]]:
         yield from combinations(rough, size)
 
 
-def _tried(scene: Scene, omega: float) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+def _tried(system: System) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Contacts, and residual friction of them with which they may stick."""
-    for stuck in _sets(scene):
-        for residual in _thinned(_choices(scene, omega, stuck)):
+    for stuck in _sets(system.scene):
+        for residual in _thinned(_choices(system, stuck)):
             yield stuck, residual
 
 
-def _choices(scene: Scene, omega: float, stuck: tuple[int, ...], just: FloatArray | None = None) -> Choices:
+def _choices(system: System, stuck: tuple[int, ...], just: FloatArray | None = None) -> Choices:
     """Residual friction that keeps contacts stuck whatever the others do, as far as that is linear."""
-    system, found = System(scene, omega), Choices()
+    scene, found = system.scene, Choices()
     others = [j for j in range(len(scene.contacts)) if j not in stuck]
     for letters in product("EFS", repeat=len(others)):  # stuck, without friction, open
         pairs = list(zip(others, letters, strict=True))
@@ -151,14 +155,14 @@ def _holds(known: Family, orbit: Orbit) -> bool:
     return bool(inside.all()) and not set(stuck).isdisjoint(known.contacts)
 
 
-def _with_held(scene: Scene, omega: float, stuck: tuple[int, ...], residual: FloatArray) -> Orbit | None:
+def _with_held(system: System, stuck: tuple[int, ...], residual: FloatArray) -> Orbit | None:
     """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
-    contacts = scene.contacts
+    contacts = system.scene.contacts
     rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
-    held = scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
+    held = system.scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
     try:
-        orbit = _approached(System(held, omega))
-        return None if orbit is None else _released(scene, orbit.state, omega, rest)
+        orbit = _approached(System(held, system.omega))
+        return None if orbit is None else _released(system, orbit.state, rest)
     except SimulationError:  # it cannot be computed
         return None
 
@@ -175,16 +179,17 @@ def _approached(system: System) -> Orbit | None:
     return None
 
 
-def _released(scene: Scene, state: State, omega: float, rest: dict[int, float]) -> Orbit | None:
+def _released(system: System, state: State, rest: dict[int, float]) -> Orbit | None:
     """The same motion with no contact held, if those stick all through it."""
-    friction, displacement = np.zeros(len(scene.contacts)), scene.modal.shapes.T @ state.q
+    contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
+    friction = np.zeros(len(contacts))
     friction[[j for j in range(friction.size) if j not in rest]] = state.friction
     for j, w in rest.items():
-        friction[j] = scene.contacts[j].k_u * (scene.contacts[j].tangential @ displacement - w)
-    system = System(scene, omega)
-    orbit = shoot(system, State(state.q, state.velocity, friction))
-    sticks = orbit is not None and set(rest) <= set(always_stuck(system, orbit.cycle.segments))
-    return orbit if orbit is not None and sticks and orbit.stable else None
+        friction[j] = contacts[j].k_u * (contacts[j].tangential @ displacement - w)
+    shot = Shot(system, np.concatenate((state.q, state.velocity, friction)))
+    sticks = set(rest) <= set(always_stuck(system, shot.segments))
+    found = converged(shot) if sticks and shot.residual < CLOSED else None
+    return closed(*found) if found is not None and within_unit_circle(found[0].multipliers) else None
 
 
 def _partly(orbit: Orbit) -> Partly | None:

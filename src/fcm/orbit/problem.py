@@ -30,6 +30,8 @@ class OrbitProblem(Problem):
     ----------
     scene : Scene
         Its `frequency_range` is the unit of frequencies.
+    repeats : int
+        Periods of the force after which the motion closes.
 
     Examples
     --------
@@ -44,8 +46,8 @@ class OrbitProblem(Problem):
     (True, (5, 6))
     """
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.shooting = scene, Shooting(scene)
+    def __init__(self, scene: Scene, repeats: int = 1) -> None:
+        self.scene, self.shooting, self.repeats = scene, Shooting(scene, repeats), repeats
         self.free = self.shooting.free
         super().__init__(self.free.size, 1, len(scene.modal.dofs))
         self.soft = True
@@ -89,7 +91,7 @@ class OrbitProblem(Problem):
             self._shots, self._points, self._numbers = {}, set(), 0
 
     def _made(self, z: FloatArray) -> Shot | None:
-        self.periods += 1
+        self.periods += self.repeats
         try:
             return self.shooting.residual(z[:-1], float(z[-1]))
         except SimulationError:

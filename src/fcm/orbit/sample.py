@@ -16,7 +16,7 @@ from fcm.orbit.crossing import crossing
 from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
-from fcm.orbit.steady import Steady
+from fcm.orbit.steady import Steady, several
 from fcm.scene.model import FloatArray
 
 
@@ -48,7 +48,7 @@ def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: i
     multipliers = shot.multipliers
     return Sample(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), multipliers,
-        shot.residual, within_unit_circle(multipliers), z, direction, mark,
+        shot.residual, within_unit_circle(multipliers), z, direction, mark, several(shot),
     )  # fmt: skip
 
 

@@ -103,12 +103,20 @@ def _repeating(system: System, state: State, periods: int) -> Steady | None:
         shot = _flipped(before, x, periods)
         if shot is None:
             return None
-    if not within_unit_circle(shot.multipliers):
-        return None
-    parts = [measure(cycle) for cycle, _ in cycles_from(system, periods, shot.state)]
+    return _of_shot(shot) if within_unit_circle(shot.multipliers) else None
+
+
+def several(shot: Shot) -> Steady | None:
+    """How a motion of several periods, stable or not, ranges over them; None of one."""
+    return _of_shot(shot) if shot.periods > 1 else None
+
+
+def _of_shot(shot: Shot) -> Steady:
+    """A motion that closes after its periods."""
+    parts = [measure(cycle) for cycle, _ in cycles_from(shot.system, shot.periods, shot.state)]
     amplitude = np.array([part.amplitude for part in parts])
     return Steady(
-        periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
+        shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
         amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
     )  # fmt: skip
 

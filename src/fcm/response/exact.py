@@ -43,6 +43,7 @@ def trace_exact(
     limit: float | None = None,
     tolerance: float | None = TOLERANCE,
     only: str | None = None,
+    periods: int = 1,
 ) -> Response:
     """The curves of exact periodic solutions of a scene, in the layout of `fcm.response.trace`.
 
@@ -68,6 +69,9 @@ def trace_exact(
         have no effect, None nothing.
     only : {"peaks"}, optional
         Of the curves the peaks, folds and jumps alone, sought near those of the harmonic balance.
+    periods : {1, 2, 4, 8}
+        Follow also motions that repeat only after up to so many periods of the force, from where the period
+        doubles; with `at` they are found by the sweeps, and this has no meaning.
 
     Raises
     ------
@@ -84,7 +88,7 @@ def trace_exact(
     refuse_ring(scene, "the exact motion")
     begin, frequencies = time.perf_counter(), _checked(scene, at)
     with checkpoint_of(keep, resume) as checkpoint:
-        work = ExactWork(frequencies, limit, only is not None, tolerance is None)
+        work = ExactWork(frequencies, limit, only is not None, tolerance is None, periods)
         run = _Run(work, CurveSweep(jobs or os.cpu_count() or 1, checkpoint, place))
         response = run.response(scene, tolerance, progress)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:

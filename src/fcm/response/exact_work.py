@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from functools import partial
 
-from fcm.continuation import Path as Followed
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
 from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, reached, shown
+from fcm.orbit.doubled import Doubled, doubled_paths
 from fcm.orbit.problem import OrbitProblem
 from fcm.reduction.held import NotKeptError, check, foreseen, lost_by
 from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import Clock, Legs, TimeOver
 from fcm.response.only_peaks import peaks_alone, peaks_of
+from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import Visitor
@@ -36,6 +36,7 @@ class ExactWork:
     limit: float | None = None  # [s] of processor time for a curve
     only_peaks: bool = False
     whole: bool = False  # nothing is to be left out
+    periods: int = 1  # up to which motions are followed, from where the period doubles
 
     def __call__(self, group: Group, report: Report) -> list[Curve]:
         return [self._curve(scene, report) for scene in group]
@@ -62,66 +63,87 @@ class ExactWork:
             return lost_curve(scene, f"{_cut_off(stop, limit)}the start{stiff}")
 
     def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
+        followed = _Followed(report, clock, stiff, self.periods)
         if self.only_peaks:
             alone = peaks_alone(scene, report, clock.look)
-            if alone is not None:
-                return alone
-            return peaks_of(*_followed(scene, report, clock, stiff), clock.look)
+            return peaks_of(*followed.branches(scene), clock.look) if alone is None else alone
         if self.whole or len(scene.contacts) < FEWEST:
-            return _traced(scene, report, clock, stiff)
-        return _traced_lightly(scene, report, clock, stiff)
+            return followed.curve(scene)
+        return followed.lightly(scene)
 
 
-def _traced_lightly(scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
-    """The curve, followed without the contacts that keep their state all along it."""
-    held = foreseen(scene, balance_of(scene, look=clock.look))
-    while True:
+@dataclass(frozen=True)
+class _Followed:
+    """Curves that are followed in the range of a scene."""
+
+    report: Report
+    clock: Clock
+    stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
+    periods: int
+
+    def lightly(self, scene: Scene) -> Curve:
+        """The curve, followed without the contacts that keep their state all along it."""
+        held = foreseen(scene, balance_of(scene, look=self.clock.look))
+        while True:
+            try:
+                curve = self._held_or_lost(scene, held)
+                lost = () if curve.orbits is None else tuple(lost_by(curve.orbits.held).tolist())
+            except NotKeptError as found:
+                curve, lost = lost_curve(scene, ""), found.places
+            if not (held and (lost or not curve.points)):
+                return curve
+            if curve.reason.startswith(STOPPED) or self.clock.over:
+                return lost_curve(scene, curve.reason)  # what there is is not the motion of these contacts
+            held = tuple(one for one in held if lost and one.place not in lost)
+
+    def _held_or_lost(self, scene: Scene, held: tuple[Held, ...]) -> Curve:
+        """The curve with contacts held; without a point, if it cannot be begun."""
+        if not held:
+            return self.curve(scene)
         try:
-            curve = _held_or_lost(scene, held, report, clock, stiff)
-            lost = () if curve.orbits is None else tuple(lost_by(curve.orbits.held).tolist())
-        except NotKeptError as found:
-            curve, lost = lost_curve(scene, ""), found.places
-        if not (held and (lost or not curve.points)):
-            return curve
-        if curve.reason.startswith(STOPPED) or clock.over:
-            return lost_curve(scene, curve.reason)  # what there is of it is not the motion of these contacts
-        held = tuple(one for one in held if lost and one.place not in lost)
+            return self.curve(scene.holding(held))
+        except SimulationError as error:
+            return lost_curve(scene, str(error))
+
+    def curve(self, scene: Scene) -> Curve:
+        """The curve with all contacts that the scene computes."""
+        return orbit_curve(*self.branches(scene), self.clock.look)
+
+    def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str]:
+        """All branches, and why they are not complete, else ''; what is stiff is said then, too.
+
+        Raises
+        ------
+        NotKeptError
+            If a contact that is held would not have kept its state.
+        """
+        legs = Legs(scene.frequency_range, self.report, self.clock.look, _watched if scene.held else None)
+        problem = OrbitProblem(scene)
+        groups, begun = list[OrbitBranches](), [(problem, 0)]
+        try:
+            paths, without = explore(problem, legs, legs.look)
+            reason = incomplete(scene, paths, without)
+            groups.append(OrbitBranches(problem, paths))
+            while 2 * problem.repeats <= self.periods and not reason:
+                problem = Doubled(problem)
+                begun.append((problem, len(legs.finished)))
+                paths, lost = doubled_paths(problem, groups[-1].points, legs, legs.look)
+                reason = incomplete(scene, paths, "") if paths else ""
+                reason = reason or (_without(problem, lost) if lost else "")
+                groups.append(OrbitBranches(problem, paths, groups[-1]))
+        except (KeyboardInterrupt, TimeOver) as stop:
+            legs.keep()
+            paths, ends = legs.paths(), [*(first for _, first in begun[1:]), None]
+            groups = [
+                OrbitBranches(one, paths[first:end]) for (one, first), end in zip(begun, ends, strict=True)
+            ]
+            reason = _cut_off(stop, self.clock.limit) + reached(scene, paths)
+        return groups, reason + self.stiff if reason else ""
 
 
-def _held_or_lost(scene: Scene, held: tuple[Held, ...], report: Report, clock: Clock, stiff: str) -> Curve:
-    """The curve with contacts held; without a point, if it cannot be begun."""
-    if not held:
-        return _traced(scene, report, clock, stiff)
-    try:
-        return _traced(scene.holding(held), report, clock, stiff)
-    except SimulationError as error:
-        return lost_curve(scene, str(error))
-
-
-def _traced(scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
-    return orbit_curve(*_followed(scene, report, clock, stiff), clock.look)
-
-
-def _followed(
-    scene: Scene, report: Report, clock: Clock, stiff: str
-) -> tuple[OrbitProblem, list[Followed], str]:
-    """All branches, and why they are not complete, else ''; what is stiff is said then, too.
-
-    Raises
-    ------
-    NotKeptError
-        If a contact that is held would not have kept its state.
-    """
-    problem = OrbitProblem(scene)
-    legs = Legs(scene.frequency_range, report, clock.look, partial(_watched, problem) if scene.held else None)
-    try:
-        paths, without = explore(problem, legs, legs.look)
-        reason = incomplete(scene, paths, without)
-    except (KeyboardInterrupt, TimeOver) as stop:
-        legs.keep()
-        paths = legs.paths()
-        reason = _cut_off(stop, clock.limit) + reached(scene, paths)
-    return problem, paths, reason + stiff if reason else ""
+def _without(problem: OrbitProblem, lost: int) -> str:
+    """Why the curves of motions that repeat after so many periods are not complete."""
+    return f"of {lost} flips no motion was found that repeats after {problem.repeats} periods"
 
 
 def _watched(problem: OrbitProblem, z: FloatArray) -> None:

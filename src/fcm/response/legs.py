@@ -9,6 +9,7 @@ from functools import partial
 
 from fcm.continuation import Mark, Path, Stage, Status, follow
 from fcm.continuation.trail import Kept, Points
+from fcm.orbit.doubled import Doubled
 from fcm.orbit.periodic import without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.run import Report
@@ -29,6 +30,10 @@ class Leg:
 
 
 LEGS = (Leg, Path, Stage, Status, Kept, Points, Mark)  # what is saved consists of these
+
+
+class _Ended(Exception):  # noqa: N818
+    """A curve has come to its end within the range."""
 
 
 class TimeOver(Exception):  # noqa: N818
@@ -62,7 +67,7 @@ class Legs:
     and the one that was begun goes on from its last point.
 
     look : called before every step, as a `Clock` looks.
-    passing : called with every point from which a step is made.
+    passing : called with the problem and every point from which a step is made.
     """
 
     def __init__(
@@ -70,7 +75,7 @@ class Legs:
         span: tuple[float, float],
         report: Report,
         look: Callable[[], None] = without_end,
-        passing: Callable[[FloatArray], None] | None = None,
+        passing: Callable[[OrbitProblem, FloatArray], None] | None = None,
     ) -> None:
         self.report, self.low, self.high = report, *span
         self.look, self.passing = look, passing
@@ -100,24 +105,43 @@ class Legs:
             path = saved.path
         else:
             stage = None if saved is None else saved.stage
-            begin = float(start[-1])
-            path = follow(
-                problem, start, span, forward, max_step, stations, None, stage, partial(self._watch, begin)
-            )
+            path = self._followed(problem, start, span, forward, max_step, stations, stage)
         self._last = None
         self.finished.append(path)
         if saved is None or saved.path is None:
             self.report.save(Leg(len(self.finished) - 1, path, None))
         return path
 
-    def _watch(self, begin: float, stage: Stage) -> None:
+    def _followed(
+        self,
+        problem: OrbitProblem,
+        start: FloatArray,
+        span: tuple[float, float],
+        forward: bool,
+        max_step: float,
+        stations: Sequence[float],
+        stage: Stage | None,
+    ) -> Path:
+        """The curve; of motions of twice the periods of others up to where it comes to those."""
+        if isinstance(problem, Doubled):
+            problem.begins()
+        watch = partial(self._watch, problem, float(start[-1]))
+        try:
+            return follow(problem, start, span, forward, max_step, stations, None, stage, watch)
+        except _Ended:
+            assert self._last is not None
+            return self._last.path(Status.COMPLETE)
+
+    def _watch(self, problem: OrbitProblem, begin: float, stage: Stage) -> None:
+        if isinstance(problem, Doubled) and problem.ended(stage.z):
+            raise _Ended
         self._last = stage
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
         self.report(covered, f"{stage.kept.number} points")
         if self.passing is not None:
-            self.passing(stage.z)
+            self.passing(problem, stage.z)
         self.look()
 
     def keep(self) -> None:

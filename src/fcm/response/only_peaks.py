@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from fcm.continuation import Mark, Path
+from fcm.continuation import Mark
 from fcm.motion.errors import SimulationError
 from fcm.orbit.harmonic import state_of
 from fcm.orbit.located import SAME, Guess, located
@@ -18,6 +18,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
+from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import ACCURACY, Wanted
@@ -55,11 +56,11 @@ def peaks_alone(scene: Scene, report: Report, look: Look) -> Curve | None:
     return _curve(scene, points, Swept(there, []), problem.periods, look)
 
 
-def peaks_of(problem: OrbitProblem, paths: Sequence[Path], reason: str, look: Look) -> Curve:
+def peaks_of(groups: Sequence[OrbitBranches], reason: str, look: Look) -> Curve:
     """The peaks, folds and jumps of a curve that was followed."""
-    whole = orbit_curve(problem, paths, reason, look)
+    whole, problem = orbit_curve(groups, reason, look), groups[0].problem
     tops = {peak.frequency for peak in whole.peaks.values()}
-    points = [one for path in paths for one in samples(problem, path)]
+    points = [one for group in groups for path in group.paths for one in samples(group.problem, path)]
     points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
     return _curve(problem.scene, points, whole.swept(), problem.periods, look, reason)
 

@@ -9,16 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.continuation import Mark, Path
-from fcm.orbit.landing import with_landings
+from fcm.continuation import Mark
+from fcm.orbit.doubled import flip, flips
 from fcm.orbit.periodic import Look, without_end
 from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample, samples
+from fcm.orbit.sample import Sample
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
-from fcm.response.legs import TimeOver
 from fcm.response.loose import loose
 from fcm.response.not_unique import not_unique
+from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
 from fcm.results.jumps import Swept
@@ -30,22 +30,26 @@ from fcm.scene.model import Scene
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def orbit_curve(problem: OrbitProblem, paths: Sequence[Path], reason: str, look: Look = without_end) -> Curve:
-    """The points of paths, with a point of NaN between one and the next; complete without a reason.
+def orbit_curve(groups: Sequence[OrbitBranches], reason: str, look: Look = without_end) -> Curve:
+    """The points of branches, with a point of NaN between one and the next; complete without a reason.
 
     look raises `TimeOver` where no more is to be found out about them.
     """
-    points, folds, scene = list[Sample | None](), list[float](), problem.scene
-    branches = with_landings(problem, [samples(problem, path) for path in paths])
-    for found in branches:
-        folds += [point.frequency for point in found if point.mark & Mark.FOLD]
-        found = [_of_whole(scene, point) for point in found]
-        points += [None, *found] if points else found
+    points, folds, scene = list[Sample | None](), list[float](), groups[0].problem.scene
+    kept = list[FloatArray]()
+    for group in groups:
+        for found in group.points:
+            folds += [point.frequency for point in found if point.mark & Mark.FOLD]
+            whole = [_of_whole(scene, point) for point in found]
+            points += [None, *whole] if points else whole
+            kept += [_kept(group.problem, found)] if scene.held else []
     curve = replace(_curve(scene.whole(), points, reason, look), folds=folds)
     if curve.orbits is not None:
-        curve.orbits.periods = problem.periods
+        curve.orbits.periods = sum(group.problem.periods for group in groups)
+        last = groups[-1].points
+        curve.orbits.doubles = [flip(found, k).frequency for found in last for k in flips(found)]
         if scene.held:
-            curve.orbits.held = _kept(problem, [point for found in branches for point in found])
+            curve.orbits.held = np.min(kept, axis=0) if kept else _kept(groups[0].problem, [])
     return curve
 
 

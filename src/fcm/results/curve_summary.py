@@ -114,6 +114,7 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
     return {
         "closure_error": worst(orbits.closure_error),
         "repeats": sorted({int(x) for x in orbits.repeats[here]}),
+        **({"period_doubles": in_unit(np.array(orbits.doubles), unit).tolist()} if orbits.doubles else {}),
         "not_unique": int(known.sum()),
         **({} if orbits.span is None else {"only": "peaks"}),
         **({"peak_range": families} if families else {}),

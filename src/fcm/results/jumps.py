@@ -11,6 +11,7 @@ from fcm.scene.model import FloatArray
 
 BoolArray = npt.NDArray[np.bool_]
 SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
+FLIP = 0.01  # relative change of an amplitude, from the last point before a flip to the first after it
 ROUNDING = 1e-13  # relative difference of frequencies that are one
 
 
@@ -40,6 +41,16 @@ class Swept:
 
     jumps: list[Jump]
     untold: list[Untold]
+
+    def without_flips(self) -> Swept:
+        """Without those at which the period doubles: the motion goes on with hardly another amplitude."""
+        change = [
+            np.abs(one.after - one.before) > FLIP * np.maximum(one.before, one.after) for one in self.jumps
+        ]
+        kept = [
+            one for one, by in zip(self.jumps, change, strict=True) if by.any() or np.isnan(one.after).any()
+        ]
+        return replace(self, jumps=kept)
 
     def at(self, shown: BoolArray) -> Swept:
         """At some of the degrees of freedom."""

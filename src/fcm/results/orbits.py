@@ -38,5 +38,8 @@ class Orbits:
     periods: int = 0  # of the motion that were computed to trace the curve
     held: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))  # (contact, 2) what contacts that were
     # left out keep of their slip limits, or of their gaps; nan where computed, no contacts where none was
+    doubles: list[float] = field(
+        default_factory=list
+    )  # [rad/s] where the period doubles to what is not there
     stuck: list[Stuck] = field(default_factory=list)  # beside points of peaks, or visited ones
     span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought

@@ -86,7 +86,10 @@ class Curve:
             return self.orbits.swept
         if self.level is not None or self.mode is not None:
             return Swept([], [])
-        return swept(self.frequency, self.amplitude, self.stable)
+        found = swept(self.frequency, self.amplitude, self.stable)
+        if self.orbits is not None and (self.orbits.repeats > 1).any():
+            return found.without_flips()
+        return found
 
     def jumps(self) -> list[Jump]:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""

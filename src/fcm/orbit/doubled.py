@@ -1,0 +1,145 @@
+"""Curves of motions that repeat after twice as many periods, from where the period doubles.
+
+Where a multiplier passes -1 a motion loses its stability to one of twice its periods. The curve of those
+passes through the flip and comes back by the same motions, a period later: it is followed to there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from fcm.continuation import Mark, Path
+from fcm.continuation.branches import Follow, contains, through
+from fcm.continuation.newton import Newton
+from fcm.motion.errors import SimulationError
+from fcm.orbit.held import held
+from fcm.orbit.periodic import Look, converged, without_end
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample
+from fcm.orbit.shooting import Shot
+from fcm.scene.model import FloatArray
+
+REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is
+BESIDE = 4  # points to either side of a flip from which that is sought; further ones are beyond bends
+NEAR = 0.2  # distance of the last point of a curve from the flip at which it ends, at most
+AGAIN = 1e-6  # by which a motion fails to close after fewer periods, relative to it, if it does not
+
+
+class Doubled(OrbitProblem):
+    """Motions of twice the periods of others; a curve of them has ended where it comes to those."""
+
+    def __init__(self, once: OrbitProblem) -> None:
+        super().__init__(once.scene, 2 * once.repeats)
+        self.once, self._way = once, np.zeros(0)
+
+    def begins(self) -> None:
+        """To be called before another curve is followed."""
+        self._way = np.zeros(0)
+
+    def ended(self, z: FloatArray) -> bool:
+        """Whether the curve has passed a flip since it was asked before: what half the periods lack turns."""
+        shot = self.once.shot(z)
+        if shot is None:
+            return False
+        before, self._way = self._way, shot.gap / shot.scale
+        return shot.residual < AGAIN or bool(before.size and before @ self._way < 0.0)
+
+    def later(self, z: FloatArray) -> FloatArray:
+        """The same motion, begun after half of its periods."""
+        shot = self.once.shot(z)
+        return z if shot is None else z + np.append(shot.gap[self.free], 0.0)
+
+
+def doubled_paths(
+    problem: Doubled, branches: list[list[Sample]], along: Follow, look: Look = without_end
+) -> tuple[list[Path], int]:
+    """The curves that begin at the flips of branches, and how many flips none was found from."""
+    starts, lost = doubled_starts(problem, branches, look)
+    span, stations = problem.scene.frequency_range, sorted({float(z[-1]) for z in starts})
+    paths = list[Path]()
+    for z in starts:
+        if not any(contains(path, one, problem) for path in paths for one in (z, problem.later(z))):
+            path = through(
+                lambda: problem, z, span, problem.scene.max_step, stations, progress=None, along=along
+            )
+            if path.z.shape[0]:
+                paths.append(path)
+    return paths, lost
+
+
+def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]]) -> list[Sample]:
+    """The points of a curve, with the flips of others at which it ends within the range."""
+    ends = [flip(branch, k) for branch in branches for k in flips(branch)]
+    for end in (0, -1):
+        last = points[end]
+        problem.measure(last.z)
+        scale = np.array(problem.scale)
+        near = [one for one in ends if np.linalg.norm((one.z - last.z) / scale) < NEAR]
+        if near and last.frequency not in problem.scene.frequency_range:
+            nearest = min(near, key=lambda one: float(np.linalg.norm((one.z - last.z) / scale)))
+            points = [nearest, *points] if end == 0 else [*points, nearest]
+    return points
+
+
+def flips(points: list[Sample]) -> Iterator[int]:
+    """The places k in a branch where the period doubles between the points k and k + 1."""
+    for k, (one, other) in enumerate(pairwise(points)):
+        unstable = other if one.stable else one
+        passes = one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD
+        if passes and unstable.multipliers[0].real < -1.0:
+            yield k
+
+
+def flip(points: list[Sample], k: int) -> Sample:
+    """The point at a flip, which belongs to the stable side."""
+    return points[k] if points[k].stable else points[k + 1]
+
+
+def doubled_starts(
+    problem: Doubled, branches: list[list[Sample]], look: Look = without_end
+) -> tuple[list[FloatArray], int]:
+    """Motions of twice the periods beside the flips of branches, and how many flips lead to none."""
+    found, lost = list[FloatArray](), 0
+    for points in branches:
+        for k in flips(points):
+            z = next(_beside(problem, points, k, look), None)
+            if z is None:
+                lost += 1
+            else:
+                found.append(z)
+    return found, lost
+
+
+def _beside(problem: Doubled, points: list[Sample], k: int, look: Look) -> Iterator[FloatArray]:
+    """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first."""
+    unstable_after = points[k].stable
+    after, before = points[k + 1 : k + 1 + BESIDE], points[k : max(k - BESIDE, -1) : -1]
+    sides = (after, before) if unstable_after else (before, after)
+    for point in (one for side in sides for one in side):
+        look()
+        shot = problem.once.shot(point.z)
+        if shot is not None:
+            yield from _doubled(problem, point, shot)
+
+
+def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray]:
+    """The motion in the direction in which a disturbance changes its sign after each period."""
+    matrix = once.derivative * (once.scale / once.scale[:, None])
+    values, vectors = np.linalg.eig(matrix)
+    way = vectors[:, values.real.argmin()].real
+    way = way / np.abs(way).max()
+    for reach in REACHES:
+        x = once.x + reach * way * once.scale
+        try:
+            guess = Shot(once.system, x, problem.shooting.resting, problem.repeats)
+            found = converged(guess)
+        except SimulationError:
+            continue
+        if found is None or Shot(once.system, found[0].x, periods=problem.once.repeats).residual < AGAIN:
+            continue
+        newton = Newton(problem)
+        if held(newton, np.append(found[0].x[problem.free], point.frequency)):
+            yield np.array(newton.z)

@@ -1,0 +1,31 @@
+"""Branches of exact motions that repeat after the same number of periods."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from fcm.continuation import Path
+from fcm.orbit.doubled import Doubled, to_flips
+from fcm.orbit.landing import with_landings
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample, samples
+
+
+@dataclass(frozen=True)
+class OrbitBranches:
+    """The paths of a problem; of doubled periods those of half of them, at whose flips they end."""
+
+    problem: OrbitProblem
+    paths: Sequence[Path]
+    once: OrbitBranches | None = None
+
+    @cached_property
+    def points(self) -> list[list[Sample]]:
+        """The points of each path, with those at the frequencies at which others end."""
+        found = [samples(self.problem, path) for path in self.paths]
+        if isinstance(self.problem, Doubled) and self.once is not None:
+            before = self.once.points
+            found = [to_flips(self.problem, one, before) for one in found]
+        return with_landings(self.problem, found)
