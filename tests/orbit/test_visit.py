@@ -139,3 +139,14 @@ def test_a_frequency_too_low_to_follow_says_so():
     curve, _ = visited(yang(5.0), [1e-9])
     assert not curve.complete and curve.points == 0
     assert curve.reason.startswith("a cycle at 1e-09 rad/s lasts")
+
+
+def test_a_frequency_at_which_the_motion_is_not_determined_does_not_take_the_others():
+    """In a ten-thousandth of a mode's period nothing is lost that would say which motion is steady."""
+    (alone,) = trace_exact(yang(), [1e5]).curves
+    assert not alone.points and "1e+04 times the frequency of the highest mode" in alone.reason
+    (curve,) = trace_exact(yang(), [1.26, 1e5]).curves
+    assert not curve.complete and set(curve.frequency.tolist()) >= {1.26}
+    resonant = one_mode(damping=0.0, mu=0.0, k_v=0.0)
+    (curve,) = trace_exact(resonant, [1.0, 1.3]).curves
+    assert not curve.complete and 1.3 in curve.frequency and 1.0 not in curve.frequency

@@ -18,6 +18,7 @@ from fcm.orbit.derivative import period_derivative
 from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting, stuck_of
 from fcm.scene.model import FloatArray, Scene
 
+LEAST = 1e-100  # part of the greatest scale, of those that matrices are balanced by: others overflow
 SMALL = 16  # rows of a matrix, of which LAPACK finds the eigenvalues later
 
 
@@ -138,6 +139,7 @@ class Shot:
             )
             rest = np.delete(np.arange(self.x.size), places)
             by_state, scale = by_state[np.ix_(rest, rest)], scale[rest]
+        scale = np.maximum(scale, LEAST * scale.max(initial=0.0))
         return _eigenvalues(by_state * (scale / scale[:, None]))
 
     @cached_property

@@ -25,6 +25,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
 
+BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
 FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
@@ -230,10 +231,20 @@ def first_point(problem: OrbitProblem, orbit: Orbit, look: Look = without_end) -
         if near is not None and member is None and any(choice.gap for choice in near.chosen):
             raise SimulationError(_elsewhere(problem.scene, orbit, near))
         raise SimulationError(
-            f"the solution at {orbit.frequency:g} rad/s to start from is not determined: a mode is free to "
-            "drift, or resonates without damping; add damping, or try another range"
+            f"the solution at {orbit.frequency:g} rad/s to start from is not determined: {_why(orbit)}"
         )
     return np.array(newton.z)
+
+
+def _why(orbit: Orbit) -> str:
+    """What keeps a solution from being determined."""
+    ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
+    if ratio > BEYOND:
+        return (
+            f"that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and loses "
+            "nothing, in one period of the force; take a lower frequency"
+        )
+    return "a mode is free to drift, or resonates without damping; add damping, or try another range"
 
 
 def _elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:

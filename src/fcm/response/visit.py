@@ -18,6 +18,7 @@ import numpy as np
 from fcm.continuation.newton import Newton
 from fcm.motion.errors import CycleError, SimulationError
 from fcm.motion.measure import Measure
+from fcm.motion.run import cycles_from
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.branch import shown
@@ -36,6 +37,8 @@ ASTRAY = 0.6  # distance from what the direction foretells, relative to the way,
 CLOSE = 0.05  # is another branch; but never within this distance
 SMALLEST = 1e-6  # part of the way between two frequencies that is not divided further: jumps are known to it
 BEYOND = 0.1  # part of it, past the end of a branch, where the motion is simulated: nearer it would linger
+LEAP = 0.005  # part of the frequency by which a motion that repeats after no single period is taken at once,
+ON_THE_WAY = 10  # and the cycles for which it is simulated after each leap
 MOST_NAMED = 5  # frequencies in a sentence
 JUMP = 0.01  # relative change of an amplitude that is one
 
@@ -130,6 +133,7 @@ class Visitor:
         if self._sample is None:
             self._begin(omega)
         elif self._sample.frequency != omega:
+            self._sweep(self._sample.frequency, omega)
             self._settle(self._state, omega)
         if self._sample is None and shown(self.scene, omega) not in self.refused:
             self.restless[shown(self.scene, omega)] = None
@@ -143,7 +147,12 @@ class Visitor:
             return
         except SimulationError:  # none near harmonic balance, nor near the motion from rest
             return
-        if not (orbit.stable and self._take(first_point(self.problem, orbit, self.look))):
+        try:
+            z = first_point(self.problem, orbit, self.look)
+        except SimulationError as error:  # the motion is not determined, or not with this start
+            self.refused[shown(self.scene, omega)] = str(error)
+            return
+        if not (orbit.stable and self._take(z)):
             self._settle(State.rest(self.scene), omega)
 
     def _take(self, z: FloatArray) -> bool:
@@ -209,6 +218,14 @@ class Visitor:
             return False
         astray = float(np.linalg.norm((np.asarray(self.newton.z) - guess) / scale))
         return astray <= max(ASTRAY * length, CLOSE) and self._take(np.array(self.newton.z))
+
+    def _sweep(self, begin: float, omega: float) -> None:
+        """Simulate the way from one frequency to another: a leap may end in another motion than a sweep."""
+        count = int(np.ceil(abs(omega - begin) / (LEAP * min(omega, begin))))
+        for between in np.linspace(begin, omega, count + 1)[1:-1].tolist():
+            for _, end in cycles_from(System(self.scene, between), ON_THE_WAY, self._state):
+                self.look()
+                self._state = end
 
     def _settle(self, state: State, omega: float) -> None:
         """Simulate from a state until the motion is steady."""
