@@ -83,6 +83,14 @@ def test_an_irregular_motion_that_lingers_has_an_extent():
         assert isinstance(found, Steady) and found.periods == 0
 
 
+def test_the_extent_holds_bursts_that_are_seldom():
+    """For a thousand periods there may be none: the amplitude is half as great until then."""
+    found = found_at(IRREGULAR, 1.7)
+    long = simulate(IRREGULAR, 1.7, 4000).measures(last=3500)
+    greatest = np.max([one.amplitude for one in long], axis=0)
+    assert found.periods == 0 and found.greatest == pytest.approx(greatest, rel=0.1)
+
+
 @pytest.mark.parametrize("damping", [0.0, 1e-5])
 def test_a_transient_is_no_steady_motion(damping):
     """Growing without limit, or hardly decaying."""

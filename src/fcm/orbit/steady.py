@@ -26,7 +26,7 @@ from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray
 
 FREE_CYCLES = (20, 40, 80, 160, 320, 640, 640, 640)  # simulated before each look whether it is steady
-MANY = 640  # of them tell how far a motion ranges; one that lingers, and then bursts out, is looked at again
+MANY = 640  # from so many on they tell how far a motion ranges, all together: it may linger, and burst out
 MOST_PERIODS = 8  # of the force, after which a steady motion may repeat
 NEAR = 0.1  # distance, relative to the motion, of a simulated state from the steady one that it belongs to
 NEARER = 0.5  # part of its distance after fewer periods to which the motion comes back after more
@@ -68,6 +68,7 @@ def steady(system: System, state: State, look: Look = without_end) -> Steady | S
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
+    ranging, seen = None, list[Cycle]()
     for count in FREE_CYCLES:
         ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
@@ -79,10 +80,11 @@ def steady(system: System, state: State, look: Look = without_end) -> Steady | S
             found = _repeating(system, state, periods)
             if found is not None:
                 return found
-        ranging = _ranging(cycles) if count >= MANY else None
-        if ranging is not None:
-            return ranging
-    return state
+        if count >= MANY:
+            of_all = _ranging([*seen, *cycles])
+            seen = cycles if of_all is None else [*seen, *cycles]
+            ranging = of_all or _ranging(cycles) or ranging
+    return state if ranging is None else ranging
 
 
 def _candidates(ends: Sequence[State]) -> list[int]:
