@@ -68,7 +68,8 @@ def steady(system: System, state: State, look: Look = without_end) -> Steady | S
     >>> found.periods, found.states, found.measure.amplitude.round(4)
     (1, ('SPEN',), array([7.1681, 7.1663]))
     """
-    ranging, seen = None, list[Cycle]()
+    ranging: Steady | None = None
+    seen = list[Cycle]()
     for count in FREE_CYCLES:
         ends, cycles = deque([state], MOST_PERIODS + 1), list[Cycle]()
         for cycle, end in cycles_from(system, count, state):
