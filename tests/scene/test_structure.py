@@ -228,6 +228,17 @@ def test_matrices_of_no_structure_are_said_beside_other_mistakes(structure, top)
     assert said.count("\n") >= 2
 
 
+@pytest.mark.parametrize("rows", [3, 40])  # of which all modes are kept, or some
+@pytest.mark.parametrize("damping", [0.01, "matrix"])
+def test_a_mistake_elsewhere_is_all_that_is_said(rows, damping):
+    chain = 2.0 * np.eye(rows) - np.eye(rows, k=1) - np.eye(rows, k=-1)
+    structure = {"dofs": [f"{i}x" for i in range(rows)], "stiffness": chain.tolist(), "mass": [1.0] * rows}
+    damping = (0.1 * chain).tolist() if damping == "matrix" else damping
+    one = [{"dof": "1x", "amplitude": "much"}]
+    said = refused(top={"force": one}, **structure, damping=damping)
+    assert said == 'test.toml: force[0].amplitude: must be a number, is the string "much"'
+
+
 def test_numbers_alone_are_rows_and_no_motions_of_nodes(tmp_path):
     """Row 31 is no motion of node 3 along x, be it named, paired or moved by the base."""
     said = refused(top={"force": [{"dof": "3x", "amplitude": 1.0}]}, dofs=["11", "21", "31"])

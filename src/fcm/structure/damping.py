@@ -61,6 +61,6 @@ def coupling_effect(
         except np.linalg.LinAlgError:
             continue
         alone = seen.conj().T @ (pushes / of_each[:, None])
-        size = np.abs(whole).max()
+        size = np.abs(whole).max(initial=0.0)
         worst = max(worst, float(np.abs(whole - alone).max() / size) if size else 0.0)
     return worst

@@ -66,10 +66,10 @@ def reduced(
     plain = Reduced(
         kept, wanted, rigid, np.inf, 0.0, lost, rounding=off, digits=digits_of(K), unclear=unclear
     )
-    if found.count == wanted and (wanted == system.rows or not rest):
+    if found.count == wanted and (wanted == system.rows or not (rest and loads.shape[1])):
         return plain
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
-    if not rest:
+    if not (rest and loads.shape[1]):
         return replace(plain, beyond=float(np.sqrt(beyond)), bound=np.nan)
     more = flexibility(system, kept, loads, top, beyond)
     both = Modes(
