@@ -66,6 +66,38 @@ def test_a_stiff_spring_hides_no_soft_mode_and_the_bound_has_the_rounding(stiff,
         assert off.max() < near * found.bound + 2.0 / stiff
 
 
+def solved(A, loads):
+    """By improving a solution with residuals of more digits; A has them."""
+    factor, loads = scipy.linalg.lu_factor(A.astype(float)), loads.astype(np.longdouble)
+    x = scipy.linalg.lu_solve(factor, loads.astype(float)).astype(np.longdouble)
+    for _ in range(4):
+        x += scipy.linalg.lu_solve(factor, (loads - A @ x).astype(float))
+    return x.astype(float)
+
+
+@pytest.mark.parametrize("seed", [109, 147, 223, 4, 5, 6])
+def test_the_bound_has_the_rounding_at_all_frequencies(seed):
+    """Of uneven chains and beams, at rest, in the range and at its end; at a resonance it is as much more."""
+    rng = np.random.default_rng(seed)
+    if seed % 3:
+        K, M = chain(10.0 ** rng.uniform(0.0, 6.0, 80))
+    else:
+        K, M = (one[2:, 2:] for one in uneven_beam(rng, 40))
+    value = scipy.linalg.eigh(K, M, eigvals_only=True)
+    loads = np.eye(len(K))[:, rng.choice(len(K), 2, False)]
+    kept = int(rng.integers(2, 13))
+    top = np.sqrt(value[kept]) * rng.uniform(0.3, 0.9)
+    found = reduced(*map(scipy.sparse.csc_array, (K, M)), loads, top, kept, True)
+    on_modes = found.modes.shapes.T @ loads
+    size = np.sqrt(np.diagonal(loads.T @ solved(K.astype(np.longdouble), loads)))
+    for share in (0.0, 0.3, 0.5, 0.7, 1.0):
+        omega = np.longdouble(share * top)
+        exact = loads.T @ solved(K.astype(np.longdouble) - omega**2 * M, loads)
+        own = on_modes.T @ (on_modes / (found.modes.stiffness - share**2 * top**2)[:, None])
+        near = max(1.0, (1.0 / np.abs(1.0 - share**2 * top**2 / value)).max())
+        assert (np.abs(own - exact) / np.outer(size, size)).max() <= near * found.bound
+
+
 def frame(rng, nodes=12):
     """A space frame that nothing holds: bars between random nodes, each with its 6 nearest."""
     at, K = rng.random((nodes, 3)), np.zeros((3 * nodes, 3 * nodes))

@@ -76,11 +76,11 @@ def reduced(
         np.concatenate((kept.stiffness, more.modes.stiffness)),
         np.concatenate((kept.shapes, more.modes.shapes), axis=1),
     )
-    bound, first = more.bound + of_receptances(K, M, both, loads), float(np.sqrt(beyond))
+    bound, first = more.bound + of_receptances(K, M, both, loads, top), float(np.sqrt(beyond))
     aside = (0.0, 0.0)
     if others is not None and others.shape[1] and loads.shape[1]:
         own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
-        aside = own + of_receptances(K, M, both, _stiffest(both, others)), damped
+        aside = own + of_receptances(K, M, both, _stiffest(both, others), top), damped
     return replace(plain, modes=both, beyond=first, bound=bound, damping=more.damping, aside=aside)
 
 

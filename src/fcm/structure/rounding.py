@@ -13,6 +13,9 @@ import numpy as np
 from fcm.structure.digits import energy_uncertain
 from fcm.structure.eigen import FloatArray, Matrix, Modes, elastic_energy
 
+MOST_BETWEEN = 8  # places between resonances that are looked at
+SPARE = 2.0  # beside these places it is not much more
+APART = 0.01  # how far squares of frequencies are from resonances at least, relative
 LONG = float(np.finfo(np.longdouble).eps)  # of the numbers in which elastic energy is summed
 
 
@@ -28,15 +31,29 @@ def of_frequencies(K: Matrix, modes: Modes) -> FloatArray:
     return off
 
 
-def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray) -> float:
-    """How far the answer to a load along itself is off, relative to the static one: at rest and near it."""
+def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega: float) -> float:
+    """How far the answer to a load along itself is off, relative to the static one, up to omega.
+
+    At rest, near it, between resonances and at omega; at a resonance by as much more as that is higher.
+    """
     elastic = modes.stiffness > 0.0
     if not (elastic.any() and loads.size):
         return 0.0
     some = Modes(modes.stiffness[elastic], modes.shapes[:, elastic])
     static, off = _energy_and_error(K, M, some, loads, 0.0)
     off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
+    between = [_energy_and_error(K, M, modes, loads, -(w**2))[1] for w in _between(some, omega)]
+    off = SPARE * np.max([off, *between], axis=0)
     return float(np.divide(off, static, out=np.zeros_like(off), where=static > 0.0).max())
+
+
+def _between(modes: Modes, omega: float) -> FloatArray:
+    """Frequencies up to omega that are far from those of all modes, the last of them omega."""
+    ends = np.append(np.sqrt(modes.stiffness[modes.stiffness < omega**2]), omega)
+    places = np.append(0.5 * (ends[1:] + ends[:-1]), omega)
+    off = np.abs(1.0 - modes.stiffness / places[:, None] ** 2).min(axis=1)
+    found: FloatArray = places[off > APART]
+    return found[:: max(1, found.size // MOST_BETWEEN)]
 
 
 def _energy_and_error(
