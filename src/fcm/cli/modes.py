@@ -33,6 +33,8 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     found = listing(load_scene(scene, largest_file=largest_file))
     click.echo(json.dumps(found, indent=2, allow_nan=False) if to_json else as_table(found))
     if not to_json:
+        if any(share is None for mode in found["modes"] for share in mode["participation"].values()):
+            messages.info("- no share: there rigid-body modes yield to a static load without end")
         messages.info(f"shapes: {found['normalisation']}")
         for note in found["notes"]:
             messages.info(note)
