@@ -19,7 +19,7 @@ from fcm.cli.messages import Messages, pass_messages
 if TYPE_CHECKING:
     from fcm.cli.loop_cases import Case, Harmonic
 
-MOST_LOOPS = 12
+MOST_LOOPS = 12  # in a picture: three rows
 HIGHEST = 100  # harmonic of a motion
 OF_FILE = ("curves", "at", "contact", "solution", "dimensionless")
 OF_RATIOS = ("n0_bars", "b_bars")

@@ -12,7 +12,7 @@ Rows = list[list[str]]  # the first is the header
 Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
-DIGITS = 6
+DIGITS = 6  # of amplitudes and frequencies
 
 
 def every(summary: Summary) -> list[Rows]:

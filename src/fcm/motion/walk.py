@@ -16,8 +16,8 @@ else:
 
 
 DENSE = 32  # components from which many steps are sooner made at once, by BLAS
-DOUBLINGS = 7
-SPAN = 128  # steps, 2**DOUBLINGS
+DOUBLINGS = 7  # of the steps that are made at once
+SPAN = 2**DOUBLINGS
 
 
 @cython.cclass

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from fcm.results.bands import Band
 
-_FAINT = 0.28
+_FAINT = 0.28  # opacity of a band, so that those of several curves are seen through one another
 _DECADE = 10.0  # medians that span more are drawn on a logarithmic axis
 
 

@@ -20,9 +20,9 @@ Window = tuple[float, float]
 
 COLUMN = 3.35  # [inch] 85 mm, one column of a journal
 _HEIGHT, _PANEL = 2.5, 1.5  # [inch] of a single panel; of each further one
-_MOST_PANELS = 6
+_MOST_PANELS = 6  # one for each curve: more do not fit a page
 _MOST_CYCLES = 60  # drawn as a line; more would be a solid area
-_MOST_BOUNDARIES = 40
+_MOST_BOUNDARIES = 40  # between phases: of more the lines would be a solid area, too
 _BAND, _EDGE, _MEAN = "#a6c8e0", "#1f4e79", "#b34700"
 _LETTER = 0.026  # width of a letter of a label and of some space, relative to the axes
 _ROMAN = ("I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX", "X", "XI", "XII")

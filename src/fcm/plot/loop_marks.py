@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Bbox
 
 _DISTANCES = (5.0, 9.0, 14.0, 20.0, 27.0, 35.0)  # [point] from the mark to the nearer side of its text
-_DIRECTIONS = 16
+_DIRECTIONS = 16  # of a text from its mark that are tried
 _LEADER_FROM = 9.0  # [point] a text this far from its mark has a thin line to it
 _LEADER = {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0.5, "shrinkB": 2.0}
 _LEADER_POINTS = 12  # at which it may touch a text

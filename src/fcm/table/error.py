@@ -15,8 +15,8 @@ from fcm.table.atlas import FloatArray
 REGIMES = ("open", "separation", "slip", "stick")
 NAMES = ("F_b", "F_s", "F_c")
 POINTS = 1_000_000
-SEED = 1998
-CHUNK = 50_000
+SEED = 1998  # as good as any: recorded beside an error, so that it can be measured again
+CHUNK = 50_000  # points between two looks at the progress; a few megabytes
 
 Progress = Callable[[float], None]  # with the share done
 Sampler = Callable[[int, int], tuple[FloatArray, FloatArray, FloatArray]]  # of so many points, with a seed
@@ -122,8 +122,7 @@ def _summary(error: FloatArray) -> dict[str, float]:
 
 
 SAME = 1e-3  # relative difference that other arithmetic may make at the same points
-SAMPLED = 2.0  # factor by which another sample may find a greater maximum; its rms, by 1.25
-SAMPLED_RMS = 1.25
+SAMPLED, SAMPLED_RMS = 2.0, 1.25  # factors by which another sample may find a greater maximum, and rms
 
 
 def disagreement(recorded: dict[str, Any], again: dict[str, Any], fresh: dict[str, Any]) -> str:
