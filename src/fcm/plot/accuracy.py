@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fcm.plot.errors import PlotError
 from fcm.plot.read import opened
-from fcm.plot.style import house_style, new_figure
+from fcm.plot.style import house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -145,17 +145,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
             ha="right", va="bottom", fontsize=7, color="0.35",
         )  # fmt: skip
         axes.set_ylim(bottom=panel.own_error / 2.0)
-    _plain_ticks(axes)
-
-
-def _plain_ticks(axes: Axes) -> None:
-    """Times as plain numbers."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    low, high = axes.get_xlim()
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 300.0 * low else (1,)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    plain_ticks(axes.xaxis, 300.0)
 
 
 def _power(value: float) -> str:

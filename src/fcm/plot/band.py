@@ -12,7 +12,7 @@ from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.place import name_at_side
 from fcm.plot.read import LEVEL, DrawnResponse, wide
-from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fcm.results.bands import Band
 
 _FAINT = 0.28  # opacity of a band, so that those of several curves are seen through one another
-_DECADE = 10.0  # medians that span more are drawn on a logarithmic axis
 
 
 def banded_column(response: DrawnResponse, dof: str | None) -> int:
@@ -62,8 +61,7 @@ def draw_bands(
 
 
 def _finish(axes: Axes, bands: Sequence[Band], log: bool | None) -> None:
-    tops = [np.nanmax(band.median) for band in bands]
-    if log if log is not None else max(tops) > _DECADE * min(tops) > 0.0:
+    if log if log is not None else has_decades([float(np.nanmax(band.median)) for band in bands]):
         logarithmic_axis(axes)
     else:
         axes.set_ylim(bottom=0.0)

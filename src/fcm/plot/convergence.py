@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fcm.plot.style import house_style, new_figure
+from fcm.plot.style import house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +65,7 @@ def draw_convergence(lines: Sequence[Line]) -> Figure:
         axes.set_xlabel("Processor time of a curve (ms), where np.sin takes 10 ns a value")
         axes.set_ylabel("Greatest relative error of the peaks (–)")
         axes.set_ylim(bottom=0.5 * FLOOR)
-        _plain_ticks(axes)
+        plain_ticks(axes.xaxis, 300.0)
         figure.legend(
             loc="outside lower center", ncols=2, alignment="left",
             title="Scenes, and the order $p$ of error ~ $H^{-p}$ from $H$ = 2 on; numbers at points: $H$",
@@ -117,12 +117,3 @@ def _draw_keys(axes: Axes) -> None:
         [], [], color=grey, marker="|", markersize=11.0, markeredgewidth=1.6, linestyle="none",
         label="exact motion, the reference: its time alone",
     )  # fmt: skip
-
-
-def _plain_ticks(axes: Axes) -> None:
-    """Times as plain numbers."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
-    axes.xaxis.set_minor_formatter(NullFormatter())

@@ -19,7 +19,7 @@ from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
-from fcm.plot.style import house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
 if TYPE_CHECKING:
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 _HEADROOM = 1.05  # at least, above the highest amplitude
-_DECADE = 10.0  # peaks that span more than this are drawn on a logarithmic axis
 _WIDTH, _THIN = 1.1, 0.4  # [point] of a line; of one among very many
 LineStyle = Literal["-"] | tuple[float, tuple[float, float]]
 _LINE: LineStyle = "-"
@@ -107,8 +106,7 @@ def _panels(errors: bool) -> tuple[Figure, Axes, Axes | None]:
 
 
 def _logarithmic(curves: list[DrawnCurve], column: int) -> bool:
-    peaks = [np.nanmax(curve.amplitude[:, column]) for curve in curves]
-    return bool(np.max(peaks) > _DECADE * np.min(peaks) > 0)
+    return has_decades([float(np.nanmax(curve.amplitude[:, column])) for curve in curves])
 
 
 def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,11 +11,13 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
 WIDTH = 5.5  # [inch] 140 mm, one and a half columns
 HEIGHT = 3.7  # [inch]
 DPI = 300
+_DECADE = 10.0  # curves whose heights span more are drawn on a logarithmic axis
 COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 
 STYLE: dict[Any, Any] = {
@@ -83,14 +85,24 @@ def sequence_colours(count: int) -> list[str]:
 
 
 def logarithmic_axis(axes: Axes) -> None:
-    """A logarithmic amplitude axis with its ticks as plain numbers: 0.5, 1, 2, 5, 10."""
+    """A logarithmic amplitude axis with its ticks as plain numbers."""
+    axes.set_yscale("log")
+    plain_ticks(axes.yaxis, 1e3)
+
+
+def plain_ticks(axis: Axis, widest: float) -> None:
+    """Ticks of a logarithmic axis as numbers: 0.5, 1, 2, 5, 10; where its ends have a greater ratio 1, 10."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 1e3 * low else (1,)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
-    axes.yaxis.set_minor_formatter(NullFormatter())
+    low, high = sorted(axis.get_view_interval())
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < widest * low else (1,)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def has_decades(heights: Sequence[float]) -> bool:
+    """Whether they differ so much that on a linear axis the lowest would lie on its foot."""
+    return bool(max(heights) > _DECADE * min(heights) > 0.0)
 
 
 def save(figure: Figure, path: Path, dpi: int = DPI) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -14,9 +13,8 @@ from fcm.scene.model import Modal, Scene
 from fcm.scene.names import Names
 from fcm.scene.ring import NEXT, Ring
 from fcm.scene.rules import RULES
-from fcm.scene.section import Section
+from fcm.scene.section import Part, Section
 
-Draft = dict[str, Any]
 WHOLE_RING = "needs the whole ring: write all its sectors out as a scene without [cyclic]"
 TABLES = {  # that have no meaning for one sector, and why
     "schedule": f"a simulation in time {WHOLE_RING}",
@@ -54,7 +52,7 @@ def own_name(name: str) -> str:
     return name.removeprefix(NEXT)
 
 
-def read_cyclic(top: Section) -> list[Draft]:
+def read_cyclic(top: Section) -> list[Part]:
     """The number of sectors and the engine order as read: a list of one, or of none."""
     if "cyclic" not in top.data:
         return []
@@ -80,7 +78,7 @@ def ring_names(top: Section, own: Names | None) -> RingNames | None:
     return made
 
 
-def only_own(top: Section, drafts: Mapping[str, list[Draft]], dofs: RingNames | None) -> None:
+def only_own(top: Section, drafts: Mapping[str, list[Part]], dofs: RingNames | None) -> None:
     """Note forces and loads on the next sector, which has its own."""
     if dofs is None:
         return
@@ -91,7 +89,7 @@ def only_own(top: Section, drafts: Mapping[str, list[Draft]], dofs: RingNames | 
                 top.wrong(f"{table}[{number}].dof", what)
 
 
-def ring_of(modal: Draft, cyclic: Draft, unit: float) -> tuple[Modal, Ring]:
+def ring_of(modal: Part, cyclic: Part, unit: float) -> tuple[Modal, Ring]:
     """What the mean meets, and the whole ring, of what was read; unit is rad/s in one of the frequency."""
     dofs = tuple(modal["dofs"])
     sectors, order = int(cyclic["sectors"]), int(cyclic["engine_order"])

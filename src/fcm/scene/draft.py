@@ -18,10 +18,10 @@ from fcm.scene.model import Force, Modal, Scene
 from fcm.scene.parts import contact_of, force_of
 from fcm.scene.ring import Ring
 from fcm.scene.rules import RULES, Rule
+from fcm.scene.section import Parts
 from fcm.scene.sweep import Swept, combinations, field_of
 
 LEVEL = "level"  # of the forces: all amplitudes times this
-Parts = dict[str, Any]  # drafts of modal, contact, force, ..., in the words of the file
 
 
 @dataclass(frozen=True)

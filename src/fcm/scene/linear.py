@@ -16,7 +16,7 @@ from fcm.scene.modal import KEYS, UNITS, read_modal
 from fcm.scene.model import FloatArray
 from fcm.scene.names import Names, RowNames
 from fcm.scene.ring import NEXT
-from fcm.scene.section import Section, described
+from fcm.scene.section import Part, Parts, Section, described
 from fcm.structure.rigid_body import rigid_by_gap
 
 if TYPE_CHECKING:
@@ -25,10 +25,9 @@ if TYPE_CHECKING:
 HIDDEN = "\0"  # how the name of a displacement begins that a load over many rows works on
 ALL_REPORTED = 50  # degrees of freedom of which all are in the results, where no others are asked for
 OF_NO_INTEREST = 0.01  # of the range's lower end: a frequency far below everything that is traced
-Parts = dict[str, Any]  # drafts of modal, contact, force, ...
 
 
-def read_linear(top: Section, files: Files, unit: str, cyclic: list[Parts]) -> tuple[Parts, Matrices | None]:
+def read_linear(top: Section, files: Files, unit: str, cyclic: list[Part]) -> tuple[Parts, Matrices | None]:
     """The draft of the modal table, and the matrices that it is still to be made of.
 
     Of a ring's sector, the degrees of freedom of the next are there as well.
@@ -70,7 +69,7 @@ def with_modes(
     return with_displacements(parts | {"modal": draft}, columns), notes
 
 
-def check_matrices(top: Section, matrices: Matrices, cyclic: list[Parts], ends: tuple[float, float]) -> None:
+def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: tuple[float, float]) -> None:
     """Note that matrices are not those of a structure, of a scene that has other mistakes."""
     from fcm.scene.reduction import modal_of_matrices
     from fcm.scene.ring_reduction import modal_of_ring

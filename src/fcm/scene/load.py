@@ -17,7 +17,6 @@ from fcm.scene.excitation import load_of, read_base, read_loads
 from fcm.scene.files import LARGEST, Files
 from fcm.scene.keys import names
 from fcm.scene.linear import (
-    Parts,
     check_matrices,
     read_linear,
     read_output,
@@ -40,7 +39,7 @@ from fcm.scene.parts import (
     response_table,
 )
 from fcm.scene.schedule import read_schedule, read_start
-from fcm.scene.section import Section
+from fcm.scene.section import Parts, Section
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, read_sweep
 from fcm.scene.toml import read_toml

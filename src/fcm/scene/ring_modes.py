@@ -10,9 +10,8 @@ import numpy as np
 from fcm.scene.errors import kind, shown
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.rules import RULES, Rule, as_float
-from fcm.scene.section import Section
+from fcm.scene.section import Part, Section
 
-Draft = dict[str, Any]
 EQUAL = 1e-6  # relative difference of frequencies that are one
 ROTATED = 1e-8  # relative: of shapes that are real but for a factor, what is left of the imaginary part
 
@@ -56,7 +55,7 @@ def read_diameters(section: Section, modes: int | None, sectors: float) -> Any:
     return found.astype(np.int64)
 
 
-def travelling(section: Section, draft: Draft, sectors: float) -> Draft:
+def travelling(section: Section, draft: Part, sectors: float) -> Part:
     """The modes of a draft with shapes of travelling waves; with pairs, those of the ring made so.
 
     Of the whole ring's modes the pair c, s of one frequency makes the shape c + i s, of which sector k has
@@ -110,7 +109,7 @@ def _firsts(
     return found
 
 
-def _check_no_pairs(section: Section, draft: Draft, sectors: int) -> None:
+def _check_no_pairs(section: Section, draft: Part, sectors: int) -> None:
     """Note where modes may be meant as cosines and sines."""
     if draft["shapes"].imag.any():
         return
@@ -125,7 +124,7 @@ def _check_no_pairs(section: Section, draft: Draft, sectors: int) -> None:
         section.wrong("pairs", f"missing: {which}; {right}")
 
 
-def _check_real(section: Section, draft: Draft, sectors: int) -> None:
+def _check_real(section: Section, draft: Part, sectors: int) -> None:
     """Turn the shapes of diameter 0 and of half of the sectors real, which they are but for a factor."""
     shapes = draft["shapes"] = draft["shapes"].copy()
     for i, diameter in enumerate(draft["diameter"].tolist()):
