@@ -1,4 +1,4 @@
-"""Tracked curves end where their ranges do, and their points come in the order along them."""
+"""Tracked curves end where their ranges do, or what is tracked ceases, and their points come in order."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -6,12 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fcm.harmonic.error import reported
 from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.track import curves
 from fcm.track.curves import tracks
 from fcm.track.spot import Ending
+from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 
@@ -19,14 +22,24 @@ SPAN, RANGE = (0.5, 0.7), (1.45, 1.65)  # in which the peak of x0 turns back whe
 
 
 @pytest.fixture(scope="module")
-def found():
-    """Curves whose steps shrink to nothing where they turn, and which others leave by long ones."""
+def scene():
+    """With ends that are neither of the ranges."""
     path = Path(__file__).parents[1] / "harmonic" / "scenes" / "chaos.toml"
-    scene = replace(load_scene(path), frequency_range=RANGE)
+    return replace(load_scene(path), frequency_range=RANGE)
+
+
+def followed(scene, what, span):
+    """Curves from three values of the level."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(curves, "STARTS", 3)
         line = along(number_of(scene, "level"))
-        return tracks(System(scene, (1, 2, 3)), line, SPAN, [Condition(Kind.PEAK, 0)]).curves
+        return tracks(System(scene, (1, 2, 3)), line, span, [what]).curves
+
+
+@pytest.fixture(scope="module")
+def found(scene):
+    """Curves whose steps shrink to nothing where they turn, and which others leave by long ones."""
+    return followed(scene, Condition(Kind.PEAK, 0), SPAN)
 
 
 def test_no_point_is_out_of_the_ranges(found):
@@ -51,3 +64,30 @@ def test_the_number_turns_back_only_where_it_is_said_to(found):
         rises = np.sign(np.diff(one.s))
         back = [i + 1 for i in np.flatnonzero(rises[:-1] * rises[1:] < 0.0)]
         assert [i for i, _ in one.turns()] == back
+
+
+def tops(scene, dof, level, low, high):
+    """Frequencies of an ordinary run's points in a window that are higher than their neighbours."""
+    system = System(scene, (1, 2, 3))
+    at = moved(system, number_of(scene, "level").put(scene, level))
+    found = []
+    for path in traced(at).branches.paths:
+        height = reported(at, path).amplitude[:, dof]
+        top = 1 + np.flatnonzero((height[1:-1] > height[:-2]) & (height[1:-1] > height[2:]))
+        found += [omega for omega in path.parameter[top] if low < omega < high]
+    return found
+
+
+def test_a_peak_ends_where_another_extreme_within_the_cycle_overtakes_it(scene):
+    """The amplitude is half the range of the motion: ordinary runs have the peak before, and not beyond."""
+    narrow = replace(scene, frequency_range=(1.55, 1.62), max_step=0.02)
+    ends = [
+        (one.s[i], one.frequency[i])
+        for one in followed(narrow, Condition(Kind.PEAK, 1), (0.995, 1.02))
+        for ending, i in zip(one.endings, (0, -1), strict=True)
+        if ending is Ending.MET
+    ]
+    assert ends
+    for level, omega in ends:
+        counts = [len(tops(narrow, 1, level + by, omega - 4e-3, omega + 4e-3)) for by in (-8e-3, 8e-3)]
+        assert max(counts) == min(counts) + 1

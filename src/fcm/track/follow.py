@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fcm.continuation.sharp import SHARP
 from fcm.scene.model import FloatArray
+from fcm.track.circle import Change, Circle
 from fcm.track.corner import nearest
 from fcm.track.meeting import NEAR, SHORTEST, Meeting
 from fcm.track.place import FIRST, KINK
 from fcm.track.spot import Ending, Spot, Way
-from fcm.track.tracked import Condition
+from fcm.track.tracked import Condition, Kind
 
 COSINE = 0.94  # of the turn in a step: at most 20 degrees
 MISSED = 0.3  # of a step, by which the prediction may be wrong
 MOST = 3000  # points of a curve
-SKIPS = (1e-6, 1e-5)  # of the span, by which a corner of the curve is passed
-FLAT = 1e-3  # in the problem's scale: what moves more there is another curve
+RADII = (1e-6, 1e-5, 1e-4, 1e-3)  # of circles about a kink on which the curve is looked for
+OFF = 0.1  # of such a radius, by which the point found there may be wrong
 BENT = 5.0  # of such a step, by which the prediction may be wrong
 SHORT = 1e-3  # a step below which a corner of the response is looked for ahead
 AIM = 0.2  # [rad] the turn that a step aims at
@@ -103,27 +106,59 @@ class _Follower(Meeting):
                 met = True
                 if (taken := self._meet()) is not None:
                     return taken
-        return self._skip()
+        return self._round()
 
-    def _skip(self) -> float | Ending:
-        """Go on just beyond a corner of the curve itself, with s held a little further on.
+    def _round(self) -> float | Ending:
+        """Go on from a kink of the curve, on a circle about the place; or why it cannot be gone on.
 
         Where what a contact does changes with continuous derivatives, second ones jump, and so does the
-        direction of a curve of folds or peaks.
+        direction of a curve of folds or peaks. Where the derivatives jump the response has a corner.
         """
-        rise = float(np.sign(self.t[-1]))
-        for leap in () if self.corner is not None else SKIPS:
-            guess = self.z + rise * leap * self.smooth.span * self.held
-            if not self._solve(guess, rise * self.held) or self.newton.moved >= FLAT:
-                continue
-            z, t = np.array(self.newton.z), np.array(self.newton.tangent)
-            ending = self._passed(FLAT, z)
-            if isinstance(ending, Ending):
-                return ending
-            if ending:
-                self._go_to(z, t)
-                return FIRST
-        return Ending.STALLED
+        problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
+        for radius in RADII:
+            back = self._back(radius)
+            for change in Circle(problem, self.z, self.t, radius).changes(back) if back is not None else ():
+                if change.jump:
+                    ending = self._at_jump(change, back)
+                elif (taken := self._turn_to(change.z, radius)) is not None:
+                    return taken
+        return ending
+
+    def _back(self, radius: float) -> FloatArray | None:
+        """The point on the way back at a distance, by the chord; None if that is further than it was come."""
+        scale, near = np.asarray(self.newton.scale), self.z
+        for spot in reversed(self.spots):
+            far = float(np.linalg.norm((spot.z - self.z) / scale))
+            if far > radius:
+                short = float(np.linalg.norm((near - self.z) / scale))
+                return near + (spot.z - near) * ((radius - short) / (far - short))
+            near = spot.z
+        return None
+
+    def _turn_to(self, there: FloatArray, radius: float) -> float | Ending | None:
+        """Go on to a point on a circle; None if it is none of the curve."""
+        came, last = float(self.t[-1]), self.spots[-1]
+        row = (there - self.z) / np.asarray(self.newton.scale)
+        if not self._solve(there, row / np.linalg.norm(row)) or self.newton.moved > OFF * radius:
+            return None
+        z, t = np.array(self.newton.z), np.array(self.newton.tangent)
+        self.spots[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
+        ending = self._passed(radius, z)
+        if ending is True:
+            self._go_to(z, t)
+            return radius
+        return ending or None
+
+    def _at_jump(self, jump: Change, back: FloatArray) -> Ending:
+        """What it means that what is special does not go on as a zero, but as a jump.
+
+        The amplitude is the greater one of the extremes of a cycle. Where another one becomes the greatest it
+        has a kink that is a trough. A peak that comes there meets that, and turns back with it.
+        """
+        if jump.bend or self.condition.kind is not Kind.PEAK:
+            return Ending.CORNER
+        turns = (jump.z[-1] - self.z[-1]) * (back[-1] - self.z[-1]) > 0.0
+        return Ending.MET if turns else Ending.TROUGH
 
     def _keep(self, step: float) -> float | Ending | None:
         """Go on to the point that was found, with what happens on the way; None if not all is found."""

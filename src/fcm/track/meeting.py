@@ -32,12 +32,8 @@ class Meeting(Passing):
         """
         if self.corner is not None or not self.turns:
             return None
-        z, came, before, known = (
-            self.z,
-            self.t * np.asarray(self.newton.scale),
-            float(self.t[-1]),
-            len(self.spots),
-        )
+        z, before, known = self.z, float(self.t[-1]), len(self.spots)
+        came = self.t * np.asarray(self.newton.scale)
         for off, at in nearest(self.smooth.varied, z, np.asarray(self.newton.scale)):
             if off > NEAR:
                 break

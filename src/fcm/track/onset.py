@@ -6,7 +6,11 @@ With the load n = n_0 + k_v v before it is cut at 0 and p = k_u u:
     closing     max n                               negative where it is open throughout
     slip        min(p + mu n) - max(p - mu n)       negative where a contact that is closed must slip
 
-A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last is about.
+A slider at rest at k_u w needs |p - k_u w| <= mu n at all times, which the last is about. Two more are for
+corners alone, as a contact that does not slip has them: a slider that began at 0 rests there while
+
+    upper limit  min(p + mu n)                      is positive, and
+    lower limit  max(p - mu n)                      negative; else at the limit
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ from fcm.harmonic.law import Law
 from fcm.scene.model import FloatArray
 
 KINDS = ("separation", "closing", "slip")
+LIMITS = ("upper limit", "lower limit")
 SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
 REFINED = 4  # Newton steps from there
 
@@ -35,19 +40,20 @@ class Onset(NamedTuple):
 
 
 def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
-    """One of KINDS of a contact at its unknowns."""
+    """One of KINDS or LIMITS of a contact at its unknowns."""
     load = _polynomial(x, 1) * law.k_v
     load[0] += law.n_0
-    if kind == "slip":
+    if kind == "slip" or kind in LIMITS:
         push = _polynomial(x, 0) * law.k_u
         upper = _least(push + law.mu * load, harmonics)
         lower = _least(law.mu * load - push, harmonics)
         parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
+        parts = parts if kind == "slip" else [parts[LIMITS.index(kind)]]
     else:
         sign = 1.0 if kind == "separation" else -1.0
         parts = [(_least(sign * load, harmonics), 0.0, sign)]
     value, slope, numbers = 0.0, np.zeros(x.size), np.zeros(4)
-    sign = -1.0 if kind == "closing" else 1.0  # max n = -min(-n)
+    sign = -1.0 if kind in ("closing", "lower limit") else 1.0  # max n = -min(-n)
     for (least, theta), of_push, of_load in parts:
         value += sign * least
         at = _waves(theta, harmonics)  # of a displacement's own numbers, at the extreme
@@ -57,13 +63,13 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
         numbers[1] += sign * of_push * u
         numbers[2] += sign * of_load * v
         numbers[3] += sign * of_load
-        if kind == "slip":
-            numbers[0] += law.n_0 + law.k_v * v
+        if of_push:
+            numbers[0] += sign * (law.n_0 + law.k_v * v)
     return Onset(value, slope, numbers)
 
 
 def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
-    """The functions of all contacts at all unknowns: separation and closing, then slip.
+    """The functions of all contacts at all unknowns: separation and closing, slip, and limits if none slips.
 
     Also of those that cannot slip, or whose load does not vary, as a number may pass by the value that makes
     them so: they are then negative, or change sign with another one.
@@ -80,7 +86,10 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     open_, shut, upper, lower = np.split(
         _all_least(np.concatenate((load, -load, push + limit, limit - push)), harmonics), 4
     )
-    return np.concatenate((open_, -shut, upper + lower))
+    rests = upper + lower > 0.0
+    return np.concatenate(
+        (open_, -shut, upper + lower, np.where(rests, upper, 1.0), np.where(rests, -lower, -1.0))
+    )
 
 
 def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
@@ -100,7 +109,7 @@ def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
 
 def kinds_of(law: Law) -> tuple[str, ...]:
     """Those that a contact can have."""
-    return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(KINDS[2:] if law.mu * law.k_u > 0.0 else ()))
+    return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
 
 
 def _places(width: int, part: int) -> npt.NDArray[np.intp]:

@@ -19,6 +19,9 @@ class Ending(Enum):
     SPAN = "the number reached an end of its range"
     RANGE = "its frequency left the range that is traced"
     CLOSED = "the curve came back to where it began"
+    MET = "another extreme within the cycle became the greatest, and so there is no peak beyond"
+    TROUGH = "another extreme within the cycle became the greatest, and the least amplitude is there"
+    CORNER = "it goes on as a corner of the response, which cannot be followed there"
     STALLED = "no further point could be found"
     LONG = "there are too many points"
     TURNED = "the number turned back, and only peaks are followed"
@@ -26,7 +29,7 @@ class Ending(Enum):
     @property
     def whole(self) -> bool:
         """Whether there is no more of the curve, or none that was asked for."""
-        return self in (Ending.SPAN, Ending.RANGE, Ending.CLOSED, Ending.TURNED)
+        return self not in (Ending.CORNER, Ending.STALLED, Ending.LONG)
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,24 @@ class Tracked(Problem):
         residual[n], jacobian[n] = unit * value, unit * gradient
         return 0
 
+    def surface(self, z: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        """Residual and derivatives by z of the balance alone, scaled, and what is special of the point."""
+        z, scale = np.asarray(z), np.asarray(self.scale)
+        self.varied.put(float(z[-1]))
+        y, n = np.array(z[:-1]), self.n
+        here = self._look(y)
+        matrix = np.concatenate((here.jacobian, here.by_s[:, None]), axis=1) * scale / scale[:n, None]
+        return np.array(self.varied.balance.residual) / scale[:n], matrix, self._special(y, here)
+
+    def _special(self, y: FloatArray, here: Look) -> float:
+        """What `_condition` says, without its derivatives; of the tangent of length 1."""
+        if self.condition.kind not in (Kind.FOLD, Kind.PEAK):
+            return self._condition(y, here)[0]
+        scale = np.asarray(self.scale)[:-1]
+        t = self._tangent(here.jacobian).t
+        t /= np.linalg.norm(t)
+        return float(t[-1] if self.condition.kind is Kind.FOLD else here.growth[:-1] @ (scale * t))
+
     def _look(self, y: FloatArray) -> Look:
         """The balance at a place."""
         balance = self.varied.balance
