@@ -28,14 +28,18 @@ OF_NO_USE = {  # beside --track, and why
     "tolerance": "it leaves nothing out",
     "keep_all": "it leaves nothing out anyway",
     "history_csv": "no motion is simulated",
+    "peaks_only": "the points of the curves are what is asked for",
+    "sensitivity": "the curve itself is that of one number; run without --track for the rates by all",
 }
 
 
 def _only_one(context: click.Context, parameter: click.Parameter, given: tuple[str, ...]) -> str | None:
-    """The last of several would be followed, and the others left out unsaid."""
+    """The last of several would be taken, and the others left out unsaid."""
     if len(given) > 1:
+        all_of = ", ".join(map(plain, given))
+        what = {"track": "points of one kind", "over": "them in one number"}[str(parameter.name)]
         raise click.UsageError(
-            f"--track is given {len(given)} times ({', '.join(given)}): one run follows points of one kind; "
+            f"{parameter.opts[0]} is given {len(given)} times ({all_of}): one run follows {what}; "
             "make a run for each.",
             context,
         )
@@ -50,7 +54,10 @@ def track_options(command: Any) -> Any:
             help="Follow these points of the response as curves in the number --over: folds (jumps), "
             "peaks, onset of slip, of separation, of contact at all.",
         ),
-        click.option("--over", metavar="KEY", help='With --track: the number, as contact.NAME.n_0 or level.'),
+        click.option(
+            "--over", metavar="KEY", multiple=True, callback=_only_one,
+            help="With --track: the number, as contact.NAME.n_0 or level.",
+        ),
         click.option("--from", "low", type=float, metavar="X", help="Where it begins, with --track."),
         click.option("--to", "high", type=float, metavar="X", help="Where it ends, with --track."),
     ]  # fmt: skip

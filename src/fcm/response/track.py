@@ -33,8 +33,10 @@ from fcm.run import (
 )
 from fcm.scene.draft import LEVEL, Number, number_of
 from fcm.scene.model import Scene
+from fcm.structure.linear import linear_of
 from fcm.track.onset import KINDS as ONSETS
 
+NARROWEST = 1e-6  # of its ends: of a narrower span not even the first steps can be told from rounding
 WHAT = ("folds", "peaks", *ONSETS)
 
 
@@ -158,10 +160,26 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
             raise ResponseError(f"{number.key} {fault}")
     if not low < high:
         raise ResponseError(f"{number.key} is from {low:g} to {high:g}, but must rise")
+    if high - low < NARROWEST * max(abs(low), abs(high)):
+        raise ResponseError(
+            f"{number.key} is from {low:.17g} to {high:.17g}: too narrow to follow anything in"
+        )
     if number.key == LEVEL and low <= 0.0:
         raise ResponseError(
             "level is from 0 or less, but must be positive: at 0 nothing moves, and nothing is special"
         )
+    rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
+    if len(set(rigid)) > 1:
+        raise ResponseError(
+            f"{number.key} is from {low:g} to {high:g}: at one end the structure has more rigid-body motions "
+            "than at the other, and what is tracked does not go on from there; leave that end out"
+        )
+
+
+def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Scene]:
+    """The first of the curves at both ends of a span."""
+    first = number.freed(scene).each_curve()[0]
+    return [number.put(first, value) for value in span]
 
 
 def needed(

@@ -117,7 +117,9 @@ class _Follower(Meeting):
         problem, ending = self.smooth if self.corner is None else self.corner.problem, Ending.STALLED
         for radius in RADII:
             back = self._back(radius)
-            for change in Circle(problem, self.z, self.t, radius).changes(back) if back is not None else ():
+            if back is None:
+                break
+            for change in Circle(problem, self.z, self.t, radius).changes(back):
                 if change.jump:
                     ending = self._at_jump(change, back)
                 elif (taken := self._turn_to(change.z, radius)) is not None:
