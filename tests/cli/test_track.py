@@ -66,6 +66,8 @@ def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
     rows = list(csv.reader((tmp_path / "folds.csv").read_text("utf-8").splitlines()))
     assert len(rows) == 1 + points
     assert fcm("plot", "peak", "folds.nc", "--folds", "-o", "folds.svg").code == 0
+    done = fcm("plot", "response", "folds.nc", "-o", "no.svg")
+    assert done.code == 2 and done.err.endswith("; try fcm plot peak\n")
 
 
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):

@@ -91,3 +91,18 @@ def test_a_peak_ends_where_another_extreme_within_the_cycle_overtakes_it(scene):
     for level, omega in ends:
         counts = [len(tops(narrow, 1, level + by, omega - 4e-3, omega + 4e-3)) for by in (-8e-3, 8e-3)]
         assert max(counts) == min(counts) + 1
+
+
+def test_a_peak_at_which_no_curve_begins_is_told():
+    """Each peak of ordinary runs at both ends of the level is on a curve, or is said to be on none."""
+    other, span = load_scene(Path(__file__).parents[1] / "harmonic" / "scenes" / "sub.toml"), (0.7, 1.3)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(curves, "STARTS", 2)
+        line = along(number_of(other, "level"))
+        made = tracks(System(other, (1, 2, 3)), line, span, [Condition(Kind.PEAK, 0)])
+    assert made.lost and made.curves
+    for level in span:
+        told = [z[-2] for _, z in made.lost if z[-1] == level]
+        there = np.concatenate([one.frequency[one.s == level] for one in made.curves] + [told])
+        expected = tops(other, 0, level, *other.frequency_range)
+        assert expected and all(np.abs(there / omega - 1.0).min() < 1e-3 for omega in expected)

@@ -95,13 +95,14 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
 
 def _hint(dataset: Any) -> str:
     """Which command draws the file, if one does."""
-    kinds = {
-        "history": ("displacement", "time"),
-        "response": ("amplitude", "frequency"),
-        "peak": ("peak_amplitude", "peak_frequency"),
-    }
+    kinds = (
+        ("history", {"displacement", "time"}),
+        ("response", {"amplitude", "frequency"}),
+        ("peak", {"peak_amplitude", "peak_frequency"}),
+        ("peak", {"tracked_number", "tracked_frequency"}),
+    )
     held = dataset.variables.keys()
-    found = next((what for what, names in kinds.items() if held >= set(names)), "")
+    found = next((what for what, names in kinds if held >= names), "")
     return f"; try fcm plot {found}" if found else ""
 
 

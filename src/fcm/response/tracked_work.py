@@ -29,6 +29,7 @@ from fcm.track.spot import Ending, Spot, Way
 from fcm.track.stability import stability_along
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
+from fcm.units import in_unit
 
 STOPPED = f"{INTERRUPTED}, so that curves and errors may be missing"
 T = TypeVar("T")
@@ -63,6 +64,7 @@ class TrackedWork:
         shown = partial(report, text=self.number.key)
         found = tracks(system, line, self.span, conditions_of(scene, self.what), (), shown, once)
         way, followed = Way(system, line, self.span, (), scene.max_step), Followed([], list(found.problems))
+        followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted
         for one in found.curves:  # after an interruption nothing is estimated any more
             told: tuple[TrackedError, ...] = ()
@@ -78,6 +80,15 @@ class TrackedWork:
             return followed
         followed.problems.append(STOPPED)
         raise Interrupted([followed] if followed.curves else [])
+
+
+def _lost(scene: Scene, condition: Condition, z: FloatArray) -> str:
+    """What is said of a point at which no curve could be begun."""
+    frequency = float(in_unit(z[-2], scene.frequency_unit))
+    return (
+        f"at {z[-1]:.6g}: no curve could be begun at the {named(scene, condition)} at "
+        f"{frequency:.6g} {scene.frequency_unit}, which may be a corner of the response"
+    )
 
 
 class _Once:

@@ -12,15 +12,16 @@ import numpy as np
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
-from fcm.track.curve import Track, whole
+from fcm.track.curve import Track, is_top, whole
 from fcm.track.follow import land
 from fcm.track.known import passed
-from fcm.track.spot import Way
+from fcm.track.spot import Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
 STARTS = 13  # values of the number, evenly spaced, at which ordinary curves are traced
+SAME, NEAR = 1e-9, 1e-3  # of the span, of a frequency: a point nearer to a curve is on it
 MOST_PEAKS = 3  # curves of peaks along which onsets are looked for
 
 T = TypeVar("T")
@@ -43,6 +44,7 @@ class Tracks:
 
     curves: tuple[Track, ...]
     problems: tuple[str, ...] = ()
+    lost: tuple[tuple[Condition, FloatArray], ...] = ()  # points of ordinary curves that are on none of these
     interrupted: bool = False  # so that there may be more
 
 
@@ -67,7 +69,7 @@ def tracks(
         _follow_all(made, values, conditions, progress)
     except KeyboardInterrupt:
         stopped = True
-    return Tracks(tuple(made.curves), tuple(made.problems), stopped)
+    return Tracks(tuple(made.curves), tuple(made.problems), () if stopped else tuple(made.lost()), stopped)
 
 
 def _follow_all(
@@ -95,13 +97,39 @@ class _Made:
         self.way, self.once = way, once
         self.curves: list[Track] = []
         self.problems: list[str] = []
+        self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
 
     def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
         """Follow those that no curve has passed; z = (x, omega, s)."""
         for condition, z in points:
             spot = land(self.way, condition, z)
+            if spot is None or not self._is_top(condition, spot):
+                self.missed.append((condition, z))
             if spot is not None and not any(passed(one, condition, spot, self.way) for one in self.curves):
                 self.curves.append(self.once(partial(whole, self.way, condition, spot)))
+
+    def lost(self) -> list[tuple[Condition, FloatArray]]:
+        """Points at which no curve could begin, and that none has come to either."""
+        return [
+            (condition, z)
+            for condition, z in self.missed
+            if not any(self._comes_to(curve, condition, z) for curve in self.curves)
+        ]
+
+    def _comes_to(self, curve: Track, condition: Condition, z: FloatArray) -> bool:
+        """Whether a curve has a point at the same value of the number, and nearly the same frequency."""
+        low, high = self.way.span
+        there = np.abs(curve.s - z[-1]) < SAME * (high - low)
+        near = np.abs(curve.frequency[there] / z[-2] - 1.0) < NEAR
+        return curve.condition == condition and bool(near.any())
+
+    def _is_top(self, condition: Condition, spot: Spot) -> bool:
+        """Whether a peak that was landed on is one: beside a peak at a corner there may be a trough."""
+        if condition.kind is not Kind.PEAK:
+            return True
+        problem = self.way.tracked(condition)
+        problem.measure(spot.z)
+        return is_top(problem, spot)
 
 
 def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, FloatArray]]:
