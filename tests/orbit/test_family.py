@@ -17,7 +17,7 @@ from fcm.orbit.family import chosen, family
 from fcm.orbit.periodic import converged
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
-from fcm.response import orbit_curve
+from fcm.response import not_unique
 from fcm.response.exact import trace_exact
 from fcm.response.legs import TimeOver
 
@@ -109,8 +109,8 @@ def test_where_there_is_no_time_for_the_extent_it_is_said_to_be_unknown(scene, m
         raise TimeOver
 
     with pytest.raises(TimeOver):
-        family(scene, OMEGA, periodic(scene, OMEGA, settled(scene, 0.0).end).state, over)
-    monkeypatch.setattr(orbit_curve, "family", over)
+        family(scene, OMEGA, periodic(scene, OMEGA, settled(scene, 0.0).end).state, look=over)
+    monkeypatch.setattr(not_unique, "family", over)
     (curve,) = trace_exact(replace(scene, frequency_range=(1.4, OMEGA), max_step=0.2)).curves
     k = int(np.argmax(curve.amplitude[:, 1]))
     assert curve.complete and curve.orbits.family_complete[k] == 0.0

@@ -135,9 +135,9 @@ def test_with_a_contact_that_loses_its_state_no_curve_is_followed_to_its_end(sce
     w, finished, made = held.resting(scene), [], exact_work.orbit_curve
     wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts))
 
-    def noted(problem, *rest):
-        finished.append([one.place for one in problem.scene.held])
-        return made(problem, *rest)
+    def noted(groups, *rest):
+        finished.append([one.place for one in groups[0].problem.scene.held])
+        return made(groups, *rest)
 
     monkeypatch.setattr(exact_work, "foreseen", lambda *_: wrong)
     monkeypatch.setattr(exact_work, "orbit_curve", noted)

@@ -158,11 +158,14 @@ def unbelieved(
 ) -> npt.NDArray[np.bool_]:
     """Stretches (point,) without an error next to a point whose error is beyond what is believed.
 
-    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said.
+    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said. A
+    point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
     found = np.zeros(len(truncation), dtype=np.bool_)
     framed = np.concatenate(([False], truncation > beyond, [False]))
-    for first, end in _stretches(np.isnan(truncation)):
+    untold = np.isnan(truncation)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= beyond)
+    for first, end in _stretches(untold):
         own = frequency[first:end][stable[first:end] == 1.0]
         wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
         found[first:end] = wide and bool(framed[first] or framed[end + 1])
