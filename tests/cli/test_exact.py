@@ -54,6 +54,8 @@ def test_frequencies_are_visited_up_and_down(fcm, scene, tmp_path):
     with netCDF4.Dataset(tmp_path / "a.nc") as data:
         assert data["frequency"][0].tolist() == pytest.approx(up + up[::-1])
         assert data["sweep"][0].tolist() == ["up"] * 4 + ["down"] * 4
+    one = fcm("respond", scene, "--method", "exact", "--at", "1.1")
+    assert one.code == 0 and "end of the range" not in one.out  # there is none
 
 
 def test_python_gives_the_same(fcm, scene, tmp_path):

@@ -65,7 +65,7 @@ def worst(errors: FloatArray) -> float | None:
 def _ends(curve: Curve, known: FloatArray) -> tuple[float, float]:
     if curve.orbits is not None and curve.orbits.span is not None:
         return curve.orbits.span
-    return (float(known.min()), float(known.max())) if known.size > 1 else NO_ENDS
+    return (float(known.min()), float(known.max())) if known.size and np.ptp(known) > 0.0 else NO_ENDS
 
 
 def _stable(curve: Curve) -> bool | None:
