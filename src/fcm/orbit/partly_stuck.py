@@ -52,21 +52,21 @@ def partly_stuck_motions(
     """
     whole, found, families = scene.whole(), list[Partly](), list(known)
     system = System(whole, omega)
-    for stuck, residual in _tried(system):
+    for stuck, residual in _tried(system, look):
         if any(_has(one, stuck, residual) for one in families):
             continue
         look()
-        orbit = _with_held(system, stuck, residual)
+        orbit = _with_held(system, stuck, residual, look)
         if orbit is None or any(_holds(one, orbit) for one in families):
             continue
-        one = _partly(orbit)
+        one = _partly(orbit, look)
         if one is not None:
             found.append(one)
             families.append(one.family)
     return found
 
 
-def partly_stuck_as_started(scene: Scene, omega: float) -> list[State]:
+def partly_stuck_as_started(scene: Scene, omega: float, look: Look = without_end) -> list[State]:
     """Guesses from those motions whose contacts rest where the scene starts."""
     whole, computed = scene.whole(), scene.computed()
     system = System(whole, omega)
@@ -75,7 +75,7 @@ def partly_stuck_as_started(scene: Scene, omega: float) -> list[State]:
         State(orbit.state.q, orbit.state.velocity, orbit.state.friction[computed])
         for stuck in _sets(whole)
         if _choices(system, stuck, wanted[list(stuck)])
-        and (orbit := _with_held(system, stuck, wanted[list(stuck)])) is not None
+        and (orbit := _with_held(system, stuck, wanted[list(stuck)], look)) is not None
     ]
 
 
@@ -87,9 +87,10 @@ def _sets(scene: Scene) -> Iterator[tuple[int, ...]]:
         yield from combinations(rough, size)
 
 
-def _tried(system: System) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
+def _tried(system: System, look: Look) -> Iterator[tuple[tuple[int, ...], FloatArray]]:
     """Contacts, and residual friction of them with which they may stick."""
     for stuck in _sets(system.scene):
+        look()
         for residual in _thinned(_choices(system, stuck)):
             yield stuck, residual
 
@@ -155,31 +156,32 @@ def _holds(known: Family, orbit: Orbit) -> bool:
     return bool(inside.all()) and not set(stuck).isdisjoint(known.contacts)
 
 
-def _with_held(system: System, stuck: tuple[int, ...], residual: FloatArray) -> Orbit | None:
+def _with_held(system: System, stuck: tuple[int, ...], residual: FloatArray, look: Look) -> Orbit | None:
     """The stable motion with contacts held on residual friction, if they stick in it by themselves."""
     contacts = system.scene.contacts
     rest = {j: float(force) / contacts[j].k_u for j, force in zip(stuck, residual, strict=True)}
     held = system.scene.holding([Held(j, contacts[j], False, w) for j, w in rest.items()])
     try:
-        orbit = _approached(System(held, system.omega))
-        return None if orbit is None else _released(system, orbit.state, rest)
+        orbit = _approached(System(held, system.omega), look)
+        return None if orbit is None else _released(system, orbit.state, rest, look)
     except SimulationError:  # it cannot be computed
         return None
 
 
-def _approached(system: System) -> Orbit | None:
+def _approached(system: System, look: Look) -> Orbit | None:
     """The stable motion that one from no displacement comes to soon."""
     state = State.unloaded(system.scene)
     for count in CYCLES:
         for _, end in cycles_from(system, count, state):
+            look()
             state = end
-        orbit = shoot(system, state)
+        orbit = shoot(system, state, look)
         if orbit is not None and orbit.stable:
             return orbit
     return None
 
 
-def _released(system: System, state: State, rest: dict[int, float]) -> Orbit | None:
+def _released(system: System, state: State, rest: dict[int, float], look: Look) -> Orbit | None:
     """The same motion with no contact held, if those stick all through it."""
     contacts, displacement = system.scene.contacts, system.scene.modal.shapes.T @ state.q
     friction = np.zeros(len(contacts))
@@ -188,16 +190,16 @@ def _released(system: System, state: State, rest: dict[int, float]) -> Orbit | N
         friction[j] = contacts[j].k_u * (contacts[j].tangential @ displacement - w)
     shot = Shot(system, np.concatenate((state.q, state.velocity, friction)))
     sticks = set(rest) <= set(always_stuck(system, shot.segments))
-    found = converged(shot) if sticks and shot.residual < CLOSED else None
+    found = converged(shot, look=look) if sticks and shot.residual < CLOSED else None
     return closed(*found) if found is not None and within_unit_circle(found[0].multipliers) else None
 
 
-def _partly(orbit: Orbit) -> Partly | None:
+def _partly(orbit: Orbit, look: Look) -> Partly | None:
     """The motion with its family; None if that cannot be told."""
     system, state = System(orbit.scene, orbit.frequency), orbit.state
     x = np.concatenate((state.q, state.velocity, state.friction))
     try:
-        found = family(orbit.scene, orbit.frequency, state)
+        found = family(orbit.scene, orbit.frequency, state, look=look)
     except SimulationError:
         return None
     if found is None:

@@ -60,7 +60,7 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
             *_shot(scene, omega, started_states(scene, omega), look),
         ]
         if scene.start is not None:
-            orbits += _shot(scene, omega, partly_stuck_as_started(scene, omega), look)
+            orbits += _shot(scene, omega, partly_stuck_as_started(scene, omega, look), look)
         try:
             if omega not in inside and not any(orbit.stable for orbit in orbits):
                 orbits += _from_rest(scene, omega, bool(orbits), look)
@@ -165,7 +165,7 @@ def solution_at(scene: Scene, omega: float, look: Look = without_end) -> Orbit:
     near = list[Orbit]()
     if scene.start is not None:
         near += _shot(scene, omega, started_states(scene, omega), look)
-        near += _shot(scene, omega, partly_stuck_as_started(scene, omega), look)
+        near += _shot(scene, omega, partly_stuck_as_started(scene, omega, look), look)
     near += near_balance(scene, omega, look)
     stable = [orbit for orbit in near if orbit.stable]
     return (stable or _from_rest(scene, omega, bool(near), look) or near)[0]

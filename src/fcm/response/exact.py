@@ -18,6 +18,7 @@ from fcm.response.around import refuse_ring
 from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_work import ExactWork
 from fcm.response.legs import LEGS
+from fcm.response.search import FOUND
 from fcm.response.visit import STATES
 from fcm.response.wanted import ResponseError
 from fcm.results.result import Response
@@ -127,7 +128,7 @@ class _Run:
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
         mark = fingerprint(METHOD, replace(self.work, limit=None))
         batches = [(one,) for one in scenes]
-        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, *LEGS))
+        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, *LEGS, *FOUND))
         contacts = tuple(contact.name for contact in scenes[0].contacts)
         return Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
 

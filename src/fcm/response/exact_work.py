@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
@@ -11,12 +13,14 @@ from fcm.motion.errors import SimulationError
 from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.doubled import Doubled, doubled_paths
 from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample
 from fcm.reduction.held import NotKeptError, check, foreseen, lost_by
 from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import Clock, Legs, TimeOver
-from fcm.response.only_peaks import peaks_alone, peaks_of
+from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
+from fcm.response.search import Search
 from fcm.response.trace import traced_curve as balance_of
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
@@ -26,6 +30,7 @@ from fcm.scene.model import FloatArray, Held, Scene
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
+AT_END = f"{STOPPED}its end, while other motions beside its points were sought"
 
 
 @dataclass(frozen=True)
@@ -65,8 +70,7 @@ class ExactWork:
     def _in_time(self, scene: Scene, report: Report, clock: Clock, stiff: str) -> Curve:
         followed = _Followed(report, clock, stiff, self.periods)
         if self.only_peaks:
-            alone = peaks_alone(scene, report, clock.look)
-            return peaks_of(*followed.branches(scene), clock.look) if alone is None else alone
+            return followed.peaks(scene)
         if self.whole or len(scene.contacts) < FEWEST:
             return followed.curve(scene)
         return followed.lightly(scene)
@@ -107,7 +111,23 @@ class _Followed:
 
     def curve(self, scene: Scene) -> Curve:
         """The curve with all contacts that the scene computes."""
-        return orbit_curve(*self.branches(scene), self.clock.look)
+        groups, reason = self.branches(scene)
+        return _finished(partial(orbit_curve, groups), reason, Search(self.clock.look, self.report))
+
+    def peaks(self, scene: Scene) -> Curve:
+        """The peaks, folds and jumps alone."""
+        known, search = list[Sample](), Search(self.clock.look, self.report)
+        try:
+            alone = peaks_alone(scene, known, self.report, self.clock.look)
+        except (KeyboardInterrupt, TimeOver) as stop:
+            where = shown(scene, known[-1].frequency) if known else "the start"
+            reason = _cut_off(stop, self.clock.limit) + where + self.stiff
+            found = Alone(sorted(known, key=lambda one: one.frequency))
+            return _finished(partial(peaks_curve, scene, found), reason, search)
+        if alone is not None:
+            return _finished(partial(peaks_curve, scene, alone), "", search)
+        groups, reason = self.branches(scene)
+        return _finished(partial(peaks_of, groups), reason, search)
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str]:
         """All branches, and why they are not complete, else ''; what is stiff is said then, too.
@@ -141,6 +161,18 @@ class _Followed:
         return groups, reason + self.stiff if reason else ""
 
 
+def _finished(made: Callable[[str, Search], Curve], reason: str, search: Search) -> Curve:
+    """A curve of what was found; once it is interrupted, no other motions are looked for beside that."""
+    if reason.startswith(STOPPED):
+        search.end()
+        return made(reason, search)
+    try:
+        return made(reason, search)
+    except KeyboardInterrupt:
+        search.end()
+        return made(f"{AT_END}; {reason}" if reason else AT_END, search)
+
+
 def _without(problem: OrbitProblem, lost: int) -> str:
     """Why the curves of motions that repeat after so many periods are not complete."""
     return f"of {lost} flips no motion was found that repeats after {problem.repeats} periods"
@@ -172,7 +204,8 @@ def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
 def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
-    visitor, reason = Visitor(around, Clock(limit).look), ""
+    look = Clock(limit).look
+    visitor, reason = Visitor(around, look), ""
     try:
         visitor.run(at, report)
     except (KeyboardInterrupt, TimeOver) as stop:
@@ -181,4 +214,5 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
     except SimulationError as error:
         reason = str(error)
     reason = reason or visitor.reason
-    return visited_curve(scene, visitor, reason + stiff if reason else "")
+    reason = reason + stiff if reason else ""
+    return _finished(partial(visited_curve, scene, visitor), reason, Search(look, report))

@@ -15,7 +15,7 @@ from fcm.response.wanted import Wanted
 from fcm.results.gist import Gist, without_points
 from fcm.results.jumps import Jump, Swept, Untold
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
-from fcm.results.orbits import Orbits
+from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
 from fcm.results.result import DEFECT, Curve
 from fcm.run import Interrupted, Lost, Report
@@ -23,7 +23,18 @@ from fcm.scene.model import Scene
 
 Group = Sequence[Scene]
 SLOW = 1.0  # [s] after which finished curves are saved before their group is, and no kill can lose them
-KINDS = (Curve, Gist, Orbits, Swept, Jump, Untold, Peak, NonlinearMode, Resonance)  # what results consist of
+KINDS = (
+    Curve,
+    Gist,
+    Orbits,
+    Stuck,
+    Swept,
+    Jump,
+    Untold,
+    Peak,
+    NonlinearMode,
+    Resonance,
+)  # what results consist of
 _BY_POINT = (
     *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
     *("table_error", "error", "truncation_error"),

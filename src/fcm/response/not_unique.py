@@ -14,6 +14,7 @@ from fcm.orbit.partly_stuck import partly_stuck_motions
 from fcm.orbit.periodic import Look
 from fcm.orbit.sample import Sample
 from fcm.response.legs import TimeOver
+from fcm.response.search import Extents, Search
 from fcm.results.orbits import Stuck
 from fcm.scene.model import FloatArray, Scene
 
@@ -31,41 +32,42 @@ class NotUnique:
 
 
 def not_unique(
-    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int], look: Look
+    scene: Scene, points: Sequence[Sample | None], amplitude: FloatArray, rows: Sequence[int], search: Search
 ) -> NotUnique:
     """What is found at some of the points; amplitude : of all, (point, dof)."""
     least, greatest = np.full_like(amplitude, np.nan), np.full_like(amplitude, np.nan)
     out = NotUnique(least, greatest, np.full(len(points), np.nan))
     told = [(k, point) for k in rows if (point := points[k]) is not None]
     for omega in sorted({point.frequency for _, point in told}):
-        _tell(scene, omega, [one for one in told if one[1].frequency == omega], amplitude, out, look)
+        here = [k for k, point in told if point.frequency == omega]
+        found = search.known(omega, amplitude[here])
+        if found is None:
+            samples = [point for _, point in told if point.frequency == omega]
+            found = _told(scene, samples, Extents.unknown(omega, amplitude[here]), search)
+            search.keep(found)
+        out.least[here], out.greatest[here], out.whole[here] = found.least, found.greatest, found.whole
+        out.beside += found.beside
     return out
 
 
-def _tell(
-    scene: Scene,
-    omega: float,
-    here: list[tuple[int, Sample]],
-    amplitude: FloatArray,
-    out: NotUnique,
-    look: Look,
-) -> None:
-    """What is found at the points of one frequency, into their rows."""
-    families = dict[int, Family]()
-    for k, point in here:
+def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> Extents:
+    """What is found at the points of one frequency."""
+    families, amplitude = dict[int, Family](), out.amplitude
+    for k, point in enumerate(points):
         same = [one for one in families if np.allclose(amplitude[one], amplitude[k], rtol=UNIQUE, atol=0.0)]
-        found = families[same[0]] if same else _family(scene, point, out.whole, k, look)
+        found = families[same[0]] if same else _family(scene, point, out.whole, k, search.look)
         if found is not None:
             families[k] = found
+    known = list(families.values())
     try:
-        others, all_looked_for = partly_stuck_motions(scene, omega, list(families.values()), look), True
+        others = partly_stuck_motions(scene, out.frequency, known, search.look)
     except TimeOver:
-        others, all_looked_for = [], False
+        others = []
     for k, found in families.items():
         those = [one for one in others if not set(one.family.contacts).isdisjoint(found.contacts)]
         least = np.min([found.least, *(one.family.least for one in those)], axis=0)
         greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
-        whole = found.complete and all_looked_for
+        whole = found.complete and not search.over
         if (greatest - least > UNIQUE * greatest).any():
             out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
         elif not whole:
@@ -73,7 +75,8 @@ def _tell(
     for one in others:
         if all(set(one.family.contacts).isdisjoint(found.contacts) for found in families.values()):
             extent = one.family.least, one.family.greatest
-            out.beside.append(Stuck(omega, one.states, 0.0 - one.residual, *extent))
+            out.beside.append(Stuck(out.frequency, one.states, 0.0 - one.residual, *extent))
+    return out
 
 
 def _family(scene: Scene, point: Sample, whole: FloatArray, k: int, look: Look) -> Family | None:

@@ -6,6 +6,7 @@ Where these are not the same one by one, the whole curve is followed, and the re
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
+from fcm.response.search import Search
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import ACCURACY, Wanted
 from fcm.results.jumps import Jump, Swept
@@ -30,12 +32,24 @@ from fcm.scene.model import FloatArray, Scene
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
 
 
-def peaks_alone(scene: Scene, report: Report, look: Look) -> Curve | None:
-    """The curve of a scene with its peaks, folds and jumps alone; None where the balance has others."""
+@dataclass(frozen=True)
+class Alone:
+    """The peaks, folds and jumps of a scene, by frequency, and what it took to find them."""
+
+    points: list[Sample]
+    jumps: list[Jump] = field(default_factory=list)
+    periods: int = 0  # that were computed
+
+
+def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -> Alone | None:
+    """The peaks, folds and jumps of a scene; None where the balance has others.
+
+    known : to which points are added as they are found.
+    """
     balanced = traced_curve(scene, Wanted(None, ACCURACY), look)
     if not balanced.complete:
         return None
-    problem, known, folds = OrbitProblem(scene), list[Sample](), dict[float, Sample]()
+    problem, folds = OrbitProblem(scene), dict[float, Sample]()
     guesses = list(_guesses(scene, balanced))
     for number, guess in enumerate(guesses):
         report(number / len(guesses), f"{number} of {len(guesses)} peaks and folds")
@@ -53,22 +67,27 @@ def peaks_alone(scene: Scene, report: Report, look: Look) -> Curve | None:
     there = [jump for jump in jumps if jump is not None]
     if swept.untold or len(there) < len(jumps):
         return None
-    return _curve(scene, points, Swept(there, []), problem.periods, look)
+    return Alone(points, there, problem.periods)
 
 
-def peaks_of(groups: Sequence[OrbitBranches], reason: str, look: Look) -> Curve:
+def peaks_curve(scene: Scene, alone: Alone, reason: str, search: Search) -> Curve:
+    """The curve of peaks, folds and jumps; complete without a reason."""
+    return _curve(scene, alone.points, Swept(alone.jumps, []), alone.periods, reason, search)
+
+
+def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
     """The peaks, folds and jumps of a curve that was followed."""
-    whole, problem = orbit_curve(groups, reason, look), groups[0].problem
+    whole, problem = orbit_curve(groups, reason, search), groups[0].problem
     tops = {peak.frequency for peak in whole.peaks.values()}
     points = [one for group in groups for path in group.paths for one in samples(group.problem, path)]
     points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
-    return _curve(problem.scene, points, whole.swept(), problem.periods, look, reason)
+    return _curve(problem.scene, points, whole.swept(), problem.periods, reason, search)
 
 
 def _curve(
-    scene: Scene, points: list[Sample], swept: Swept, periods: int, look: Look, reason: str = ""
+    scene: Scene, points: list[Sample], swept: Swept, periods: int, reason: str, search: Search
 ) -> Curve:
-    curve = curve_of_points(scene, points, reason, look)
+    curve = curve_of_points(scene, points, reason, search)
     curve.folds = [one.frequency for one in points if one.mark & Mark.FOLD]
     if curve.orbits is not None:
         curve.orbits.span, curve.orbits.periods = scene.frequency_range, periods

@@ -11,7 +11,6 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
-from fcm.orbit.periodic import Look, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
 from fcm.reduction.held import rooms, whole_state, whole_states
@@ -19,6 +18,7 @@ from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.not_unique import not_unique
 from fcm.response.orbit_branches import OrbitBranches
+from fcm.response.search import Search
 from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
 from fcm.results.jumps import Swept
@@ -30,10 +30,10 @@ from fcm.scene.model import Scene
 LONGEST_REGIME = 60  # letters; a contact that chatters has more, and the rest is cut off
 
 
-def orbit_curve(groups: Sequence[OrbitBranches], reason: str, look: Look = without_end) -> Curve:
+def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
     """The points of branches, with a point of NaN between one and the next; complete without a reason.
 
-    look raises `TimeOver` where no more is to be found out about them.
+    search : for other motions beside them.
     """
     points, folds, scene = list[Sample | None](), list[float](), groups[0].problem.scene
     kept = list[FloatArray]()
@@ -43,7 +43,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, look: Look = witho
             whole = [_of_whole(scene, point) for point in found]
             points += [None, *whole] if points else whole
             kept += [_kept(group.problem, found)] if scene.held else []
-    curve = replace(_curve(scene.whole(), points, reason, look), folds=folds)
+    curve = replace(_curve(scene.whole(), points, reason, search), folds=folds)
     if curve.orbits is not None:
         curve.orbits.periods = sum(group.problem.periods for group in groups)
         last = groups[-1].points
@@ -73,15 +73,15 @@ def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
     return kept
 
 
-def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str, look: Look = without_end) -> Curve:
+def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str, search: Search) -> Curve:
     """Points that no curve joins: one of NaN between each and the next."""
     apart = [one for point in points for one in (None, point)]
-    return _curve(scene, apart[1:], reason, look)
+    return _curve(scene, apart[1:], reason, search)
 
 
-def visited_curve(scene: Scene, visitor: Visitor, reason: str) -> Curve:
+def visited_curve(scene: Scene, visitor: Visitor, reason: str, search: Search) -> Curve:
     """The points at which sweeps were steady, in order; complete without a reason."""
-    curve = _curve(scene, visitor.points, reason, everywhere=True)
+    curve = _curve(scene, visitor.points, reason, search, everywhere=True)
     if curve.orbits is not None:
         curve.orbits.sweep = np.array(visitor.sweep, dtype="<U4")
         curve.orbits.swept = Swept(visitor.jumps, [])
@@ -92,14 +92,14 @@ def _curve(
     scene: Scene,
     points: Sequence[Sample | None],
     reason: str,
-    look: Look = without_end,
+    search: Search,
     everywhere: bool = False,
 ) -> Curve:
     empty = lost_curve(scene, reason)
     frequency = _numbers(points, "frequency")
     amplitude = _rows(points, "amplitude", empty)
     rows = _told(amplitude, everywhere)
-    others = not_unique(scene, points, amplitude, rows, look)
+    others = not_unique(scene, points, amplitude, rows, search)
     regime = _regimes(points, len(scene.contacts))
     told = everywhere | np.isfinite(others.whole)
     stable = np.array([np.nan if p is None else float(p.stable) for p in points])
@@ -131,7 +131,10 @@ def _curve(
             others.least,
             others.greatest,
             others.whole,
-            stuck=[*others.beside, *stuck_beside(scene, rows, frequency, regime, others)],
+            stuck=[
+                *others.beside,
+                *stuck_beside(scene, [] if search.over else rows, frequency, regime, others),
+            ],
         ),
     )
 

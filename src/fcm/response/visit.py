@@ -27,7 +27,7 @@ from fcm.orbit.periodic import Look, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled, settled
 from fcm.orbit.start import first_point, solution_at
-from fcm.orbit.steady import FREE_CYCLES, steady
+from fcm.orbit.steady import FREE_CYCLES, Steady, steady
 from fcm.results.jumps import Jump
 from fcm.run import Report
 from fcm.scene.model import FloatArray, Scene
@@ -56,7 +56,7 @@ class Visit:
     refused: tuple[tuple[str, str], ...]
 
 
-STATES = (Visit, Sample, State, Measure)  # what is saved consists of these
+STATES = (Visit, Sample, State, Measure, Steady)  # what is saved consists of these
 
 
 class Visitor:
