@@ -135,6 +135,25 @@ def test_op4_without_its_package(tmp_path, monkeypatch):
     assert "needs the package pyyeti: pip install 'fcm[op4]'" in refused(tmp_path, stiffness="K.op4")
 
 
+@pytest.mark.parametrize(
+    "content, why",
+    [
+        ("import nowhere_to_be_found", "ModuleNotFoundError: No module named 'nowhere_to_be_found'"),
+        ("raise AttributeError('numpy has no float_')", "AttributeError: numpy has no float_"),
+    ],
+)
+def test_op4_with_its_package_broken(tmp_path, monkeypatch, content, why):
+    (tmp_path / "K.op4").write_text("")
+    package = tmp_path / "packages" / "pyyeti"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text(content)
+    before = f"import sys; sys.path.insert(0, {str(package.parent)!r}); "
+    monkeypatch.setattr(apart, "_CODE", before + apart._CODE)
+    said = refused(tmp_path, stiffness="K.op4")
+    assert f"which is installed and cannot be imported ({why})" in said
+    assert "pip install" not in said
+
+
 @pytest.mark.parametrize("key", ["dofs", "file"])
 @pytest.mark.parametrize("text", ["1x\n2x\n3x\n", "1 x # tip\n\n2,x\n3 x", "1:x\r\n2:x\r\n3:x"])
 def test_names_from_a_text_file(tmp_path, key, text):

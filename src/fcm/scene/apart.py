@@ -110,12 +110,25 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     """Matrices of a Nastran output4 file."""
     try:
         from pyyeti.nastran import op4
-    except ImportError:
+    except ModuleNotFoundError as error:
+        if error.name and error.name.partition(".")[0] != "pyyeti":  # of what pyyeti itself needs
+            raise _unusable(path, error) from None
         raise DataFileError(
             f"{quoted(path.name)} needs the package pyyeti: pip install 'fcm[op4]', or write it as .mtx"
         ) from None
+    except Exception as error:  # of an old release, for one, with a numpy that has not what it uses
+        raise _unusable(path, error) from None
     found: dict[str, Any] = op4.load(str(path), into="dct", justmatrix=True, sparse=None)
     return found
+
+
+def _unusable(path: Path, error: Exception) -> DataFileError:
+    """What is wrong with a package pyyeti that is there and cannot be imported."""
+    why = str(error).partition("\n")[0]
+    return DataFileError(
+        f"{quoted(path.name)} needs the package pyyeti, which is installed and cannot be imported "
+        f"({type(error).__name__}: {why}): mend that, or write it as .mtx"
+    )
 
 
 _READERS = {".mat": _mat, ".mtx": _mtx, ".op4": _op4}
