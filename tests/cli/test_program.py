@@ -7,8 +7,9 @@ import warnings
 
 import click
 import pytest
+from click.testing import CliRunner
 
-from fcm.cli import COMMANDS
+from fcm.cli import COMMANDS, main
 from fcm.cli.guard import guarded
 from fcm.cli.messages import Messages
 from fcm.continuation import dense
@@ -166,3 +167,13 @@ def test_a_full_disk_under_standard_output_is_not_completed():
     done = shell("fcm respond yang1998-n5 > /dev/full || echo $?")
     assert done.out == "3\n"
     assert "Traceback" not in done.err and "Exception" not in done.err
+
+
+@pytest.mark.parametrize(
+    "words, found", [("fcm respond yang", "yang1998-n5"), ("fcm plot modes bladed", "bladed-disk")]
+)
+def test_a_shell_completes_bundled_scenes_and_files(words, found):
+    """As the bash function of `_FCM_COMPLETE=bash_source fcm` asks: file is for bash to complete."""
+    asked = {"_FCM_COMPLETE": "bash_complete", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+    completed = CliRunner().invoke(main, env=asked, prog_name="fcm").output.split()
+    assert f"plain,{found}" in completed and f"file,{words.split()[-1]}" in completed

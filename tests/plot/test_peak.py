@@ -39,6 +39,13 @@ def test_the_least_peak_is_marked_on_a_line_in_order():
     assert "contact.shroud.n_0" in lower.get_xlabel() and "rad/s" in lower.get_ylabel()
 
 
+def test_peaks_that_are_nearly_equal_lie_within_the_axes():
+    found = peaks(n_0=[8, 10, 12])
+    found.amplitude[:] = [[6.0, 1.0], [5.8, 1.0], [5.9, 1.0]]
+    low, high = draw_peak(found).axes[0].get_ylim()
+    assert low == 0.0 and 1.02 * 6.0 < high < 1.2 * 6.0
+
+
 def test_another_degree_of_freedom():
     upper, _ = draw_peak(peaks(n_0=[0, 10, 50]), dof="v").axes
     assert upper.lines[0].get_ydata().tolist() == pytest.approx([1.4, 0.6, 0.8])

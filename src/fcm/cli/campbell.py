@@ -11,6 +11,7 @@ import click
 from fcm.cli.drawing import ENDINGS, picture_of, save_picture
 from fcm.cli.files import largest_file_option, output_option
 from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.scene_name import scene_argument
 
 if TYPE_CHECKING:
     from fcm.scene.model import Scene
@@ -19,7 +20,7 @@ MOST_HARMONICS = 10  # of which it is said what they meet
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@scene_argument
 @output_option(
     "-o", "--output", endings=ENDINGS,
     help="The picture to write: .png, .svg or .pdf.  [default: SCENE with the ending -campbell.png]",

@@ -10,12 +10,13 @@ import click
 from fcm.cli.columns import aligned, number
 from fcm.cli.files import largest_file_option
 from fcm.cli.messages import Messages, pass_messages
+from fcm.cli.scene_name import scene_argument
 
 _MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@scene_argument
 @click.option("--json", "to_json", is_flag=True, help="Print JSON instead of a table.")
 @largest_file_option
 @pass_messages

@@ -15,6 +15,7 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
 from fcm.cli.remarks import announce, close
 from fcm.cli.respond_options import Asked, respond_options
+from fcm.cli.scene_name import scene_argument
 from fcm.cli.time_limit import TimeLimit
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("scene", metavar="SCENE")
+@scene_argument
 @respond_options
 @pass_messages
 def respond(messages: Messages, /, scene: str, **options: Any) -> None:

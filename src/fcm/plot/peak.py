@@ -28,6 +28,7 @@ _DECADES = 100.0  # positive swept values that span more are on a logarithmic ax
 _MOST_LINES = 12  # more combinations of the other swept values than this are a cloud of points
 _MARK = "#c03020"
 _WHOLE = ("cyclic.engine_order",)  # whole numbers, between which there is nothing
+_ABOVE = 1.05  # top of the axis over the greatest peak, whose mark is whole below it
 _MANY = 60  # values on a line whose points are not marked any more
 
 
@@ -145,7 +146,7 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     if y.max() > 10.0 * y.min() > 0.0:
         logarithmic_axis(upper)
     else:
-        upper.set_ylim(bottom=0.0)
+        upper.set_ylim(0.0, _ABOVE * float(y.max()) or 1.0)
     lower.minorticks_on()
     if key in _WHOLE:
         lower.xaxis.set_major_locator(MaxNLocator(integer=True))
