@@ -155,8 +155,8 @@ def damping_of(
         return np.full(stiffness.size, matrices.ratio), []
     if matrices.hysteretic:
         equal = (
-            "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance without "
-            "contacts; where they raise its frequency, the damping is more by that ratio"
+            "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
+            "without contacts; where they raise its frequency, the damping is more by that ratio"
         )
         return np.full(stiffness.size, matrices.hysteretic / 2.0), [equal]
     if matrices.C is None:
