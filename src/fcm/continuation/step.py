@@ -86,10 +86,11 @@ class Step:
     @cython.exceptval(-1, check=False)
     def shorten(self, at: cython.double) -> cython.bint:
         """Make the place at a length from here the one there, with the direction that it has exactly
-        there."""
+        there; the shift of the step stays."""
         if not self.put(at, False, False) or not self.sharpen(True, True):
             return False
         self.step, self.turn = at, along(self.here.tangent, self.between.tangent)
+        self.between.shift = self.there.shift
         self.there, self.between = self.between, self.there
         return True
 
