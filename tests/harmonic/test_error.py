@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from fcm.continuation import Mark
+from fcm.harmonic.believed import astray
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.error import astray, errors_along
+from fcm.harmonic.error import errors_along
 from fcm.harmonic.stability import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem

@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.corrected import FARTHER, Corrected, Indices
+from fcm.harmonic.believed import runs
+from fcm.harmonic.corrected import Corrected, Indices
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
@@ -29,7 +30,6 @@ CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
-AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
 GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
@@ -145,33 +145,6 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     )
 
 
-def astray(truncation: FloatArray) -> npt.NDArray[np.bool_]:
-    """Where (point,) a curve has long lost that of more harmonics, and says nothing of the motion."""
-    far = np.zeros(len(truncation), dtype=np.bool_)
-    for first, end in _stretches(np.isnan(truncation)):
-        far[first:end] = end - first > 2 * FARTHER
-    return far
-
-
-def unbelieved(
-    frequency: FloatArray, truncation: FloatArray, stable: FloatArray, beyond: float
-) -> npt.NDArray[np.bool_]:
-    """Stretches (point,) without an error next to a point whose error is beyond what is believed.
-
-    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said. A
-    point alone with an error, as one of several at a corner may be, does not part a stretch.
-    """
-    found = np.zeros(len(truncation), dtype=np.bool_)
-    framed = np.concatenate(([False], truncation > beyond, [False]))
-    untold = np.isnan(truncation)
-    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= beyond)
-    for first, end in _stretches(untold):
-        own = frequency[first:end][stable[first:end] == 1.0]
-        wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
-        found[first:end] = wide and bool(framed[first] or framed[end + 1])
-    return found
-
-
 def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:
     """Differences from the amplitudes to those of the corrected curve at the same frequency, in its units."""
     path, place, rate = corrected.path, corrected.place, corrected.path.direction[:, -1]
@@ -226,7 +199,7 @@ def _heights(corrected: Corrected, shown: Reported, change: FloatArray, tops: In
                 greatest if beyond is None else np.maximum(greatest, np.where(tops == top, beyond, 0.0))
             )
     unknown = np.zeros(len(tops), dtype=np.bool_)
-    for first, end in _stretches(np.isnan(change[:, 0])):
+    for first, end in runs(np.isnan(change[:, 0])):
         may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
         rivals = may | ((first <= tops) & (tops < end))
         if rivals.any():
@@ -254,9 +227,3 @@ def _gap(corrected: Corrected, shown: Reported, top: int) -> bool:
     changed = np.abs(corrected.change[beside, 1:]).max(axis=0) * corrected.unit[top]
     top_of = shown.amplitude[top] >= shown.amplitude.max(axis=0)
     return bool((higher > GAP * changed)[top_of].any())
-
-
-def _stretches(lost: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First of each run of points and the one behind its last."""
-    ends = np.flatnonzero(np.diff(np.concatenate(([False], lost, [False]))))
-    return [(int(first), int(end)) for first, end in ends.reshape(-1, 2)]

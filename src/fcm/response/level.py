@@ -15,6 +15,7 @@ import numpy as np
 
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
+from fcm.harmonic.believed import BELIEVED
 from fcm.harmonic.linear_contacts import highest
 from fcm.harmonic.raised import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
@@ -22,7 +23,7 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.trace import BEYOND, Rows, pick
+from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve, Response
@@ -137,7 +138,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     error = errors_at_levels(system, z, level, amplitude, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
-    known = truncation <= BEYOND  # with more harmonics there may be no solution where it is not
+    known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
     of_points = {
         "frequency": np.full(level.size, omega),

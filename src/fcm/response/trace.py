@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
+from fcm.harmonic.believed import astray, disbelieved
 from fcm.harmonic.choice import Accurate, accurate, finer, given
-from fcm.harmonic.cost import PATIENCE
 from fcm.harmonic.drift import REASONS, undetermined
-from fcm.harmonic.error import Reported, astray, reported_at, unbelieved
+from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded, states
 from fcm.harmonic.rest import RestError
@@ -23,6 +23,7 @@ from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.loose import loose
+from fcm.response.short_of import short_of
 from fcm.response.wanted import ONE_HARMONIC, Wanted
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
@@ -33,7 +34,6 @@ METHODS = ("table", "closed-form")
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
 UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
-BEYOND = 0.2  # estimated error, beyond which a solution is not called stable
 Rows = npt.NDArray[np.intp]
 
 
@@ -62,8 +62,7 @@ def traced_curve(
         followed = _with_jumps(followed, wanted.accuracy)
     curve = _curve(followed)
     if by_need and curve.complete:
-        curve.short_of = _short_of(followed.found) if not followed.found.reached else ""
-        curve.short_of = curve.short_of or _lost_short_of(followed, wanted.accuracy, scene.frequency_unit)
+        curve.short_of = short_of(followed.found, followed.lost, wanted.accuracy)
     curve.seconds = time.perf_counter() - begin
     return curve
 
@@ -93,40 +92,6 @@ def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
     return followed
 
 
-def _lost_short_of(followed: _Followed, accuracy: float, unit: str) -> str:
-    """What keeps the frequencies at which stability is lost from the accuracy; empty if nothing does."""
-    off = [one for one in followed.lost if not one.error <= accuracy]
-    if not off:
-        return ""
-    worst = max(off, key=lambda one: 0.0 if np.isnan(one.error) else one.error)
-    error = "cannot be told" if np.isnan(worst.error) else f"is estimated as {worst.error:.1e}"
-    count = len(followed.found.system.harmonics)
-    many = f"{count} harmonic{'' if count == 1 else 's'}"
-    at = f"{in_unit(worst.frequency, unit):.6g} {unit}"
-    return f"with {many} the error of the frequency at which stability is lost, {at}, {error}"
-
-
-def _short_of(found: Accurate) -> str:
-    """What keeps a response from the accuracy that was asked for, and what more would take."""
-    count, folds = len(found.system.harmonics), found.folds
-    said = f"with {count} harmonic{'' if count == 1 else 's'}"
-    untold = np.count_nonzero(np.isnan(folds))
-    if np.isnan(found.worst) and np.isnan(found.peak).any():
-        said += " the errors of some peaks cannot be told"
-    elif untold:
-        said += f" an estimated error of {found.told:.1e} remains"
-        said += f", and that of {untold} of {folds.size} folds cannot be told"
-    else:
-        said += f" an estimated error of {found.worst:.1e} remains"
-    if not found.further:
-        return said
-    more = found.further
-    which = str(more[-1]) if more[-1] == len(more) else ",".join(map(str, more))
-    if found.begun:
-        return f"{said}; more were given up after some {PATIENCE:.0f} s of work: --harmonics {which}"
-    return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
-
-
 def _curve(followed: _Followed) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them."""
     found, parts = followed.found, followed.stable
@@ -138,10 +103,9 @@ def _curve(followed: _Followed) -> Curve:
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = _incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
-    truncation = np.concatenate([one.truncation for one in found.errors])
-    far = (truncation > BEYOND) | np.concatenate([astray(one.truncation) for one in found.errors])
-    far |= unbelieved(points.z[:, -1], truncation, stable, BEYOND)
-    stable[far & (stable == 1.0)] = np.nan  # too far from the motion to be called stable
+    truncations = [one.truncation for one in found.errors]
+    far = disbelieved(points.z[:, -1], truncations, stable)
+    stable[far & (stable == 1.0)] = np.nan
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
         parameters=dict(scene.parameters),
@@ -156,7 +120,7 @@ def _curve(followed: _Followed) -> Curve:
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
         error=pick(error, rows),
-        truncation_error=pick(truncation, rows),
+        truncation_error=pick(np.concatenate(truncations), rows),
         complete=not reason,
         reason=reason,
         peaks=_peaks(scene.modal.dofs, points, found.peak, rounding, stable),

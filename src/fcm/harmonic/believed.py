@@ -1,0 +1,62 @@
+"""Where a curve of a balance is too far from the motion, or may be, for its solutions to be called stable."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.corrected import FARTHER
+from fcm.scene.model import FloatArray
+
+Mask = npt.NDArray[np.bool_]
+
+BELIEVED = 0.2  # estimated error of the amplitudes, up to which a solution is called stable
+AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
+
+
+def disbelieved(frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray) -> Mask:
+    """Which points of branches, one after the other, are too far from the motion, or surrounded by such.
+
+    Parameters
+    ----------
+    frequency, stable : array (point,)
+    truncations : sequence of array (point,)
+        Estimated errors of each branch, NaN where there is none.
+    """
+    truncation = np.concatenate(truncations)
+    lost = np.concatenate([astray(one) for one in truncations])
+    far: Mask = (truncation > BELIEVED) | lost | _untold_beside(frequency, truncation, stable)
+    return far
+
+
+def astray(truncation: FloatArray) -> Mask:
+    """Where (point,) a branch has long lost that of more harmonics, and says nothing of the motion."""
+    far = np.zeros(len(truncation), dtype=np.bool_)
+    for first, end in runs(np.isnan(truncation)):
+        far[first:end] = end - first > 2 * FARTHER
+    return far
+
+
+def _untold_beside(frequency: FloatArray, truncation: FloatArray, stable: FloatArray) -> Mask:
+    """Stretches (point,) without an error next to a point whose error is beyond what is believed.
+
+    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said. A
+    point alone with an error, as one of several at a corner may be, does not part a stretch.
+    """
+    found = np.zeros(len(truncation), dtype=np.bool_)
+    framed = np.concatenate(([False], truncation > BELIEVED, [False]))
+    untold = np.isnan(truncation)
+    untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= BELIEVED)
+    for first, end in runs(untold):
+        own = frequency[first:end][stable[first:end] == 1.0]
+        wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
+        found[first:end] = wide and bool(framed[first] or framed[end + 1])
+    return found
+
+
+def runs(which: Mask) -> list[tuple[int, int]]:
+    """The first of each run of points, and the one behind its last."""
+    ends = np.flatnonzero(np.diff(np.concatenate(([False], which, [False]))))
+    return [(int(first), int(end)) for first, end in ends.reshape(-1, 2)]
