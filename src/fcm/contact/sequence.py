@@ -16,10 +16,10 @@ NAN = cython.declare(cython.double, float("nan"))
 INVISIBLE = cython.declare(cython.double, 1e-15)
 
 # the letters of a sequence are digits of its number, in base 5; 0 is no sequence
-STICK = cython.declare(cython.int, 1)
-POSITIVE = cython.declare(cython.int, 2)
-NEGATIVE = cython.declare(cython.int, 3)
-SEPARATION = cython.declare(cython.int, 4)
+LETTER_E = cython.declare(cython.int, 1)
+LETTER_P = cython.declare(cython.int, 2)
+LETTER_N = cython.declare(cython.int, 3)
+LETTER_S = cython.declare(cython.int, 4)
 LETTERS = " EPNS"
 MOST = 7  # states of a cycle, and one more
 
@@ -43,11 +43,11 @@ class Sequence(Cycle):
         self.count, self.code = 0, 0
         behaviour: cython.int = self.find(n0_bar, b_bar, phi)
         if behaviour == STUCK:
-            self._region(STICK, 0.0, -self.stuck_force())
+            self._region(LETTER_E, 0.0, -self.stuck_force())
         elif behaviour == OPEN:
-            self._region(SEPARATION, 0.0, NAN)
+            self._region(LETTER_S, 0.0, NAN)
         elif behaviour == SLIPPING and self.opens and self.state == 0.0 and self.last_slip != 0.0:
-            self._region(NEGATIVE if self.last_slip > 0.0 else POSITIVE, self.since, NAN)
+            self._region(LETTER_N if self.last_slip > 0.0 else LETTER_P, self.since, NAN)
         return self.code
 
     def take(self) -> None:
@@ -56,16 +56,16 @@ class Sequence(Cycle):
             self.since, self.last_slip = 2.0 * (PI - self.theta_1), 0.0
             self.state = 2.0 if self.opens else -1.0
             if self.opens:
-                self._region(SEPARATION, 0.0, NAN)
+                self._region(LETTER_S, 0.0, NAN)
         side: float = self._seen()
         slip: float = self.slip if side == self.side else 0.0
         stick: float = self.length - (self.slip if side != 0.0 else 0.0)
         if self.state != 0.0 and (stick > INVISIBLE or (side != 0.0 and self.state == -side)):
-            self._region(STICK, self.since, self.w_start)
+            self._region(LETTER_E, self.since, self.w_start)
             self.state = 0.0
         self.since += self.length
         if side != 0.0 and side != self.state:
-            self._region(POSITIVE if side > 0.0 else NEGATIVE, self.since - slip, NAN)
+            self._region(LETTER_P if side > 0.0 else LETTER_N, self.since - slip, NAN)
         if side != 0.0:
             self.state = self.last_slip = side
 

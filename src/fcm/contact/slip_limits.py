@@ -15,11 +15,11 @@ LARGEST = cython.declare(cython.double, 1e300)  # beyond, sums of a few terms wo
 FARTHEST = cython.declare(cython.double, 1e304)  # preloads beyond, infinite ones too, are this
 SHRINK = cython.declare(cython.double, 2.0**-32)  # both by this, where b is beyond LARGEST
 
-# what a contact does over a cycle
-UNKNOWN = cython.declare(cython.int, -1)  # an argument is no number
-STUCK = cython.declare(cython.int, 0)  # above the slip limit (25)
-SLIPPING = cython.declare(cython.int, 1)
-OPEN = cython.declare(cython.int, 2)  # below n0 = -b
+# what a contact does over a cycle, by the numbers that `periodic` has for it as well
+OPEN = cython.declare(cython.int, 0)  # below n0 = -b
+UNKNOWN = cython.declare(cython.int, 3)  # an argument is no number
+STUCK = cython.declare(cython.int, 4)  # above the slip limit (25)
+SLIPPING = cython.declare(cython.int, 5)
 
 
 @cython.cclass

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.pool import BLOCK, FITS, NEGATIVE, OPEN, ORDER, POSITIVE, STICK
+from fcm.motion.pool import BLOCK, FITS, NEGATIVE_SLIP, ORDER, POSITIVE_SLIP, SEPARATED, STICKING
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:
@@ -75,15 +75,15 @@ def _matrix(system: System, states: Codes) -> FloatArray:
         f, n = system.f.start + j, system.n.start + j
         push_u, push_v = system.tangential[j] / modal.mass, system.normal[j] / modal.mass
         a[n, system.p] = contact.k_v * system.normal[j]
-        if state == OPEN:
+        if state == SEPARATED:
             a[system.p, -1] += push_v * max(contact.n_0, 0.0)  # the preload that is missing
             continue
         a[system.p, -1] -= push_v * min(contact.n_0, 0.0)  # a gap is not pressed
         a[system.p, f], a[system.p, n] = -push_u, -push_v
-        if state == STICK:
+        if state == STICKING:
             a[f, system.p] = contact.k_u * system.tangential[j] if contact.mu > 0.0 else 0.0
         else:
-            a[f, system.p] = (1.0 if state == POSITIVE else -1.0) * contact.mu * a[n, system.p]
+            a[f, system.p] = (1.0 if state == POSITIVE_SLIP else -1.0) * contact.mu * a[n, system.p]
     return a
 
 
@@ -147,14 +147,14 @@ def _exits(system: System, states: Codes) -> tuple[FloatArray, list[int], list[i
 
     for j, (contact, state) in enumerate(zip(system.contacts, states.tolist(), strict=True)):
         rough = contact.mu > 0.0 and contact.k_u > 0.0
-        if state == STICK and rough:
-            add(j, POSITIVE, n=contact.mu, f=-1.0)
-            add(j, NEGATIVE, n=contact.mu, f=1.0)
-        elif state in (POSITIVE, NEGATIVE):
-            sign = 1.0 if state == POSITIVE else -1.0
-            add(j, STICK, u=sign * contact.k_u, v=-contact.mu * contact.k_v)
-        if state == OPEN:
-            add(j, STICK, n=-1.0)
-        elif state != STICK or not rough:
-            add(j, OPEN, n=1.0)
+        if state == STICKING and rough:
+            add(j, POSITIVE_SLIP, n=contact.mu, f=-1.0)
+            add(j, NEGATIVE_SLIP, n=contact.mu, f=1.0)
+        elif state in (POSITIVE_SLIP, NEGATIVE_SLIP):
+            sign = 1.0 if state == POSITIVE_SLIP else -1.0
+            add(j, STICKING, u=sign * contact.k_u, v=-contact.mu * contact.k_v)
+        if state == SEPARATED:
+            add(j, STICKING, n=-1.0)
+        elif state != STICKING or not rough:
+            add(j, SEPARATED, n=1.0)
     return np.array(rows).reshape(len(rows), system.size - 2), owner, goal

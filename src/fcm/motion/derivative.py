@@ -25,9 +25,9 @@ else:
 
 # an exit passed this slowly, relative to its terms, is touched
 GRAZING = cython.declare(cython.double, 1e-12)
-_OPEN = cython.declare(cython.int, 0)
-_POSITIVE = cython.declare(cython.int, 2)
-_NEGATIVE = cython.declare(cython.int, 3)
+_SEPARATED = cython.declare(cython.int, 0)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
+_NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -214,9 +214,9 @@ class Derivative(Along):
             state = segments.states[i, j]
             if not every and segments.states[i - 1, j] == state:
                 continue
-            if state == _POSITIVE:
+            if state == _POSITIVE_SLIP:
                 z[k, f + j] = self.flows.mu[j] * z[k, f + c + j]
-            elif state == _NEGATIVE:
+            elif state == _NEGATIVE_SLIP:
                 z[k, f + j] = -self.flows.mu[j] * z[k, f + c + j]
-            elif state == _OPEN:
+            elif state == _SEPARATED:
                 z[k, f + j] = 0.0

@@ -25,10 +25,10 @@ _PAUSED = cython.declare(cython.int, Stopped.PAUSED)
 _LONG = cython.declare(cython.int, Stopped.LONG)
 MOST_STEPS = cython.declare(cython.double, 2e8)  # in one segment
 PATIENCE = cython.declare(cython.int, 50_000)  # blocks until signals are looked at
-_OPEN = cython.declare(cython.int, 0)
-_STICK = cython.declare(cython.int, 1)
-_POSITIVE = cython.declare(cython.int, 2)
-_NEGATIVE = cython.declare(cython.int, 3)
+_SEPARATED = cython.declare(cython.int, 0)
+_STICKING = cython.declare(cython.int, 1)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
+_NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -82,13 +82,13 @@ class March:
         load: cython.double = self.flows.n_0[j] + self.y[0, f + self.flows.contacts]
         limit: cython.double = self.flows.mu[j] * load
         if load < 0.0 or (load == 0.0 and self.flows.k_v[j] == 0.0):
-            self.y[0, f], self.states[0, j] = 0.0, _OPEN
+            self.y[0, f], self.states[0, j] = 0.0, _SEPARATED
         elif not self.flows.rough[j]:
-            self.y[0, f], self.states[0, j] = 0.0, _STICK
+            self.y[0, f], self.states[0, j] = 0.0, _STICKING
         elif fabs(self.y[0, f]) <= limit:
-            self.states[0, j] = _STICK
+            self.states[0, j] = _STICKING
         else:
-            self.states[0, j] = _POSITIVE if self.y[0, f] > 0.0 else _NEGATIVE
+            self.states[0, j] = _POSITIVE_SLIP if self.y[0, f] > 0.0 else _NEGATIVE_SLIP
             self.y[0, f] = limit if self.y[0, f] > 0.0 else -limit
 
     def lasts(self, duration: float, limit: int) -> None:

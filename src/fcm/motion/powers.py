@@ -22,8 +22,8 @@ NODES = 8  # integrate exactly polynomials of degree 15
 _PLACES, _SHARES = np.polynomial.legendre.leggauss(NODES)
 _ON_ONE = 0.5 * (_PLACES + 1.0), 0.5 * _SHARES  # on [0, 1]
 _NODES = cython.declare(cython.int, 8)
-_POSITIVE = cython.declare(cython.int, 2)
-_NEGATIVE = cython.declare(cython.int, 3)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
+_NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 
 @cython.cclass
@@ -88,10 +88,10 @@ class Powers(Walk):
             loss += self._damper[i] * self._y[0, m + i] * self._y[0, m + i]
         for j in range(self.flows.contacts):
             state = self.segments.states[self.at, j]
-            if state != _POSITIVE and state != _NEGATIVE:
+            if state != _POSITIVE_SLIP and state != _NEGATIVE_SLIP:
                 continue
             ratio = self.flows.mu[j] * self.flows.k_v[j] / self.flows.k_u[j]
-            if state == _NEGATIVE:
+            if state == _NEGATIVE_SLIP:
                 ratio = -ratio
             rate = 0.0
             for i in range(m):

@@ -13,9 +13,9 @@ if cython.compiled:
 else:
     from fcm.motion.pool import Pool
 
-_OPEN = cython.declare(cython.int, 0)
-_STICK = cython.declare(cython.int, 1)
-_POSITIVE = cython.declare(cython.int, 2)
+_SEPARATED = cython.declare(cython.int, 0)
+_STICKING = cython.declare(cython.int, 1)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 
 @cython.cclass
@@ -142,12 +142,12 @@ def contact(
     u: cython.double = 0.0
     f: cython.double = z[a, 2 * m + j]
     n: cython.double = z[a, 2 * m + series.contacts + j]
-    if state == _OPEN:  # the preload is missing
+    if state == _SEPARATED:  # the preload is missing
         f, n = 0.0, -max(series.n_0[j], 0.0) * z[a, series.linear - 1]
     else:  # a gap is not pressed
         n += min(series.n_0[j], 0.0) * z[a, series.linear - 1]
-        if state != _STICK:
-            u = series.mu[j] * v if state == _POSITIVE else -series.mu[j] * v
+        if state != _STICKING:
+            u = series.mu[j] * v if state == _POSITIVE_SLIP else -series.mu[j] * v
         elif series.rough[j]:
             u = factor * series.k_u[j] * velocity(series.tangential, j, z, a)
     push(series.push_u, j, f * factor, z, a + 1)

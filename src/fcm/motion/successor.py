@@ -27,9 +27,9 @@ ROUNDING = cython.declare(cython.double, 3e-14)  # of a state after a step, rela
 MOST_PASSES = cython.declare(cython.int, 100)  # until a combination of states agrees with itself
 _ORDER = cython.declare(cython.int, 19)
 _LEADING = cython.declare(cython.int, 8)  # derivatives of an exit that may tell which combination follows
-_OPEN = cython.declare(cython.int, 0)
-_STICK = cython.declare(cython.int, 1)
-_POSITIVE = cython.declare(cython.int, 2)
+_SEPARATED = cython.declare(cython.int, 0)
+_STICKING = cython.declare(cython.int, 1)
+_POSITIVE_SLIP = cython.declare(cython.int, 2)
 
 
 @cython.cclass
@@ -155,12 +155,12 @@ class Successor:
                 if self._failed[e] and self.flows.owner[slot, e] == j:
                     goal = self.flows.goal[slot, e]
                     # both limits of stick passed at once, or the load gone while slipping: the contact opens
-                    wanted = goal if wanted < 0 or wanted == goal else _OPEN
+                    wanted = goal if wanted < 0 or wanted == goal else _SEPARATED
             if wanted < 0:
                 continue
             self.states[0, j] = wanted
             load = self.flows.mu[j] * (self.flows.n_0[j] + self.y[0, f + self.flows.contacts + j])
-            if wanted == _OPEN:
+            if wanted == _SEPARATED:
                 self.y[0, f + j] = 0.0
-            elif wanted != _STICK:
-                self.y[0, f + j] = load if wanted == _POSITIVE else -load
+            elif wanted != _STICKING:
+                self.y[0, f + j] = load if wanted == _POSITIVE_SLIP else -load

@@ -26,7 +26,7 @@ from fcm.motion.walk import Walk
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.loads import loads_of
 
-LETTERS = "SEPN"  # of the codes OPEN, STICK, POSITIVE, NEGATIVE
+LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
 
 
 class System:

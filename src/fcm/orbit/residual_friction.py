@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.motion.measure import Extreme, extremes_by
-from fcm.motion.pool import NEGATIVE, OPEN, POSITIVE, STICK
+from fcm.motion.pool import NEGATIVE_SLIP, POSITIVE_SLIP, SEPARATED, STICKING
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
 from fcm.motion.system import System
@@ -21,7 +21,7 @@ from fcm.orbit.derivative import derivative_at
 from fcm.scene.model import Contact, FloatArray, Scene
 
 MARGIN = 1e-9  # distance from the slip limit, relative to the forces
-BOTH = 1 << POSITIVE | 1 << NEGATIVE  # of what has been seen of a contact: slip in both directions
+BOTH = 1 << POSITIVE_SLIP | 1 << NEGATIVE_SLIP  # of what has been seen of a contact: slip in both directions
 ROUNDING = 1e-3  # of that: a contact this near to what is wanted has it, whatever its limits
 
 
@@ -62,7 +62,7 @@ def always_stuck(system: System, segments: Segments) -> list[int]:
 
 def stuck_of(system: System, seen: list[int]) -> list[int]:
     """The same of what each contact has been in: see `Segments.seen`."""
-    return [j for j, states in enumerate(seen) if states == 1 << STICK and system.rough[j]]
+    return [j for j, states in enumerate(seen) if states == 1 << STICKING and system.rough[j]]
 
 
 def choices(system: System, segments: Segments, wanted: FloatArray, stuck: list[int]) -> list[Choice]:
@@ -122,8 +122,8 @@ def overshoots(system: System, segments: Segments, seen: list[int]) -> list[tupl
     found = []
     for j, states in enumerate(seen):
         ways = states & BOTH
-        if ways not in (0, BOTH) and not states & 1 << OPEN and system.rough[j]:
-            sign = 1.0 if ways == 1 << POSITIVE else -1.0
+        if ways not in (0, BOTH) and not states & 1 << SEPARATED and system.rough[j]:
+            sign = 1.0 if ways == 1 << POSITIVE_SLIP else -1.0
             found.append((j, sign * _margin(system, np.asarray(segments.y)[0], j)))
     return found
 

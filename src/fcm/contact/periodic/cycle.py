@@ -13,7 +13,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, isfinite
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.events import BOTTOM, CLOSES, OPENS, SLIPS, TOP
+    from cython.cimports.fcm.contact.periodic.events import BOTTOM, CLOSES, MEETS, OPENS, TOP
     from cython.cimports.fcm.contact.periodic.motion import (
         CLOSED,
         LOAD,
@@ -27,7 +27,7 @@ if cython.compiled:
     )
     from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK, Slider
 else:
-    from fcm.contact.periodic.events import BOTTOM, CLOSES, OPENS, SLIPS, TOP
+    from fcm.contact.periodic.events import BOTTOM, CLOSES, MEETS, OPENS, TOP
     from fcm.contact.periodic.motion import (
         CLOSED,
         LOAD,
@@ -184,7 +184,7 @@ class Cycle(Slider):
             elif bottom < 0 or self.upper[e] < self.upper[bottom]:
                 bottom = e
         if top < 0 or bottom < 0:  # a limit that does not move at all, or hardly
-            e = self.place(self.motion.first, SLIPS)
+            e = self.place(self.motion.first, MEETS)
             top, bottom = e if top < 0 else top, e if bottom < 0 else bottom
         self.greatest_lower, self.least_upper = self.lower[top], self.upper[bottom]
         self.overlap = self.greatest_lower - self.least_upper

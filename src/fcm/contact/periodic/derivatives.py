@@ -12,11 +12,11 @@ from cython.cimports.libc.math import fabs
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
-    from cython.cimports.fcm.contact.periodic.integrals import CONTACT, SLIPS, STICKS, Integrals
+    from cython.cimports.fcm.contact.periodic.integrals import CONTACT, SIGNED_SLIPS, STICKS, Integrals
     from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 else:
     from fcm.contact.periodic.cycle import TWO_PI
-    from fcm.contact.periodic.integrals import CONTACT, SLIPS, STICKS, Integrals
+    from fcm.contact.periodic.integrals import CONTACT, SIGNED_SLIPS, STICKS, Integrals
     from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
 
 PI = cython.declare(cython.double, 3.141592653589793)
@@ -76,7 +76,7 @@ class Derivatives:
             step = 2 if i >= 0 else 1
             factor = 1.0 / PI if i >= 0 else 0.5 / PI
             self.block(row, 0, step, h, STICKS, factor)
-            self.block(row, 1, step, h, SLIPS, factor)
+            self.block(row, 1, step, h, SIGNED_SLIPS, factor)
             self.block(row + step, 1, step, h, CONTACT, factor)
         self.remember_all()
 

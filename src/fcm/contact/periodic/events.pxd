@@ -1,6 +1,6 @@
 from fcm.contact.periodic.motion cimport Motion
 
-cdef int CLOSES, OPENS, TOP, BOTTOM, SLIPS
+cdef int CLOSES, OPENS, TOP, BOTTOM, MEETS
 
 cdef class Events:
     cdef readonly Motion motion

@@ -15,7 +15,7 @@ CLOSES = cython.declare(cython.int, 0)  # kinds of cuts
 OPENS = cython.declare(cython.int, 1)
 TOP = cython.declare(cython.int, 2)
 BOTTOM = cython.declare(cython.int, 3)
-SLIPS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
+MEETS = cython.declare(cython.int, 4)  # where a limit meets the slider: an event that is no cut
 
 
 @cython.cclass

@@ -11,12 +11,12 @@ import numpy as np
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import STUCK, Cycle
     from cython.cimports.fcm.contact.periodic.derivatives import Derivatives
-    from cython.cimports.fcm.contact.periodic.integrals import CONTACT, LONG, SLIPS, Integrals
+    from cython.cimports.fcm.contact.periodic.integrals import CONTACT, LONG, SIGNED_SLIPS, Integrals
     from cython.cimports.fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, UNKNOWN, Motion
 else:
     from fcm.contact.periodic.cycle import STUCK, Cycle
     from fcm.contact.periodic.derivatives import Derivatives
-    from fcm.contact.periodic.integrals import CONTACT, LONG, SLIPS, Integrals
+    from fcm.contact.periodic.integrals import CONTACT, LONG, SIGNED_SLIPS, Integrals
     from fcm.contact.periodic.motion import FORCE, LOAD, MIXED, REACH, UNKNOWN, Motion
 
 PI = cython.declare(cython.double, 3.141592653589793)
@@ -170,7 +170,7 @@ class PeriodicContact:
         for i in range(-1, self.outputs):
             h = self.output[i] if i >= 0 else 0
             self.integrals.product(h, LONG, FORCE)
-            self.integrals.product(h, SLIPS, REACH)
+            self.integrals.product(h, SIGNED_SLIPS, REACH)
             friction_re: float = self.integrals.total_re[h]
             friction_im: float = self.integrals.total_im[h]
             self.integrals.total_re[h] = self.integrals.total_im[h] = 0.0

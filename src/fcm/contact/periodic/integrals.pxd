@@ -1,7 +1,7 @@
 from fcm.contact.periodic.motion cimport Motion
 from fcm.contact.periodic.cycle cimport Cycle
 
-cdef int STICKS, SLIPS, CONTACT, LONG
+cdef int STICKS, SIGNED_SLIPS, CONTACT, LONG
 
 cdef class Integrals:
     cdef readonly Motion motion

@@ -25,7 +25,7 @@ else:
 
 # Sets of pieces over which exp(-i m theta) is integrated
 STICKS = cython.declare(cython.int, 0)
-SLIPS = cython.declare(cython.int, 1)  # positive less negative
+SIGNED_SLIPS = cython.declare(cython.int, 1)  # positive less negative
 CONTACT = cython.declare(cython.int, 2)
 LONG = cython.declare(cython.int, 3)  # sticks that are integrated in closed form
 # A stick is short up to two radians of the highest harmonic in it: eight points are then exact to rounding.
@@ -103,8 +103,8 @@ class Integrals:
                 s = (self.power_cos[begin, m] - self.power_cos[end, m]) * self.reciprocal[m]
             self.cos_sum[STICKS, m] += stick * c
             self.sin_sum[STICKS, m] += stick * s
-            self.cos_sum[SLIPS, m] += sign * c
-            self.sin_sum[SLIPS, m] += sign * s
+            self.cos_sum[SIGNED_SLIPS, m] += sign * c
+            self.sin_sum[SIGNED_SLIPS, m] += sign * s
             self.cos_sum[CONTACT, m] += c
             self.sin_sum[CONTACT, m] += s
             self.cos_sum[LONG, m] += long * c

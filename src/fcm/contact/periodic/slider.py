@@ -17,14 +17,14 @@ import numpy as np
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.crossings import Crossings
-    from cython.cimports.fcm.contact.periodic.events import BOTTOM, OPENS, SLIPS, TOP, Events
+    from cython.cimports.fcm.contact.periodic.events import BOTTOM, MEETS, OPENS, TOP, Events
     from cython.cimports.fcm.contact.periodic.motion import LOWER, UPPER, Motion
 else:
     from fcm.contact.periodic.crossings import Crossings
-    from fcm.contact.periodic.events import BOTTOM, OPENS, SLIPS, TOP, Events
+    from fcm.contact.periodic.events import BOTTOM, MEETS, OPENS, TOP, Events
     from fcm.contact.periodic.motion import LOWER, UPPER, Motion
 
-STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest
+STICK = cython.declare(cython.int, 0)  # states, and what brought a slider to rest; of a slip its sign
 POSITIVE = cython.declare(cython.int, 1)
 NEGATIVE = cython.declare(cython.int, -1)
 SEPARATION = cython.declare(cython.int, 2)
@@ -117,7 +117,7 @@ class Slider(Events):
             self.add(side, self.span, self.span_begin, 0.0, 0)
         else:
             begin = self.slip_begin(side, end, theta)
-            self.add(side, self.place(begin, SLIPS), begin, 0.0, 0)
+            self.add(side, self.place(begin, MEETS), begin, 0.0, 0)
 
     def slip_begin(self, side: cython.int, end: cython.int, theta: float) -> float:
         """Where the limit that pushes meets the resting slider; before, it may first have receded."""
