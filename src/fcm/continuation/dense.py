@@ -89,7 +89,6 @@ class Solver:
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         best: cython.Py_ssize_t
-        most: cython.double
         p: cython.double
         q: cython.double
         r: cython.double
@@ -111,20 +110,14 @@ class Solver:
                 for j in range(k + 1, n):
                     a[i, j] -= p * a[k, j]
                 k += 1
-            best, most = i, fabs(a[i, i])
-            for j in range(i + 1, n):
-                if fabs(a[i, j]) > most:
-                    best, most = j, fabs(a[i, j])
-            if not (0.0 < most <= 1e300):
+            best = _pivot(a, i)
+            if not (0.0 < fabs(a[i, best]) <= 1e300):
                 self.orientation = 0.0
                 return False
             self.swapped[i] = cython.cast(cython.int, best)
             if best != i:
                 self.orientation = -self.orientation
-                for k in range(n):
-                    p = a[k, i]
-                    a[k, i] = a[k, best]
-                    a[k, best] = p
+                _swap(a, i, best)
             if a[i, i] < 0.0:
                 self.orientation = -self.orientation
             for j in range(i + 1, n):
@@ -158,3 +151,30 @@ class Solver:
             held = x[j]
             x[j] = x[i]
             x[i] = held
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _pivot(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.Py_ssize_t:
+    """The column of the greatest number of a row, from the diagonal on."""
+    j: cython.Py_ssize_t
+    best: cython.Py_ssize_t = i
+    most: cython.double = fabs(a[i, i])
+    for j in range(i + 1, a.shape[0]):
+        if fabs(a[i, j]) > most:
+            best, most = j, fabs(a[i, j])
+    return best
+
+
+@cython.cfunc
+@cython.inline
+@cython.exceptval(check=False)
+def _swap(a: cython.double[:, ::1], i: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+    """Swap two columns."""
+    k: cython.Py_ssize_t
+    held: cython.double
+    for k in range(a.shape[0]):
+        held = a[k, i]
+        a[k, i] = a[k, j]
+        a[k, j] = held

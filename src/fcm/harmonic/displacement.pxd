@@ -12,6 +12,7 @@ cdef class Displacements:
     cdef public double[:, ::1] im
     cdef public double[:, ::1] d_re
     cdef public double[:, ::1] d_im
+    cdef double q_re, q_im, r_re, r_im
     cdef public double[::1] mean
     cdef public double[::1] rest
     cdef public double[::1] amplitude
@@ -25,6 +26,8 @@ cdef class Displacements:
     cdef double rate
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
+    cdef void clear(self, int j) noexcept
+    cdef void move(self, Receptance seen, int j, Py_ssize_t i, double f_re, double f_im, double g_re, double g_im, double d_omega) noexcept
     cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
     cdef void single(self, Py_ssize_t d) noexcept
     cdef void several(self, Py_ssize_t d) noexcept

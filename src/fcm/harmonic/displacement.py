@@ -88,8 +88,7 @@ class Displacements:
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
         driven: cython.double = load if j == self.seen.driven else 0.0
-        for d in range(self.dofs):
-            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        self.clear(j)
         for i in range(self.seen.modes):
             f_re: cython.double = driven * self.seen.force_re[i]
             f_im: cython.double = driven * self.seen.force_im[i]
@@ -101,20 +100,44 @@ class Displacements:
                 f_im -= self.seen.shapes[i, p] * force[k + 1]
                 g_re -= self.seen.shapes[i, p] * d_force[k]
                 g_im -= self.seen.shapes[i, p] * d_force[k + 1]
-            c_re: cython.double = self.seen.c_re[j, i]
-            c_im: cython.double = self.seen.c_im[j, i]
-            s_re: cython.double = self.seen.s_re[j, i] * d_omega
-            s_im: cython.double = self.seen.s_im[j, i] * d_omega
-            q_re: cython.double = c_re * f_re - c_im * f_im
-            q_im: cython.double = c_re * f_im + c_im * f_re
-            r_re: cython.double = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
-            r_im: cython.double = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
+            self.move(self.seen, j, i, f_re, f_im, g_re, g_im, d_omega)
             for d in range(self.dofs):
                 shape: cython.double = self.shapes[i, d]
-                self.re[j, d] += shape * q_re
-                self.im[j, d] += shape * q_im
-                self.d_re[j, d] += shape * r_re
-                self.d_im[j, d] += shape * r_im
+                self.re[j, d] += shape * self.q_re
+                self.im[j, d] += shape * self.q_im
+                self.d_re[j, d] += shape * self.r_re
+                self.d_im[j, d] += shape * self.r_im
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def clear(self, j: cython.int) -> cython.void:
+        """No amplitudes of a harmonic."""
+        d: cython.Py_ssize_t
+        for d in range(self.dofs):
+            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def move(
+        self,
+        seen: Receptance,
+        j: cython.int,
+        i: cython.Py_ssize_t,
+        f_re: cython.double,
+        f_im: cython.double,
+        g_re: cython.double,
+        g_im: cython.double,
+        d_omega: cython.double,
+    ) -> cython.void:
+        """q, the amplitude of mode i under its force f in harmonic j, and its rate r; g is that of f."""
+        c_re: cython.double = seen.c_re[j, i]
+        c_im: cython.double = seen.c_im[j, i]
+        s_re: cython.double = seen.s_re[j, i] * d_omega
+        s_im: cython.double = seen.s_im[j, i] * d_omega
+        self.q_re = c_re * f_re - c_im * f_im
+        self.q_im = c_re * f_im + c_im * f_re
+        self.r_re = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
+        self.r_im = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
 
     @cython.cfunc
     @cython.exceptval(check=False)

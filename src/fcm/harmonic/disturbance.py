@@ -89,15 +89,7 @@ class Disturbances:
         while self.stiffness.rate * length > SHORT:
             length *= 0.5
             squarings += 1
-        for i in range(m):
-            for j in range(n):
-                self.A[i, j] = length if j == m + i else 0.0
-                self.A[m + i, j] = 0.0
-            for j in range(m):
-                self.A[m + i, j] = -length * self.stiffness.K[i, j]
-            self.A[m + i, m + i] = -length * self.stiffness.damping[i]
-            for j in range(self.contacts):
-                self.A[m + i, 2 * m + j] = length * self.stiffness.image[i, j]
+        self.fill(length)
         self.E[:, :] = self.A
         for order in range(ORDER, 1, -1):  # A (1 + A / 2 (1 + A / 3 (...)))
             self.product(self.A, self.E, 1.0 / order)
@@ -109,15 +101,41 @@ class Disturbances:
             for i in range(2 * m):
                 for j in range(n):
                     self.E[i, j] = 2.0 * self.E[i, j] + self.F[i, j]
-        self.product(self.E, self.X, 1.0)
-        for i in range(2 * m):
-            for j in range(2 * m, n):  # the product leaves out the places of the sliders, which stay
-                weight: cython.double = self.E[i, j]
-                for order in range(n):
-                    self.F[i, order] += weight * self.X[j, order]
-            for j in range(n):
-                self.X[i, j] += self.F[i, j]
+        self.carry()
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def fill(self, length: cython.double) -> cython.void:
+        """A, the system times a length."""
+        m: cython.Py_ssize_t = self.modes
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for i in range(m):
+            for j in range(self.size):
+                self.A[i, j] = length if j == m + i else 0.0
+                self.A[m + i, j] = 0.0
+            for j in range(m):
+                self.A[m + i, j] = -length * self.stiffness.K[i, j]
+            self.A[m + i, m + i] = -length * self.stiffness.damping[i]
+            for j in range(self.contacts):
+                self.A[m + i, 2 * m + j] = length * self.stiffness.image[i, j]
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def carry(self) -> cython.void:
+        """X by 1 + E, of the rows of (q, q'); the places of the sliders stay."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        self.product(self.E, self.X, 1.0)  # leaves those places out
+        for i in range(2 * self.modes):
+            for j in range(2 * self.modes, self.size):
+                weight: cython.double = self.E[i, j]
+                for k in range(self.size):
+                    self.F[i, k] += weight * self.X[j, k]
+            for j in range(self.size):
+                self.X[i, j] += self.F[i, j]
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -144,39 +162,19 @@ class Disturbances:
         """One step: X plus the terms (A h)^j X / j!, A (q, q', w) = (q', image w - K q - D q', 0)."""
         m: cython.Py_ssize_t = self.modes
         columns: cython.Py_ssize_t = 2 * m + self.memories
-        big: cython.bint = m * m * columns > LARGE
-        K: cython.double[:, ::1] = self.stiffness.K
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         order: cython.int = 0
         size: cython.double = 1.0
-        weight: cython.double
         share: cython.double
         self.term[:, :] = self.X[: 2 * m, :]
         while size > SMALL or order < 2:
             order += 1
             share = h / order
             size *= self.stiffness.rate * share
-            if big:
-                np.matmul(K, self.term[:m], out=np.asarray(self.work))
-            for i in range(m):
-                if not big:
-                    for k in range(columns):
-                        self.work[i, k] = 0.0
-                    for j in range(m):
-                        weight = K[i, j]
-                        for k in range(columns):
-                            self.work[i, k] += weight * self.term[j, k]
-                weight = self.stiffness.damping[i]
-                for k in range(columns):
-                    self.work[i, k] += weight * self.term[m + i, k]
-                if order == 1:
-                    for j in range(self.contacts):
-                        weight = self.stiffness.image[i, j]
-                        if weight != 0.0:
-                            for k in range(columns):
-                                self.work[i, k] -= weight * self.X[2 * m + j, k]
+            self.resist(columns)
+            if order == 1:
+                self.drag(columns)
             for i in range(m):
                 for k in range(columns):
                     self.term[i, k] = share * self.term[m + i, k]
@@ -184,3 +182,44 @@ class Disturbances:
                     self.X[i, k] += self.term[i, k]
                     self.X[m + i, k] += self.term[m + i, k]
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def resist(self, columns: cython.Py_ssize_t) -> cython.int:
+        """work = K q + D q' of the term (q, q')."""
+        m: cython.Py_ssize_t = self.modes
+        K: cython.double[:, ::1] = self.stiffness.K
+        big: cython.bint = m * m * columns > LARGE
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        weight: cython.double
+        if big:
+            np.matmul(K, self.term[:m], out=np.asarray(self.work))
+        for i in range(m):
+            if not big:
+                for k in range(columns):
+                    self.work[i, k] = 0.0
+                for j in range(m):
+                    weight = K[i, j]
+                    for k in range(columns):
+                        self.work[i, k] += weight * self.term[j, k]
+            weight = self.stiffness.damping[i]
+            for k in range(columns):
+                self.work[i, k] += weight * self.term[m + i, k]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def drag(self, columns: cython.Py_ssize_t) -> cython.void:
+        """From work what the sliders add, image w."""
+        i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        weight: cython.double
+        for i in range(self.modes):
+            for j in range(self.contacts):
+                weight = self.stiffness.image[i, j]
+                if weight != 0.0:
+                    for k in range(columns):
+                        self.work[i, k] -= weight * self.X[2 * self.modes + j, k]

@@ -60,12 +60,12 @@ class Beside:
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = self.parameter.shape[0] - 1
         step: cython.Py_ssize_t = -1 if (self.parameter[i] - wanted) * forward > 0.0 else 1
-        turn: cython.double = forward if step > 0 else -forward
+        onward: cython.double = forward if step > 0 else -forward
         k = i
         while 0 <= k + step <= last:
-            if not (self.parameter[k + step] - self.parameter[k]) * turn >= 0.0:
+            if not (self.parameter[k + step] - self.parameter[k]) * onward >= 0.0:
                 return -1
-            if (self.parameter[k + step] - wanted) * turn >= 0.0:
+            if (self.parameter[k + step] - wanted) * onward >= 0.0:
                 k = k if step > 0 else k - 1
                 return k if self.solve(k, wanted) else -1
             k += step

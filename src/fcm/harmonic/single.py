@@ -211,7 +211,7 @@ class SingleHarmonic(Law):
         phi."""
         b: cython.double = max(hypot(x[first + 4], x[first + 5]), SMALLEST)
         k: cython.double = self.mu / self.k_u * self.k_v
-        turn: cython.double = a / b
+        relative: cython.double = a / b
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         for j in range(3):
@@ -225,5 +225,5 @@ class SingleHarmonic(Law):
                 self.slopes[j, 4 + i] = by_b * k * x[first + 4 + i] / b
             self.slopes[j, 2] += by_phi * x[first + 3] / a
             self.slopes[j, 3] -= by_phi * x[first + 2] / a
-            self.slopes[j, 4] -= by_phi * turn * x[first + 5] / b
-            self.slopes[j, 5] += by_phi * turn * x[first + 4] / b
+            self.slopes[j, 4] -= by_phi * relative * x[first + 5] / b
+            self.slopes[j, 5] += by_phi * relative * x[first + 4] / b

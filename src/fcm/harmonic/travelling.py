@@ -46,8 +46,7 @@ class TravellingDisplacements(Displacements):
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
         driven: cython.double = load if j == self.seen.driven else 0.0
-        for d in range(self.dofs):
-            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        self.clear(j)
         for i in range(wave.modes):
             f_re: cython.double = driven * wave.force_re[i]
             f_im: cython.double = driven * wave.force_im[i]
@@ -61,18 +60,11 @@ class TravellingDisplacements(Displacements):
                 f_im -= a * force[k + 1] - b * force[k]
                 g_re -= a * d_force[k] + b * d_force[k + 1]
                 g_im -= a * d_force[k + 1] - b * d_force[k]
-            c_re: cython.double = wave.c_re[0, i]
-            c_im: cython.double = wave.c_im[0, i]
-            s_re: cython.double = wave.s_re[0, i] * d_omega
-            s_im: cython.double = wave.s_im[0, i] * d_omega
-            q_re: cython.double = c_re * f_re - c_im * f_im
-            q_im: cython.double = c_re * f_im + c_im * f_re
-            r_re: cython.double = c_re * g_re - c_im * g_im + s_re * f_re - s_im * f_im
-            r_im: cython.double = c_re * g_im + c_im * g_re + s_re * f_im + s_im * f_re
+            self.move(wave, 0, i, f_re, f_im, g_re, g_im, d_omega)
             for d in range(self.dofs):
                 a = self.wave_re[j, i, d]
                 b = self.wave_im[j, i, d]
-                self.re[j, d] += a * q_re - b * q_im
-                self.im[j, d] += a * q_im + b * q_re
-                self.d_re[j, d] += a * r_re - b * r_im
-                self.d_im[j, d] += a * r_im + b * r_re
+                self.re[j, d] += a * self.q_re - b * self.q_im
+                self.im[j, d] += a * self.q_im + b * self.q_re
+                self.d_re[j, d] += a * self.r_re - b * self.r_im
+                self.d_im[j, d] += a * self.r_im + b * self.r_re

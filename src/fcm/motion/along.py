@@ -103,12 +103,6 @@ class Along:
         """Multiply so many of the derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
-        i: cython.Py_ssize_t
-        p: cython.Py_ssize_t
-        a: cython.double
-        b: cython.double
-        c: cython.double
-        d: cython.double
         if n >= DENSE:
             with cython.gil:
                 columns, room = np.asarray(self.columns)[:rows, :n], np.asarray(self._room)[:rows]
@@ -116,31 +110,43 @@ class Along:
                 columns[:] = room
             return
         for k in range(rows):
-            for i in range(n):
-                self._room[0, i] = 0.0
-            p = 0
-            while p + 4 <= n:  # four together, to go through the sums less often
-                a, b, c, d = (
-                    self.columns[k, p],
-                    self.columns[k, p + 1],
-                    self.columns[k, p + 2],
-                    self.columns[k, p + 3],
-                )
-                if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
-                    for i in range(n):
-                        self._room[0, i] = (
-                            ((self._room[0, i] + matrix[p, i] * a) + matrix[p + 1, i] * b)
-                            + matrix[p + 2, i] * c
-                        ) + matrix[p + 3, i] * d
-                p += 4
-            while p < n:
-                a = self.columns[k, p]
-                if a != 0.0:
-                    for i in range(n):
-                        self._room[0, i] += matrix[p, i] * a
-                p += 1
-            for i in range(n):
-                self.columns[k, i] = self._room[0, i]
+            self._row_times(matrix, k)
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _row_times(self, matrix: cython.double[:, ::1], k: cython.Py_ssize_t) -> cython.void:
+        """Multiply one of the derivatives by the matrix of a flow."""
+        n: cython.Py_ssize_t = self.flows.linear
+        i: cython.Py_ssize_t
+        p: cython.Py_ssize_t = 0
+        a: cython.double
+        b: cython.double
+        c: cython.double
+        d: cython.double
+        for i in range(n):
+            self._room[0, i] = 0.0
+        while p + 4 <= n:  # four together, to go through the sums less often
+            a, b, c, d = (
+                self.columns[k, p],
+                self.columns[k, p + 1],
+                self.columns[k, p + 2],
+                self.columns[k, p + 3],
+            )
+            if a != 0.0 or b != 0.0 or c != 0.0 or d != 0.0:
+                for i in range(n):
+                    self._room[0, i] = (
+                        ((self._room[0, i] + matrix[p, i] * a) + matrix[p + 1, i] * b) + matrix[p + 2, i] * c
+                    ) + matrix[p + 3, i] * d
+            p += 4
+        while p < n:
+            a = self.columns[k, p]
+            if a != 0.0:
+                for i in range(n):
+                    self._room[0, i] += matrix[p, i] * a
+            p += 1
+        for i in range(n):
+            self.columns[k, i] = self._room[0, i]
 
     @cython.cfunc
     @cython.nogil
