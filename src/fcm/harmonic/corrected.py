@@ -59,13 +59,13 @@ class Corrected:
         more is looked for: not to find one is what costs most.
         """
         count = len(self.known)
-        turns = np.flatnonzero(np.diff(self.linear))
+        changes = np.flatnonzero(np.diff(self.linear))
         ends = np.array([0, count - 1])
         for group in _groups(np.unique(tops)):
             self.find_group(group)
         lost = self.lost()
         places = places[~lost[places]]
-        first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, turns, turns + 1)))
+        first = np.unique(np.concatenate((places, np.arange(0, count, EVERY), ends, changes, changes + 1)))
         first = first[~lost[first] | self.known[first]]
         self.find(first)
         before, after = first[:-1], first[1:]

@@ -103,35 +103,20 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     shown = shown or reported(system, path)
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds = path.where(Mark.FOLD)
-    turns = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
+    special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     corrected = Corrected(system, path, shown.amplitude, shown.linear)
     if corrected.linear.all():
         none = np.zeros_like(shown.amplitude)
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
-    change = corrected.everywhere(turns, tops)
+    change = corrected.everywhere(special, tops)
     shift, unit = _at_frequency(corrected, shown, change), corrected.unit
-    error = np.abs(shift)
-    # what hardly moves may have any error, and says nothing of that of others
-    most = np.where(shown.amplitude < unit, 0.0, error).max(axis=1, keepdims=True)
-    typical = _medians(np.minimum(error, most))[:, None]
-    error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
-    # what is covered in part only is known in part only, though the displacements cancel at a frequency
-    error = np.maximum(
-        error, (1.0 - COVERED) * (corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:]))
-    )
+    error = _of_points(corrected, shown, change, shift)
     error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
-    now = shown.amplitude[tops, d]
-    height = np.where(
-        inside,
-        _heights(corrected, shown, change[:, 1:], tops),
-        now + unit[tops, d] * shift[tops, d],
-    )
-    relative = np.abs(height - now) / unit[tops, d]
-    told = relative[np.isfinite(relative)]
-    relative = np.maximum(relative, CHANCE_AT_PEAKS * _medians(told[None])[0] if told.size else 0.0)
-    error[tops[inside], d[inside]] = relative[inside]
+    at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
+    height = np.where(inside, _heights(corrected, shown, change[:, 1:], tops), at_ends)
+    error[tops[inside], d[inside]] = _of_peaks(corrected, tops, height)[inside]
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
     system.work.take(corrected.corrector.seconds())
@@ -141,8 +126,30 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         peak=error[tops, d],
         height=height,
         fold=np.abs(change[folds, 0]),
-        share=corrected.shares(turns, shown.amplitude.max(axis=0))[:HIGHEST],
+        share=corrected.shares(special, shown.amplitude.max(axis=0))[:HIGHEST],
     )
+
+
+def _of_points(corrected: Corrected, shown: Reported, change: FloatArray, shift: FloatArray) -> FloatArray:
+    """Errors (point, dof) at the same frequency, in units of the corrected curve."""
+    error = np.abs(shift)
+    # what hardly moves may have any error, and says nothing of that of others
+    most = np.where(shown.amplitude < corrected.unit, 0.0, error).max(axis=1, keepdims=True)
+    typical = _medians(np.minimum(error, most))[:, None]
+    error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
+    # what is covered in part only is known in part only, though the displacements cancel at a frequency
+    moved = corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
+    covered: FloatArray = np.maximum(error, (1.0 - COVERED) * moved)
+    return covered
+
+
+def _of_peaks(corrected: Corrected, tops: Indices, height: FloatArray) -> FloatArray:
+    """Errors (dof,) of the greatest amplitudes, whose corrected heights are given, in the same units."""
+    d = np.arange(len(tops))
+    error = np.abs(height - corrected.amplitude[tops, d]) / corrected.unit[tops, d]
+    told = error[np.isfinite(error)]
+    peaks: FloatArray = np.maximum(error, CHANCE_AT_PEAKS * _medians(told[None])[0] if told.size else 0.0)
+    return peaks
 
 
 def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:
