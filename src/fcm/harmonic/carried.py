@@ -17,11 +17,11 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Status, follow
-from fcm.continuation.problem import Problem
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.further import padded
 from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.nearby import lowest_of, turns_near
+from fcm.harmonic.replaced import Replaced
 from fcm.harmonic.start import Found, solutions
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -113,15 +113,15 @@ class _LostError(Exception):
     """The way leads too far."""
 
 
-class _Way(Problem):
+class _Way(Replaced):
     """From a guess to a solution: F(x) = (1 - t) F(guess), where the parameter t leads from 0 to 1.
 
     Its corners are no events, but places at which the steps are short.
     """
 
     def __init__(self, balance: Balance, guess: FloatArray) -> None:
-        Problem.__init__(self, balance.unknowns, 0, 0, balance.rank)
-        self.balance, self.at = balance, guess.copy()
+        Replaced.__init__(self, balance)
+        self.at = guess.copy()
         balance.evaluate(guess)
         self.given = np.array(balance.residual)
 
@@ -142,17 +142,8 @@ class _Way(Problem):
 
     def _put(self, z: FloatArray) -> Balance:
         self.at[:-1] = np.asarray(z)[:-1]
-        return self.balance
+        return self.inner
 
     def condense(self, row: FloatArray, matrix: FloatArray) -> int:
-        np.asarray(self.balance.jacobian)[:] = self.jacobian
-        self.balance.condense(row, matrix)
-        return 0
-
-    def shorten(self, right: FloatArray, out: FloatArray) -> int:
-        self.balance.shorten(right, out)
-        return 0
-
-    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
-        self.balance.lengthen(reduced, out)
-        return 0
+        np.asarray(self.inner.jacobian)[:] = self.jacobian
+        return super().condense(row, matrix)

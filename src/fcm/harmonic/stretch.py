@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation import Path, Status, follow
-from fcm.continuation.problem import Problem
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.corrected import Corrected
 from fcm.harmonic.points import Points
+from fcm.harmonic.replaced import Replaced
 from fcm.scene.model import FloatArray
 
 STEP = 0.1  # longest, along the corrected curve
@@ -49,15 +49,15 @@ class _Budget:
             raise _LostError
 
 
-class _Paid(Problem):
+class _Paid(Replaced):
     """A balance whose evaluations a budget pays, with its margins or without them.
 
     Without them its corners are no events, but places at which the steps are short.
     """
 
     def __init__(self, inner: Balance, budget: _Budget, margins: bool) -> None:
-        Problem.__init__(self, inner.unknowns, inner.margins if margins else 0, inner.outputs, inner.rank)
-        self.inner, self.budget, self.group = inner, budget, inner.group
+        Replaced.__init__(self, inner, inner.margins if margins else 0, inner.outputs)
+        self.budget, self.group = budget, inner.group
         self.residual, self.jacobian, self.scale = inner.residual, inner.jacobian, inner.scale
         self.output, self.growth = inner.output, inner.growth
         if margins:
@@ -78,18 +78,6 @@ class _Paid(Problem):
 
     def report(self, z: FloatArray, direction: FloatArray) -> int:
         self.inner.report(z, direction)
-        return 0
-
-    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
-        self.inner.condense(row, matrix)
-        return 0
-
-    def shorten(self, right: FloatArray, out: FloatArray) -> int:
-        self.inner.shorten(right, out)
-        return 0
-
-    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
-        self.inner.lengthen(reduced, out)
         return 0
 
 
