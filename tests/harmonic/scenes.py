@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-import fcm
 from fcm.continuation import Mark
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
@@ -53,12 +52,6 @@ def stuck_mean():
     opens = {"name": "A", "tangential": "u", "normal": "v", "mu": 0.0, "k_u": 0.5, "k_v": 2.0, "gap": 0.6}
     sticks = {"name": "B", "tangential": "u", "normal": "v", "mu": 0.5, "k_u": 10.0, "k_v": 0.1, "n_0": 200.0}
     return scene(modal, [opens, sticks], (0.8, 2.2))
-
-
-def yang(n_0, **more):
-    """The paper's oscillator."""
-    one = fcm.load_scene("yang1998-n5")
-    return replace(one, contacts=(replace(one.contacts[0], n_0=n_0),), curves=(), **more)
 
 
 def up_to(highest):

@@ -6,7 +6,8 @@ import pytest
 from fcm.harmonic.level import Level
 from fcm.harmonic.system import System
 
-from .scenes import isola_stuck, stuck_mean, up_to, yang
+from ..motion.cases import yang
+from .scenes import isola_stuck, stuck_mean, up_to
 
 SCENES = {"opens": yang(5.0), "gap": yang(-5.0), "two": stuck_mean(), "slips": isola_stuck()}
 STEP = 1e-6

@@ -13,7 +13,8 @@ from fcm.continuation import Status
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 
-from .scenes import Curves, displacements, gap5, isola, isola_stuck, stuck_mean, up_to, yang
+from ..motion.cases import yang
+from .scenes import Curves, displacements, gap5, isola, isola_stuck, stuck_mean, up_to
 
 COUNTS = (1, 2, 3, 5, 9, 13)
 LAST = 1.0  # of the last digit given, for digits may have been cut off
@@ -173,7 +174,7 @@ def test_a_branch_that_no_sweep_reaches(count):
 def test_a_range_that_begins_between_the_folds_has_every_branch(count):
     """The folds of n_0 = 5 are near 1.19 and 1.24: from 1.2 the resonance is one branch, its foot another."""
     whole = Curves(yang(5.0), up_to(count))
-    part = Curves(yang(5.0, frequency_range=(1.2, 1.7)), up_to(count))
+    part = Curves(yang(5.0), up_to(count), frequency_range=(1.2, 1.7))
     assert part.branches.status is Status.COMPLETE
     ends = np.sort([path.z[i, -1] for path in part.paths for i in (0, -1)])
     assert len(part.paths) == 2 and ends.tolist() == [1.2, 1.2, 1.2, 1.7]

@@ -7,7 +7,8 @@ from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 
-from .scenes import scene, yang
+from ..motion.cases import yang
+from .scenes import scene
 from .truth import exact
 
 MODAL = {

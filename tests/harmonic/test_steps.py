@@ -6,7 +6,8 @@ import pytest
 from fcm import load_scene
 from fcm.continuation import Mark, Status, all_branches
 
-from .scenes import Curves, gap5, up_to, yang
+from ..motion.cases import yang
+from .scenes import Curves, gap5, up_to
 
 STEPS = (0.2, 0.1, 0.05, 0.02)
 FINEST = 0.005

@@ -20,8 +20,9 @@ from fcm.results.csv_file import write_csv
 from fcm.results.output import to_dataset
 from fcm.scene import load_scene
 
-from ..harmonic.scenes import isola, isola_stuck, up_to, yang
+from ..harmonic.scenes import isola, isola_stuck, up_to
 from ..harmonic.truth import state
+from ..motion.cases import yang
 from .random_scenes import random_scene
 
 
