@@ -89,10 +89,7 @@ def respond(
     scene = scene.in_use()
     check_solvable(scene)
     if max_step is not None:
-        if fault := step_fault(max_step):
-            raise ResponseError(f"max_step {fault}")
-        curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
-        scene = replace(scene, max_step=max_step, curves=curves)
+        scene = _with_step(scene, max_step)
     if sensitivity and method == "exact":
         raise ResponseError("sensitivities are of the balance's peaks; the method is 'exact'")
     if sensitivity:
@@ -109,6 +106,14 @@ def respond(
 
         response.histories = histories(scene)
     return to_dataset(visible(response, scene))
+
+
+def _with_step(scene: Scene, max_step: float) -> Scene:
+    """With another longest step along all its curves."""
+    if fault := step_fault(max_step):
+        raise ResponseError(f"max_step {fault}")
+    curves = tuple(replace(curve, max_step=max_step) for curve in scene.curves)
+    return replace(scene, max_step=max_step, curves=curves)
 
 
 def _curves(

@@ -149,17 +149,22 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
-        mode=NonlinearMode(
-            number=number,
-            amplitude=mode.amplitude,
-            damping=mode.damping,
-            force=modal_force(mode),
-            resonant_level=resonant_level(mode),
-            levels=levels,
-            flanks=np.stack([flanks(mode, level) for level in levels], axis=1),
-            folds=mode.amplitude[(path.mark & Mark.FOLD) > 0].tolist(),
-            resonances=[one for level in levels for one in _resonances(mode, level)],
-        ),
+        mode=_along(mode, number, levels),
+    )
+
+
+def _along(mode: Mode, number: int, levels: tuple[float, ...]) -> NonlinearMode:
+    """What is a mode's own, and the response that it foretells at levels of the forces."""
+    return NonlinearMode(
+        number=number,
+        amplitude=mode.amplitude,
+        damping=mode.damping,
+        force=modal_force(mode),
+        resonant_level=resonant_level(mode),
+        levels=levels,
+        flanks=np.stack([flanks(mode, level) for level in levels], axis=1),
+        folds=mode.amplitude[(mode.path.mark & Mark.FOLD) > 0].tolist(),
+        resonances=[one for level in levels for one in _resonances(mode, level)],
     )
 
 
