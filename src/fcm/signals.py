@@ -117,6 +117,16 @@ def ends() -> None:
             signal.signal(number, signal.SIG_IGN)  # the interpreter itself would undo any other handler
 
 
+def interrupted(error: BaseException) -> bool:
+    """Whether an exception is an interruption: an import that is interrupted may say that it failed."""
+    seen: BaseException | None = error
+    for _ in range(100):
+        if not isinstance(seen, ImportError | SystemError):
+            break
+        seen = seen.__cause__ or seen.__context__
+    return isinstance(seen, KeyboardInterrupt)
+
+
 class undisturbed:  # noqa: N801
     """``with undisturbed():`` what must not stop halfway; an interruption is raised after it."""
 

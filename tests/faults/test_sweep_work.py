@@ -547,3 +547,19 @@ def test_checkpoints_have_a_limit_aside(tmp_path, monkeypatch):
         else:
             with pytest.warns(UserWarning, match="moved to"):
                 Checkpoint(path).close()
+
+
+def test_an_import_that_an_interruption_made_fail_is_one():
+    """A library of C that is interrupted while it is loaded says that it could not be."""
+
+    def compute(batch, _report):
+        if batch == (2,):
+            try:
+                raise KeyboardInterrupt
+            except KeyboardInterrupt as error:
+                raise ImportError("initialization failed") from error
+        return list(batch)
+
+    outcome = sweep(compute, [(1,), (2,), (3,)])
+    assert outcome.interrupted and outcome.results == {0: [1]}
+    assert not sweep(compute, [(1,), (3,)]).interrupted

@@ -7,7 +7,7 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, TextIO
 
@@ -93,7 +93,7 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         kind = getattr(sys.modules.get(module), name, None)
         if kind is not None and isinstance(error, kind):
             return code, f"error: {error}"
-    if any(isinstance(one, KeyboardInterrupt | click.Abort) for one in _behind(error)):
+    if isinstance(error, click.Abort) or signals.interrupted(error):
         return NOT_COMPLETED, signals.INTERRUPTED
     if isinstance(error, MemoryError) or getattr(error, "errno", 0) == errno.ENOMEM or _no_room(error):
         return NOT_COMPLETED, _NO_MEMORY
@@ -101,16 +101,6 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         _discard_output()
         return NOT_COMPLETED, f"error: {error.filename or 'output'}: {error.strerror or error}"
     return DEFECT, f"defect: {type(error).__name__}: {error} (-v shows where)"
-
-
-def _behind(error: BaseException) -> Iterator[BaseException]:
-    """An exception and those it came from: an import that is interrupted may say that it failed."""
-    seen: BaseException | None = error
-    for _ in range(100):
-        if seen is None:
-            return
-        yield seen
-        seen = seen.__cause__ or seen.__context__ if isinstance(seen, ImportError | SystemError) else None
 
 
 def _no_room(error: BaseException) -> bool:

@@ -20,6 +20,7 @@ from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.scene.model import FloatArray, Scene
+from fcm.signals import undisturbed
 
 MOST = 3  # contacts of which all combinations of closed and open are tried; of more, all closed
 KEPT = 0.01  # of the forces, by which a motion keeps away from its limits if it can
@@ -159,7 +160,8 @@ def _nearest_number(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> 
 
 def _nearest(rows: FloatArray, least: FloatArray, wanted: FloatArray) -> FloatArray | None:
     """By the sum of the distances, which are unknowns besides."""
-    from scipy.optimize import linprog  # takes a tenth of a second to load
+    with undisturbed():  # a library that is interrupted while it is loaded cannot be loaded again
+        from scipy.optimize import linprog  # takes a tenth of a second to load
 
     count = wanted.size
     one, none = np.eye(count), np.zeros((len(rows), count))

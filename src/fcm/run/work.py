@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from fcm.signals import interrupted
+
 Progress = Callable[[float, str], None]  # finished fraction and a text
 Batch = Sequence[Any]
 
@@ -69,6 +71,8 @@ def attempt(compute: Compute, batch: Batch, report: Report) -> Attempt:
     except KeyboardInterrupt:
         return Attempt([], interrupted=True)
     except Exception as error:
+        if interrupted(error):
+            return Attempt([], interrupted=True)
         if len(batch) == 1:
             return Attempt([_lost(error)])
     alone: list[Any] = []
