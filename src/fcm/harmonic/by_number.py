@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,7 @@ import numpy.typing as npt
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.law import Law
 from fcm.harmonic.system import System
+from fcm.harmonic.whole import places
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import Linear, linear_of
@@ -48,6 +50,12 @@ class Rates:
         changes. Together with the derivatives by the unknowns it is right at solutions.
         """
         balance.evaluate(z)
+        return self.here(balance, z)
+
+    def here(self, balance: Balance, z: FloatArray) -> tuple[FloatArray, ComplexArray]:
+        """As `at`, where the balance was evaluated last."""
+        if self._of_forces:
+            return self._at_forces(balance, z[-1])
         force = self._layout(np.asarray(balance.force))
         d_force = self._layout(self._forces(balance, z))
         if not balance.contacts:
@@ -71,6 +79,25 @@ class Rates:
             apart = np.asarray(balance.shown.apart) > 0
             shown[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
         return self._flat(rows), shown
+
+    @cached_property
+    def _of_forces(self) -> bool:
+        """Whether nothing but the harmonic forces on the structure changes."""
+        others = (getattr(self.linear, name) for name in ARRAYS if name not in ("force", "square"))
+        return not self.contact.any() and not any(other.any() for other in others)
+
+    def _at_forces(self, balance: Balance, omega: float) -> tuple[FloatArray, ComplexArray]:
+        """As `at` of such a number: what the structure answers to the rates of its forces."""
+        structure, seen = self.system.linear, balance.seen
+        j, residual = seen.driven, np.zeros(balance.unknowns)
+        shown = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
+        c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
+        a = c * balance.load * (self.linear.force + omega**2 * self.linear.square)
+        shown[j] = np.where(np.asarray(balance.shown.apart) > 0, structure.dofs.T @ a, 0.0)
+        if balance.contacts:
+            of_ports, rows = structure.ports.T @ a, places(balance)[1][j]
+            residual[rows], residual[rows + 1] = -of_ports.real, -of_ports.imag
+        return residual, shown
 
     def _compliance(self, c: ComplexArray, w: float) -> ComplexArray:
         """The rate of c = 1 / (w_i^2 - w^2 + 2 i zeta_i w_i w)."""

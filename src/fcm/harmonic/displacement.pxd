@@ -17,6 +17,7 @@ cdef class Displacements:
     cdef public double[::1] rest
     cdef public double[::1] amplitude
     cdef public double[::1] growth
+    cdef public double[:, ::1] angles
     cdef double[:, ::1] cosine
     cdef double[:, ::1] sine
     cdef double[::1] wave
@@ -24,6 +25,7 @@ cdef class Displacements:
     cdef double[::1] s
     cdef double value
     cdef double rate
+    cdef double angle
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
     cdef void clear(self, int j) noexcept

@@ -18,8 +18,9 @@ CLOSE = cython.declare(cython.double, 1e-9)  # [rad] the last of them, at which 
 class Displacements:
     """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates.
 
-    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; rest: the
-    answer to static loads alone.
+    amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; angles
+    (2, dof): of the greatest and the least displacement, if there are several; rest: the answer to static
+    loads alone.
     """
 
     def __init__(self, seen: Receptance, linear: Linear) -> None:
@@ -29,12 +30,12 @@ class Displacements:
         self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
         self.mean, self.amplitude, self.growth = np.zeros(dofs), np.zeros(dofs), np.zeros(dofs)
-        self.rest = np.zeros(dofs)
+        self.rest, self.angles = np.zeros(dofs), np.zeros((2, dofs))
         self.attached, self.apart = linear.attached
         self.cosine, self.sine = waves(tuple(np.asarray(seen.harmonics).tolist()))
         self.samples = self.cosine.shape[1]
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
-        self.value = self.rate = 0.0
+        self.value = self.rate = self.angle = 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -195,14 +196,16 @@ class Displacements:
                 lowest = k
         self.extreme(d, highest)
         self.amplitude[d], self.growth[d] = 0.5 * self.value, 0.5 * self.rate
+        self.angles[0, d] = self.angle
         self.extreme(d, lowest)
         self.amplitude[d] -= 0.5 * self.value
         self.growth[d] -= 0.5 * self.rate
+        self.angles[1, d] = self.angle
 
     @cython.cfunc
     @cython.exceptval(check=False)
     def extreme(self, d: cython.Py_ssize_t, k: cython.Py_ssize_t) -> cython.void:
-        """`value` at the extreme next to a sample, and the `rate` of that."""
+        """`value` at the extreme next to a sample, the `rate` of that, and its `angle`."""
         j: cython.int
         step: cython.double = 6.283185307179586 / self.samples
         theta: cython.double = k * step
@@ -222,6 +225,7 @@ class Displacements:
             if fabs(slope) < fabs(curvature) * CLOSE:
                 break
         self.waves_at(theta)
+        self.angle = theta
         self.value = self.rate = 0.0
         for j in range(self.seen.count):
             self.value += self.re[j, d] * self.c[j] - self.im[j, d] * self.s[j]

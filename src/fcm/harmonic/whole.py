@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 import numpy.typing as npt
 
@@ -11,9 +9,6 @@ from fcm.harmonic.balance import Balance
 from fcm.scene.model import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
-
-REFINED = 4  # Newton steps to an extreme, at most
-CLOSE = 1e-9  # [rad] the last of them
 
 
 def jacobian_of(balance: Balance) -> FloatArray:
@@ -72,7 +67,7 @@ class Amplitude:
         self.value, self.slopes[n] = balance.output[d], balance.growth[d]
         shown, seen, rows = balance.shown, balance.seen, places(balance)[1]
         X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
-        self.weights = W = _weights(X, np.asarray(seen.harmonics), shown.samples)
+        self.weights = W = _weights(X, np.asarray(seen.harmonics), np.asarray(shown.angles)[:, d])
         if not balance.contacts:
             return
         if not shown.apart[d]:  # of the contacts' own displacements
@@ -86,27 +81,10 @@ class Amplitude:
         self.slopes[:n] = blocks.ravel()
 
 
-def _weights(X: ComplexArray, harmonics: FloatArray, samples: int) -> ComplexArray:
-    """W (harmonic,) of a displacement X (harmonic,)."""
+def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> ComplexArray:
+    """W (harmonic,) of a displacement X (harmonic,) with its greatest and least value at angles (2,)."""
     if harmonics.size == 1:
         size = np.abs(X)
         return np.asarray(np.conj(X) / np.where(size > 0.0, size, 1.0), dtype=np.complex128)
-    theta, waves = _sampled(tuple(harmonics.tolist()), samples)
-    wave = (waves @ X).real
-    at = theta[[wave.argmax(), wave.argmin()]]
-    derivatives = np.stack((1j * harmonics * X, -harmonics * harmonics * X))
-    for _ in range(REFINED):  # Newton's method, as the extremes themselves are refined
-        slope, bend = (derivatives @ np.exp(1j * harmonics[:, None] * at)).real
-        step = slope / np.where(bend != 0.0, bend, 1.0)
-        at = at - np.where((bend != 0.0) & (np.abs(step) < theta[1]), step, 0.0)
-        if np.abs(step).max() < CLOSE:
-            break
-    ends = np.exp(1j * harmonics[:, None] * at)
+    ends = np.exp(1j * harmonics[:, None] * angles)
     return 0.5 * (ends[:, 0] - ends[:, 1])  # type: ignore[no-any-return]
-
-
-@lru_cache(maxsize=8)
-def _sampled(harmonics: tuple[float, ...], samples: int) -> tuple[FloatArray, ComplexArray]:
-    """Angles of a period (sample,), and exp(i h theta) (sample, harmonic)."""
-    theta = 2.0 * np.pi * np.arange(samples) / samples
-    return theta, np.exp(1j * np.outer(theta, harmonics))

@@ -60,6 +60,14 @@ class Receptance:
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
+    def moved_by(self, constant: npt.NDArray[np.complex128], square: npt.NDArray[np.complex128]) -> None:
+        """Put other external forces, constant + omega^2 square (mode,), in the place of those there are."""
+        self.constant_re, self.constant_im = np.array(constant.real), np.array(constant.imag)
+        self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
+        if self.omega != -1.0:
+            self.forces()
+            self.external()
+
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:

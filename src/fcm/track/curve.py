@@ -69,19 +69,39 @@ def whole(way: Way, condition: Condition, spot: Spot) -> Track:
 def recorded(way: Way, condition: Condition, spots: list[Spot], endings: tuple[Ending, Ending]) -> Track:
     """A curve with what is reported of its points."""
     problem = way.tracked(condition)
-    amplitude, greatest = [], []
-    for spot in spots:
-        problem.measure(spot.z)
-        amplitude.append(problem.along(spot.z)[1])
-        greatest.append(condition.kind is not Kind.PEAK or is_top(problem, spot))
-    z = np.array([spot.z for spot in spots])
+    return _joined(condition, spots, [_told(problem, spot) for spot in spots], endings)
+
+
+def with_spots(way: Way, track: Track, spots: list[Spot]) -> Track:
+    """A curve with more points, its own among them."""
+    problem = way.tracked(track.condition)
+    own = zip(track.amplitude, track.greatest.tolist(), strict=True)
+    known = {id(spot): told for spot, told in zip(track.spots, own, strict=True)}
+    told = [known.get(id(spot)) or _told(problem, spot) for spot in spots]
+    return _joined(track.condition, spots, told, track.endings)
+
+
+def _told(problem: Tracked, spot: Spot) -> tuple[FloatArray, bool]:
+    """Of a point its amplitudes, and whether it is no trough."""
+    problem.measure(spot.z)
+    amplitude = problem.along(spot.z)[1]
+    return amplitude, problem.condition.kind is not Kind.PEAK or is_top(problem, spot)
+
+
+def _joined(
+    condition: Condition,
+    spots: list[Spot],
+    told: list[tuple[FloatArray, bool]],
+    endings: tuple[Ending, Ending],
+) -> Track:
+    z, (amplitude, greatest) = np.array([spot.z for spot in spots]), zip(*told, strict=True)
     return Track(
         condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
     )
 
 
 def is_top(problem: Tracked, spot: Spot) -> bool:
-    """Whether a tracked peak is one, and not a trough."""
+    """Whether a tracked peak that was measured is one, and not a trough."""
     if spot.corner is None or spot.switch:
         return problem.is_top(spot.z)
     corner = Corner(problem, spot.corner)

@@ -10,7 +10,7 @@ from fcm.continuation.newton import Newton
 from fcm.harmonic.multipliers import Multipliers, multipliers_of
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
-from fcm.track.curve import Track, recorded
+from fcm.track.curve import Track, with_spots
 from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Kind, Tracked
 
@@ -44,7 +44,7 @@ class _Along:
             found += [*self._limit(one, other), other]
         track, spots = self.track, [spot for spot, _ in found]
         if len(found) > len(seen):
-            track = recorded(self.way, track.condition, spots, track.endings)
+            track = with_spots(self.way, track, spots)
         return track, np.array([stable for _, stable in found])
 
     def _limit(self, one: Seen, other: Seen) -> list[Seen]:

@@ -211,8 +211,7 @@ class Tracked(Problem):
         return look.growth - np.append(adjoint @ look.jacobian, adjoint @ look.by_s)
 
     def is_top(self, z: FloatArray) -> bool:
-        """Whether a peak is one, and not a trough: whether growth falls along the response."""
-        self.measure(z)
+        """Whether a peak that was measured last is one, and no trough: growth falls along the response."""
         self.evaluate(z)
         gradient = np.asarray(self.jacobian)[self.n, : self.n + 1]
         return bool(gradient @ (np.asarray(self.scale)[:-1] * self.row) < 0.0)

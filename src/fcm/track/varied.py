@@ -64,10 +64,17 @@ class ByNumber(NamedTuple):
         return float((one.weights @ self.shown[:, one.dof]).real)
 
 
+def _excitation(system: System, line: Line) -> list[tuple[ComplexArray, ComplexArray]]:
+    """Of the forces on the modes, and of those that grow with omega^2: at s = 0, and their rates by s."""
+    origin, one = (linear_of(line.scene(system.scene, s)) for s in (0.0, 1.0))
+    return [(origin.force, one.force - origin.force), (origin.square, one.square - origin.square)]
+
+
 class Varied:
     """The balance of a system (of one curve) that `put` moves along a line, with the rates by s.
 
-    A number of a contact is changed in the balance as it is; a number of the structure makes another one.
+    A number of a contact is changed in the balance as it is, and so are the forces that a level multiplies;
+    another number of the structure makes another balance.
     """
 
     def __init__(self, system: System, line: Line) -> None:
@@ -78,27 +85,39 @@ class Varied:
         self.structure = tables != {"contact"} or not fields <= {"n_0", "gap", "mu", "k_u", "k_v"} or rigid
         # of one number, or of those that no product of two makes, the contacts' rates are the same everywhere
         self._constant = len(line.numbers) == 1 or "gap" not in fields
-        self._forced = tables <= {"force", "base"} and fields == {"amplitude"}  # what these move is linear
-        self.system, self.balance = system, system.balance()
+        excited = tables <= {"force", "base"} and fields <= {"amplitude", "acceleration"}
+        self._excitation = _excitation(system, line) if excited else None
+        self._system: System | None = system
+        self.balance = system.balance()
         self.contacts, self.harmonics = len(system.scene.contacts), system.harmonics
         self._rates: list[Rates] = []
         self._contact_rates: FloatArray | None = None
+
+    @property
+    def system(self) -> System:
+        """With the numbers where they are."""
+        if self._system is None:
+            self._system = copy(self.base)
+            object.__setattr__(self._system, "scene", self.line.scene(self.base.scene, self.s))
+            if self.structure:
+                object.__setattr__(self._system, "linear", linear_of(self._system.scene))
+        return self._system
 
     def put(self, s: float) -> None:
         """Move the numbers."""
         if s == self.s:
             return
-        self.s = s
-        self.system = system = copy(self.base)
-        object.__setattr__(system, "scene", self.line.scene(self.base.scene, s))
+        self.s, self._system = s, None
+        if self._excitation is not None:
+            constant, square = (origin + s * rate for origin, rate in self._excitation)
+            self.balance.seen.moved_by(constant, square)
+            self.balance.largest[:] = 0.0  # units are of the motion there, as of a balance of its own
+            return
         if self.structure:
-            object.__setattr__(system, "linear", linear_of(system.scene))
-            self.balance = system.balance()
-        for law, contact in zip(self.balance.laws, system.scene.contacts, strict=True):
+            self.balance = self.system.balance()
+        for law, contact in zip(self.balance.laws, self.system.scene.contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = contact.mu, contact.k_u, contact.k_v, contact.n_0
-        if self._forced:
-            self._rates = [replace(rate, system=system) for rate in self._rates]
-        elif self.structure or not self._constant:
+        if self.structure or not self._constant:
             self._rates = []
         if not self._constant:
             self._contact_rates = None
@@ -112,7 +131,7 @@ class Varied:
         shown = np.zeros((len(self.harmonics), self.balance.outputs), dtype=np.complex128)
         for rate, weight in zip(self.rates, self.line.direction, strict=True):
             if weight:
-                of_residual, of_shown = rate.at(self.balance, z)
+                of_residual, of_shown = rate.here(self.balance, z)
                 residual, shown = residual + weight * of_residual, shown + weight * of_shown
         return ByNumber(residual, force, shown)
 
