@@ -57,10 +57,13 @@ class Circle:
         values = np.array([self.special(angle) for angle in angles])
         if not np.isfinite(values).all():
             return []
-        found = [
-            self._change(angles[i], angles[i + 1], float(np.abs(values).max()))
-            for i in np.flatnonzero(values[:-1] * values[1:] < 0.0)
-        ]
+        try:
+            found = [
+                self._change(angles[i], angles[i + 1], float(np.abs(values).max()))
+                for i in np.flatnonzero(values[:-1] * values[1:] < 0.0)
+            ]
+        except ValueError:  # of the search for a zero, at an angle where there is no motion
+            return []
         found.sort(key=lambda one: float(np.cos(one.angle - came)))
         return found[:-1]
 
@@ -72,7 +75,10 @@ class Circle:
         """The point at an angle, 0 is straight ahead, and what is special there; NaN where there is none."""
         z = self.z + self.radius * self.scale * (np.array([np.cos(angle), np.sin(angle)]) @ self.axes)
         for _ in range(STEPS):
-            residual, matrix, special = self.problem.surface(z)
+            try:
+                residual, matrix, special = self.problem.surface(z)
+            except np.linalg.LinAlgError:  # the response has no one direction there
+                break
             step = np.linalg.lstsq(matrix, -residual, rcond=None)[0]
             if np.linalg.norm(step) < EXACT:
                 return z, special

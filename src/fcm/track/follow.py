@@ -20,6 +20,7 @@ MISSED = 0.3  # of a step, by which the prediction may be wrong
 MOST = 3000  # points of a curve
 RADII = (1e-6, 1e-5, 1e-4, 1e-3)  # of circles about a kink on which the curve is looked for
 OFF = 0.1  # of such a radius, by which the point found there may be wrong
+ACROSS = 0.7  # cosine of the angle of the way on with its radius; other lines cross the circle anyhow
 BENT = 5.0  # of such a step, by which the prediction may be wrong
 SHORT = 1e-3  # a step below which a corner of the response is looked for ahead
 AIM = 0.2  # [rad] the turn that a step aims at
@@ -141,7 +142,10 @@ class _Follower(Meeting):
         """Go on to a point on a circle; None if it is none of the curve."""
         came, last = float(self.t[-1]), self.spots[-1]
         row = (there - self.z) / np.asarray(self.newton.scale)
-        if not self._solve(there, row / np.linalg.norm(row)) or self.newton.moved > OFF * radius:
+        row /= np.linalg.norm(row)
+        if not self._solve(there, row) or self.newton.moved > OFF * radius:
+            return None
+        if np.asarray(self.newton.tangent) @ row < ACROSS:
             return None
         z, t = np.array(self.newton.z), np.array(self.newton.tangent)
         self.spots[-1] = replace(last, turn=last.turn or came * t[-1] < 0.0)
