@@ -1,4 +1,4 @@
-"""Frequencies in the unit of a scene."""
+"""Frequencies in the unit of a scene; units of the numbers of its contacts."""
 
 from __future__ import annotations
 
@@ -31,3 +31,18 @@ def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
         rounded = np.round(value * power) / power
         same = rounded * scale == exact
     return np.where(same, rounded, value)
+
+
+def unit_of_number(key: str, length: str, force: str) -> str:
+    """The unit of a number of a contact by its key path, empty where none is given or known.
+
+    >>> unit_of_number("contact.*.n_0", "mm", "N"), unit_of_number("contact.shroud.k_u", "mm", "N")
+    ('N', 'N/mm')
+    >>> unit_of_number("contact.shroud.mu", "mm", "N"), unit_of_number("contact.shroud.k_u", "mm", "")
+    ('', '')
+    """
+    if not key.startswith("contact."):
+        return ""
+    stiffness = f"{force}/{length}" if force and length else ""
+    units = {"n_0": force, "gap": length, "k_u": stiffness, "k_v": stiffness}
+    return units.get(key.rpartition(".")[2], "")

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import netCDF4
 import pytest
 
 from fcm.cli.curves import as_table
+from fcm.plot.peak import draw_peak, read_peaks
+from fcm.plot.read import read_response
+from fcm.plot.response import draw_response
 
 from ..oscillator import oscillator
 
@@ -106,6 +111,24 @@ def test_units_and_edges_reach_table_and_files(fcm, tmp_path, end, edge):
     with netCDF4.Dataset(tmp_path / "s.nc") as file:
         assert file["amplitude"].units == file["peak_amplitude"].units == "mm"
         assert file["spring_force"].units == "N"
+
+
+SWEEP = '[sweep]\n"contact.shroud.n_0" = [1, 5]\n"contact.shroud.k_u" = [1]\n"contact.shroud.mu" = [0.4]\n'
+
+
+def test_numbers_of_contacts_and_energies_have_units_in_files_and_pictures(fcm, tmp_path):
+    (tmp_path / "s.toml").write_text(SCENE.replace("RANGE", "1.1") + SWEEP)
+    assert fcm("respond", "s.toml", "-o", "s.nc", "--harmonics", "1").code == 0
+    with netCDF4.Dataset(tmp_path / "s.nc") as file:
+        assert file["contact.shroud.n_0"].units == "N" and file["contact.shroud.k_u"].units == "N/mm"
+        assert "units" not in file["contact.shroud.mu"].ncattrs()
+        assert file["dissipated_energy"].units == "N mm"
+    assert (
+        draw_peak(read_peaks(tmp_path / "s.nc")).axes[1].get_xlabel() == "$n_{0}$ (N)  (contact.shroud.n_0)"
+    )
+    one = read_response(tmp_path / "s.nc")
+    many = draw_response(replace(one, curves=one.curves * 13))
+    assert "$n_{0}$ (N), $k_{u}$ (N/mm), $\\mu$" in [axes.get_ylabel() for axes in many.axes]
 
 
 def test_of_levels_no_errors_are_computed_and_none_is_said_to_have_been_sought():

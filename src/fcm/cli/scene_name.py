@@ -6,18 +6,12 @@ import click
 from click.shell_completion import CompletionItem
 
 
-class SceneName(click.ParamType):
-    """A string, checked when the scene is loaded; completed to names of bundled scenes and of files."""
+def complete_scene(_ctx: click.Context, _param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Names of bundled scenes that begin so, and that the shell completes names of files, too."""
+    from fcm.scene import bundled_scenes
 
-    name = "scene"
-
-    def shell_complete(
-        self, ctx: click.Context, param: click.Parameter, incomplete: str
-    ) -> list[CompletionItem]:
-        from fcm.scene import bundled_scenes
-
-        names = [CompletionItem(name) for name in bundled_scenes() if name.startswith(incomplete)]
-        return [*names, CompletionItem(incomplete, type="file")]
+    names = [CompletionItem(name) for name in bundled_scenes() if name.startswith(incomplete)]
+    return [*names, CompletionItem(incomplete, type="file")]
 
 
-scene_argument = click.argument("scene", metavar="SCENE", type=SceneName())
+scene_argument = click.argument("scene", metavar="SCENE", shell_complete=complete_scene)

@@ -13,7 +13,7 @@ from fcm.cli.files import output_option
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages, pass_messages
-from fcm.cli.scene_name import SceneName
+from fcm.cli.scene_name import complete_scene
 from fcm.cli.table_study import write_study
 from fcm.cli.terminal import plain
 
@@ -41,7 +41,7 @@ POINTS_OF_PART = 100_000  # at which the error of a part is measured, unless the
     help="Nodes of your own: along n0_bar in separation and in slip, b_bar, phi.  [default: the preset's]",
 )  # fmt: skip
 @click.option(
-    "--for", "scene", type=SceneName(), metavar="SCENE",
+    "--for", "scene", metavar="SCENE", shell_complete=complete_scene,
     help="Only the part of the table that the response of this scene looks up.",
 )  # fmt: skip
 @click.option(

@@ -21,13 +21,20 @@ def short_names(keys: Iterable[str]) -> dict[str, str]:
     return {key: name if name in _WORDS and several.count(name) == 1 else key for key, name in last.items()}
 
 
-def symbols(keys: Iterable[str]) -> list[str]:
-    """How each swept quantity is written in a picture, in matplotlib's mathematical text.
+def symbols(keys: Iterable[str], units: Mapping[str, str] | None = None) -> list[str]:
+    """How each swept quantity is written in a picture, in matplotlib's mathematical text; with units of keys.
 
     >>> symbols(["contact.shroud.n_0", "contact.shroud.mu", "modal.shapes.0.u"])
     ['$n_{0}$', '$\\\\mu$', 'modal.shapes.0.u']
+    >>> symbols(["contact.shroud.n_0", "contact.shroud.mu"], {"contact.shroud.n_0": "N"})
+    ['$n_{0}$ (N)', '$\\\\mu$']
     """
-    return [_SYMBOLS.get(name, name.replace("$", r"\$")) for name in short_names(keys).values()]
+    return [
+        with_unit(
+            _SYMBOLS.get(name, name.replace("$", r"\$")), (units or {}).get(key, "").replace("$", r"\$")
+        )
+        for key, name in short_names(keys).items()
+    ]
 
 
 def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:

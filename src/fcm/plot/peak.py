@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ import numpy.typing as npt
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
-from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_values
+from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
 
@@ -44,6 +44,7 @@ class Peaks:
     complete: BoolArray  # (curve,)
     length: str = ""  # unit of displacements, if the file says it
     unstable: BoolArray | None = None  # (curve, dof) whether the motion is not stable there; None: not known
+    units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
 def read_peaks(path: Path) -> Peaks:
@@ -60,7 +61,8 @@ def read_peaks(path: Path) -> Peaks:
         if unstable is not None and unstable.shape != shape:
             raise ValueError(f"peak_stable has shape {unstable.shape}, not {shape}")
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
-    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), unstable)
+        units = swept_units(variables, swept)
+    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), unstable, units)
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
@@ -134,7 +136,8 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
     from matplotlib.ticker import MaxNLocator, NullLocator
 
     (symbol,) = symbols([key])
-    name = symbol if symbol == key else f"{symbol}  ({key})"
+    (in_unit,) = symbols([key], peaks.units)
+    name = in_unit if symbol == key else f"{in_unit}  ({key})"
     x = peaks.parameters[key][known]
     lower.set_xlabel(name, parse_math=symbol != key)
     dof = peaks.dofs[column]

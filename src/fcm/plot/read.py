@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -47,6 +47,7 @@ class DrawnResponse:
     curves: tuple[DrawnCurve, ...]
     length: str = ""  # unit of displacements, if the file says it
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
+    units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:
@@ -135,7 +136,7 @@ def _response(dataset: Any) -> DrawnResponse:
     length = str(getattr(variables["amplitude"], "units", ""))
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
     drawn = tuple(name for name in swept if getattr(variables[name], "drawn", "") == "true")
-    return DrawnResponse(dofs, unit, curves, length, drawn)
+    return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept))
 
 
 def _curve(
@@ -169,6 +170,11 @@ def swept_values(variables: Any) -> dict[str, FloatArray]:
         for name, variable in variables.items()
         if variable.dimensions == ("curve",) and str(getattr(variable, "long_name", "")).startswith(_SWEPT)
     }
+
+
+def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
+    """The units of swept values, empty where the file does not say them."""
+    return {key: str(getattr(variables[key], "units", "")) for key in keys}
 
 
 def floats(variable: Any) -> FloatArray:

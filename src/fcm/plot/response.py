@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -75,7 +76,7 @@ def draw_response(
             draw_errors(figure, below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        _name_curves(figure, axes, curves, column)
+        _name_curves(figure, axes, curves, column, response.units)
         notes = _notes(curves, colours[0], width)
         if below is not None:
             name_errors(figure, curves, colours, width, notes)
@@ -180,32 +181,34 @@ def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) ->
         axes.set_ylim(0.0, max(axes.get_ylim()[1], _HEADROOM * axes.dataLim.y1))
 
 
-def _name_curves(figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int) -> None:
+def _name_curves(
+    figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int, units: Mapping[str, str]
+) -> None:
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
     names = [_named(curve, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= _MOST_NAMES and label_at_peaks(figure, axes, lines, names):
         return
     if any(names):
-        _legend(figure, axes, curves)
+        _legend(figure, axes, curves, units)
 
 
-def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve]) -> None:
+def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve], units: Mapping[str, str]) -> None:
     """Beside the axes; several swept quantities are named once, above their values."""
     lines = [line for line in axes.get_lines() if line.get_label() != _UNNAMED]
     several = len(curves[0].parameters) > 1
     if len(lines) > _MOST_NAMES:
-        _colour_bar(figure, curves)
+        _colour_bar(figure, curves, units)
         return
     figure.legend(
         lines,
         [_named(curve, names=not several) for curve in curves],
-        title=",\n".join(symbols(curves[0].parameters)) if several else None,
+        title=",\n".join(symbols(curves[0].parameters, units)) if several else None,
         loc="outside right upper",
     )
 
 
-def _colour_bar(figure: Figure, curves: list[DrawnCurve]) -> None:
+def _colour_bar(figure: Figure, curves: list[DrawnCurve], units: Mapping[str, str]) -> None:
     """Of very many curves: their colours in their order, with the values of some of them."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -217,4 +220,4 @@ def _colour_bar(figure: Figure, curves: list[DrawnCurve]) -> None:
     bar = figure.colorbar(colours, ax=figure.axes, ticks=shown, pad=0.02)
     bar.ax.set_yticklabels([_named(curves[i], names=False) for i in shown])
     bar.ax.minorticks_off()
-    bar.set_label(", ".join(symbols(curves[0].parameters)))
+    bar.set_label(", ".join(symbols(curves[0].parameters, units)))

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
-from fcm.results.meanings import CF_UNIT, CYCLE, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
+from fcm.results.meanings import CF_UNIT, CYCLE, ENERGIES, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
 from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
 from fcm.rotation import is_rotation
-from fcm.units import in_unit
+from fcm.units import in_unit, unit_of_number
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:
@@ -50,7 +50,9 @@ def fields_of(response: Response) -> dict[str, Field]:
     for key in swept[0] if swept else ():
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}
-        out[key] = Field(("curve",), values, {"long_name": f"swept value of {key}"} | drawn)
+        unit = unit_of_number(key, *response.units)
+        attrs = {"long_name": f"swept value of {key}"} | drawn | ({"units": unit} if unit else {})
+        out[key] = Field(("curve",), values, attrs)
     if response.curves or (response.histories is None and response.tracking is None):
         out |= gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= curve_fields(response)
@@ -71,7 +73,8 @@ def fields_of(response: Response) -> dict[str, Field]:
 
 def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[str]) -> dict[str, Field]:
     """The variables with the units of length and force that the scene names, where it does."""
-    for names, unit in zip((LENGTHS, FORCES), units, strict=True):
+    work = " ".join(reversed(units)) if all(units) else ""
+    for names, unit in zip((LENGTHS, FORCES, ENERGIES), (*units, work), strict=True):
         for name in set(names) & set(fields) if unit else ():
             fields[name].attrs["units"] = unit
             if turning and "dof" in fields[name].dims:

@@ -66,3 +66,4 @@ LENGTHS = (
 )  # fmt: skip
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
 FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
+ENERGIES = ("dissipated_energy",)
