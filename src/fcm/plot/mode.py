@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _NEEDED = ("frequency", "modal_amplitude", "damping_ratio")
 _PERCENT = 100.0
+_HIGHER = 1.0 + 1e-6  # than the damping at both ends, where the greatest is between them
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
 def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     """A ring where the mode is damped most, with the values beside it where there is one mode."""
     top = int(mode.damping.argmax())
-    if top in (0, mode.damping.size - 1):
+    if mode.damping[top] <= _HIGHER * max(mode.damping[0], mode.damping[-1]):  # at an end, or by rounding
         return
     x, y = float(mode.amplitude[top]), float(_PERCENT * mode.damping[top])
     axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)

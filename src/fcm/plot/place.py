@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.colour_bar import MOST_NAMES, colour_bar
 from fcm.plot.labels import curve_label, symbols
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 FloatArray = npt.NDArray[np.float64]
 
-_MOST_NAMES = 20  # of more lines than this, only the first and the last are named
 _OFFSETS = (  # [point] from the peak, with the alignment of the text, best first
     (0, 3, "center", "bottom"),
     (4, 2, "left", "bottom"),
@@ -96,13 +96,12 @@ def _dense(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def name_at_side(figure: Figure, lines: Sequence[Line2D], parameters: Sequence[Mapping[str, float]]) -> None:
-    """Name lines by what was swept, in a legend beside the axes; of very many the first and the last."""
+    """Name lines by what was swept, in a legend beside the axes; very many by a bar of their colours."""
     if not parameters[0]:
         return
-    shown = range(len(parameters)) if len(parameters) <= _MOST_NAMES else (0, len(parameters) - 1)
-    figure.legend(
-        [lines[i] for i in shown],
-        [curve_label(parameters[i], False) for i in shown],
-        title=",\n".join(symbols(parameters[0])),
-        loc="outside right upper",
-    )
+    names = [curve_label(one, False) for one in parameters]
+    if len(names) > MOST_NAMES:
+        colour_bar(figure, names, ", ".join(symbols(parameters[0])))
+        return
+    title = ",\n".join(symbols(parameters[0]))
+    figure.legend(lines, names, title=title, loc="outside right upper")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from fcm.plot.colour_bar import MOST_NAMES, colour_bar
 from fcm.plot.dof import column_of
 from fcm.plot.error_panel import (
     HEIGHT,
@@ -39,9 +40,7 @@ _FADED = f"may err by more than {100 * _DOUBTFUL:g} %"  # what is said of it,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
-_MOST_TICKS = 9  # of a colour bar
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
-_MOST_NAMES = 20  # of more curves than this, only the first and the last are named
 
 
 def draw_response(
@@ -62,7 +61,7 @@ def draw_response(
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
         colours = sequence_colours(len(curves))
-        width = _WIDTH if len(curves) <= _MOST_NAMES else _THIN
+        width = _WIDTH if len(curves) <= MOST_NAMES else _THIN
         axes.set_prop_cycle(color=colours)
         for curve in curves:
             _draw_curve(axes, curve, column, width)
@@ -187,7 +186,7 @@ def _name_curves(
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
     names = [_named(curve, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
-    if len(curves) <= _MOST_NAMES and label_at_peaks(figure, axes, lines, names):
+    if len(curves) <= MOST_NAMES and label_at_peaks(figure, axes, lines, names):
         return
     if any(names):
         _legend(figure, axes, curves, units)
@@ -197,8 +196,9 @@ def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve], units: Mapping
     """Beside the axes; several swept quantities are named once, above their values."""
     lines = [line for line in axes.get_lines() if line.get_label() != _UNNAMED]
     several = len(curves[0].parameters) > 1
-    if len(lines) > _MOST_NAMES:
-        _colour_bar(figure, curves, units)
+    if len(lines) > MOST_NAMES:
+        names = [_named(curve, names=False) for curve in curves]
+        colour_bar(figure, names, ", ".join(symbols(curves[0].parameters, units)))
         return
     figure.legend(
         lines,
@@ -206,18 +206,3 @@ def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve], units: Mapping
         title=",\n".join(symbols(curves[0].parameters, units)) if several else None,
         loc="outside right upper",
     )
-
-
-def _colour_bar(figure: Figure, curves: list[DrawnCurve], units: Mapping[str, str]) -> None:
-    """Of very many curves: their colours in their order, with the values of some of them."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import BoundaryNorm, ListedColormap
-
-    count = len(curves)
-    each = BoundaryNorm(np.arange(count + 1) - 0.5, count)
-    colours = ScalarMappable(each, ListedColormap(sequence_colours(count)))
-    shown = np.unique(np.linspace(0, count - 1, _MOST_TICKS).round().astype(int)).tolist()
-    bar = figure.colorbar(colours, ax=figure.axes, ticks=shown, pad=0.02)
-    bar.ax.set_yticklabels([_named(curves[i], names=False) for i in shown])
-    bar.ax.minorticks_off()
-    bar.set_label(", ".join(symbols(curves[0].parameters, units)))

@@ -1,0 +1,37 @@
+"""Pictures of nonlinear modes: how many lines are named, and where the greatest damping is marked."""
+
+import numpy as np
+
+from fcm.plot.mode import DrawnMode, DrawnModes, draw_modes
+
+AMPLITUDE = np.geomspace(0.1, 10.0, 41)
+
+
+def modes(count, damping):
+    each = [
+        DrawnMode({"contact.shroud.n_0": float(n)}, np.full(41, 1.0 + n / 100), AMPLITUDE, damping)
+        for n in range(count)
+    ]
+    return DrawnModes("", "Hz", tuple(each))
+
+
+def rings(figure):
+    return [line for line in figure.axes[1].lines if line.get_marker() == "o"]
+
+
+def test_of_very_many_modes_the_colours_are_named_by_a_bar():
+    few, many = (draw_modes(modes(count, np.full(41, 0.01))) for count in (20, 25))
+    assert len(few.axes) == 2 and len(few.legends[0].get_texts()) == 20
+    assert not many.legends
+    (bar,) = (axes for axes in many.axes if axes.get_ylabel() == "$n_{0}$")
+    assert [text.get_text() for text in bar.get_yticklabels()] == [str(n) for n in range(0, 25, 3)]
+
+
+def test_the_greatest_damping_is_marked_where_it_is_more_than_rounding():
+    hill = 0.01 + 0.02 * np.exp(-(np.log(AMPLITUDE) ** 2))
+    (ring,) = rings(draw_modes(modes(1, hill)))
+    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == (AMPLITUDE[20], 100.0 * hill[20])
+    rounded = np.full(41, 0.007)
+    rounded[7] = np.nextafter(0.007, 1.0)
+    for damping in (rounded, np.linspace(0.01, 0.02, 41), np.linspace(0.02, 0.01, 41)):
+        assert not rings(draw_modes(modes(1, damping)))
