@@ -49,6 +49,7 @@ def paid(system: System, front: Front, progress: Progress | None, follow: Callab
         if progress is not None:
             progress(share)
 
-    path = follow(report)
+    with system.alone():
+        path = follow(report)
     add(path.evaluations)
     return path

@@ -119,6 +119,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     error[tops[inside], d[inside]] = _of_peaks(corrected, tops, height)[inside]
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
+    share = corrected.shares(special, shown.amplitude.max(axis=0))[:HIGHEST]
     system.work.take(corrected.corrector.seconds())
     return Errors(
         amplitude=error,
@@ -126,7 +127,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         peak=error[tops, d],
         height=height,
         fold=np.abs(change[folds, 0]),
-        share=corrected.shares(special, shown.amplitude.max(axis=0))[:HIGHEST],
+        share=share,
     )
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -107,6 +109,20 @@ class System:
     def _workspace(self) -> _Workspace:
         return _workspace_of(self)
 
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """While a curve is followed no other system takes its balance, as one of a progress would.
+
+        Nor does one after an error, in the middle of which it was left.
+        """
+        kept, mine = _KEPT.of, self._workspace
+        shared = kept.get(mine.key) is mine
+        if shared:
+            del kept[mine.key]
+        yield
+        if shared:
+            kept[mine.key] = mine
+
     def afresh(self) -> Balance:
         """`looking` at the level 1, as if nothing had been followed yet."""
         balance = self.looking
@@ -142,10 +158,13 @@ class System:
 
 
 class _Workspace:
-    """A balance and its fronts, for one after the other of the systems whose contacts alone are others."""
+    """A balance and its fronts, for one after the other of the systems whose contacts alone are others.
 
-    def __init__(self, system: System) -> None:
-        self.system, self.balance = system, system.balance()
+    Those have the same key.
+    """
+
+    def __init__(self, system: System, key: tuple[object, ...] = ()) -> None:
+        self.system, self.balance, self.key = system, system.balance(), key
 
     def taken_by(self, system: System) -> _Workspace:
         """As if it were new."""
@@ -182,7 +201,7 @@ def _workspace_of(system: System) -> _Workspace:
     approximate = system.table is not None, system.corrected
     key = (*system.linear.numbers, scene.frequency_range, system.harmonics, *approximate)
     if key not in kept:
-        kept[key] = _Workspace(system)
+        kept[key] = _Workspace(system, key)
         if len(kept) > MOST:
             kept.popitem(last=False)
     kept.move_to_end(key)
