@@ -21,8 +21,8 @@ from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
 from fcm.track.curve import Track
 from fcm.track.curves import tracks
-from fcm.track.envelope import Least
-from fcm.track.lowest import Search
+from fcm.track.envelope import Height, Least
+from fcm.track.lowest import Lowest, Search
 from fcm.track.spot import Ending, Spot
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
@@ -306,10 +306,13 @@ class FallsAndEnds(Search):
 
     def __init__(self):
         self.system, self.span, self.curves = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), []
-        self.seen = {}
+        self.seen, self.way = {}, SimpleNamespace(span=self.span)
 
     def best(self):
         return Least(3.0, 1.3, (), "end") if "lower" in self.curves else Least(3.0, 1.8, (), "corner")
+
+    def pieces(self):
+        return [SimpleNamespace(s=np.array(self.span))]
 
     def visit(self, value):
         if value in self.span:
@@ -321,6 +324,57 @@ class FallsAndEnds(Search):
 def test_where_the_highest_peak_ends_the_next_one_is_the_least():
     found = FallsAndEnds().run()
     assert (found.best.value, found.best.kind, found.checked) == (1.3, "end", True)
+
+
+class Line:
+    """A piece of a curve of peaks that are as high as the number."""
+
+    def __init__(self, low, high):
+        self.s = self.height = np.array([low, high])
+
+    def covers(self, s):
+        return self.s[0] <= s <= self.s[1]
+
+    def roughly(self, s):
+        return s
+
+    def at(self, s):
+        return Height(s, 1.0, np.zeros(0), 0)
+
+
+class Parted(Search):
+    """Two pieces, and nothing that can be followed between them; fewer harmonics lead to none."""
+
+    def __init__(self, between):
+        self.system, self.span, self.between = SimpleNamespace(harmonics=(1,)), (1.0, 9.0), between
+        self.way, self.curves = SimpleNamespace(span=self.span), []
+        self.seen, self.visited = {}, set()
+
+    def lift(self, known):
+        pass
+
+    def pieces(self):
+        return self.curves
+
+    def look(self, value):
+        self.seen[value] = Height(self.between if 4.0 < value < 6.0 else value, 0.0, np.zeros(0), 0)
+
+    def visit(self, value):
+        self.visited.add(value)
+        self.look(value)
+        self.curves += [line for line in (Line(1.0, 4.0), Line(6.0, 9.0)) if line.covers(value)]
+        return self.seen[value].value
+
+
+@pytest.mark.parametrize(
+    ("between", "checked"),
+    [(5.0, True), (1.05, False), (0.5, False), (0.0, True)],
+    ids=["higher", "as high", "lower", "none"],
+)
+def test_where_fewer_harmonics_lead_to_nothing_the_response_is_looked_at(between, checked):
+    found = Parted(between).run(Lowest(None, (), True, (1,)))
+    assert (found.best.s, found.best.value, found.best.kind) == (1.0, 1.0, "bound")
+    assert found.checked == checked
 
 
 def test_two_numbers_are_chosen_together(scene):

@@ -150,6 +150,8 @@ def gaps(way: Way, pieces: Sequence[Piece]) -> list[float]:
     """Values of s about which no piece says anything: the ends of the span, or the middle of a gap."""
     low, high = way.span
     least, found, last = GAP * (high - low), [], low
+    if not pieces:
+        return [low, high]
     for piece in sorted(pieces, key=lambda piece: float(piece.s[0])):
         if piece.s[0] - last > least:
             found.append(low if last == low else 0.5 * (last + float(piece.s[0])))

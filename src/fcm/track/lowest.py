@@ -27,7 +27,7 @@ from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 
-VISITS = 12  # of lowest points
+VISITS = 12  # of lowest points, and of values about which nothing is followed
 HIGHER = 1e-5  # relative: a peak that is this much higher was not followed
 HIGH = 0.9  # of the highest: peaks that are followed from where they are met
 NOTHING = Height(0.0, 0.0, np.zeros(0), -1)
@@ -53,6 +53,8 @@ class Search:
     targets: Sequence[Target]
     curves: list[Track] = field(default_factory=list)
     seen: dict[float, Height] = field(default_factory=dict)  # the greatest of the responses that were traced
+    met: dict[float, list[tuple[Condition, Height]]] = field(default_factory=dict)  # and all of them
+    visited: set[float] = field(default_factory=set)  # where what was met was followed, too
 
     def __post_init__(self) -> None:
         step = self.system.scene.max_step
@@ -88,14 +90,32 @@ class Search:
                 break  # else a higher one is there; or lower ones, where the followed one ends
             if seen:
                 break  # a higher one that could not be followed
+        checked = checked and not self._unknown(best) and not self._lower(best)
         return Lowest(best, tuple(self.curves), checked, self.system.harmonics)
 
     def best(self) -> Least | None:
         """Of what was followed, and of what is met where nothing was."""
-        for value in gaps(self.way, self.pieces()):
-            if value not in self.seen:
+        while True:
+            best = least(self.way, self.pieces())
+            new = [s for s in (*self._unknown(best), *self._lower(best)) if s not in self.visited]
+            if not new or len(self.seen) >= VISITS:
+                return best
+            for value in new:
                 self.visit(value)
-        return least(self.way, self.pieces())
+
+    def _unknown(self, best: Least | None) -> list[float]:
+        """Values about which nothing is followed, but for those where all is far above the least."""
+        return [s for s in gaps(self.way, self.pieces()) if best is None or self._near(s, best)]
+
+    def _near(self, s: float, best: Least) -> bool:
+        if s not in self.seen and s not in self.span and len(self.seen) < VISITS:
+            self.look(s)
+        return s not in self.seen or 0.0 < HIGH * self.seen[s].value <= best.value
+
+    def _lower(self, best: Least | None) -> list[float]:
+        """Values at which the response was traced and is lower than the least of what was followed."""
+        below = 0.0 if best is None else best.value * (1.0 - HIGHER)
+        return [s for s, top in self.seen.items() if 0.0 < top.value < below]
 
     def pieces(self) -> list[Piece]:
         """The parts of the curves that count."""
@@ -103,6 +123,7 @@ class Search:
 
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
+        self.visited.add(value)
         found = self.look(value)
         top = self.seen[value].value
         for condition, height in found:
@@ -113,11 +134,14 @@ class Search:
 
     def look(self, value: float) -> list[tuple[Condition, Height]]:
         """What may be greatest of the response at a value, with its heights."""
-        here = moved(self.system, self.line.scene(self.system.scene, value))
-        points = special_points(here, self.conditions())[0]
-        found = [(one, self.height(one, np.append(z, value))) for one, z in points]
-        self.seen[value] = max((height for _, height in found), key=lambda one: one.value, default=NOTHING)
-        return found
+        if value not in self.met:
+            here = moved(self.system, self.line.scene(self.system.scene, value))
+            points = special_points(here, self.conditions())[0]
+            self.met[value] = found = [(one, self.height(one, np.append(z, value))) for one, z in points]
+            self.seen[value] = max(
+                (height for _, height in found), key=lambda one: one.value, default=NOTHING
+            )
+        return self.met[value]
 
     def follow(self, condition: Condition, spot: Spot) -> None:
         """The curve through a spot, if it is not known."""
