@@ -2,9 +2,10 @@
 
 What was followed is nowhere above the response. So where the response, traced at the lowest point of what
 was followed, has nothing higher than that, this is the least of all; else the higher peak is followed, too.
-Only ordinary curves at such points are traced, and those at both ends of the range. A higher peak may be one
-that cannot be followed, of a motion with many states: then only what ordinary curves show can be believed,
-see `by_trials`.
+Only ordinary curves at such points are traced, at both ends of the range, and in the middle of a part where
+nothing was followed: if all is far above the least there, it is not sought in that part. A higher or a lower
+peak may be one that cannot be followed, of a motion with many states: then only what ordinary curves show can
+be believed, see `by_trials`.
 """
 
 from __future__ import annotations
