@@ -22,10 +22,9 @@ from fcm.orbit.linear_motion import started_states
 from fcm.orbit.partly_stuck import partly_stuck_as_started
 from fcm.orbit.periodic import Look, Orbit, approached, shoot, without_end
 from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.shooting import Shot
+from fcm.orbit.undetermined import not_determined, rests_elsewhere
 from fcm.scene.model import FloatArray, Scene
 
-BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
 FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
@@ -229,29 +228,6 @@ def first_point(problem: OrbitProblem, orbit: Orbit, look: Look = without_end) -
     newton = Newton(problem)
     if not held(newton, z):
         if near is not None and member is None and any(choice.gap for choice in near.chosen):
-            raise SimulationError(_elsewhere(problem.scene, orbit, near))
-        raise SimulationError(
-            f"the solution at {orbit.frequency:g} rad/s to start from is not determined: {_why(orbit)}"
-        )
+            raise SimulationError(rests_elsewhere(problem.scene, orbit, near))
+        raise SimulationError(not_determined(orbit))
     return np.array(newton.z)
-
-
-def _why(orbit: Orbit) -> str:
-    """What keeps a solution from being determined."""
-    ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
-    if ratio > BEYOND:
-        return (
-            f"that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and loses "
-            "nothing, in one period of the force; take a lower frequency"
-        )
-    return "a mode is free to drift, or resonates without damping; add damping, or try another range"
-
-
-def _elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
-    """What is said of a solution whose contacts cannot rest where the scene starts."""
-    names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
-    return (
-        f"of the solution found at {orbit.frequency:g} rad/s the contact {names} always sticks, on a "
-        "residual friction of its own, and with that of [start] there is none near it; give [start] another "
-        "friction"
-    )

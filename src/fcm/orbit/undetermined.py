@@ -1,0 +1,35 @@
+"""What is said of a periodic motion that was found, and from which no branch can be followed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.orbit.periodic import Orbit
+from fcm.orbit.shooting import Shot
+from fcm.scene.model import Scene
+
+BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding
+
+
+def not_determined(orbit: Orbit) -> str:
+    """That a solution is not determined, and why."""
+    where = f"the solution at {orbit.frequency:g} rad/s to start from is not determined"
+    ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
+    if ratio > BEYOND:
+        return (
+            f"{where}: that is {ratio:.1g} times the frequency of the highest mode, which hardly moves, and "
+            "loses nothing, in one period of the force; take a lower frequency"
+        )
+    return (
+        f"{where}: a mode is free to drift, or resonates without damping; add damping, or try another range"
+    )
+
+
+def rests_elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
+    """That its contacts cannot rest where a scene starts."""
+    names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
+    return (
+        f"of the solution found at {orbit.frequency:g} rad/s the contact {names} always sticks, on a "
+        "residual friction of its own, and with that of [start] there is none near it; give [start] another "
+        "friction"
+    )
