@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.harmonic.carried import carried, looked
+from fcm.harmonic.carried import carried, found_at
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.scene import load_scene
@@ -37,7 +37,7 @@ def test_where_one_leads_far_the_level_of_all_harmonics_is_followed_too():
     scene, omega = random_scene(5), 1.4389632784841668
     assert led(scene, omega, 7, 11) is None
     system = System(scene, up_to(11))
-    (found,) = looked(system, (omega,), (solutions(System(scene, up_to(7)), omega),))
+    (found,) = found_at(system, (omega,), (solutions(System(scene, up_to(7)), omega),))
     (alone,) = solutions(system, omega).solutions
     first, other = found.solutions
     assert np.array_equal(first, alone)
@@ -54,7 +54,7 @@ def test_a_solution_that_only_the_level_of_some_harmonics_leads_to_is_found_with
     """
     scene = load_scene(Path(__file__).parent / "scenes/pinched_level.toml").each_curve()[0]
     system = System(scene, up_to(highest))
-    (found,) = looked(system, (0.8018,))
+    (found,) = found_at(system, (0.8018,))
     off = [
         np.abs(displacements(system, z)[1] / (2.3889, 1.7381, 2.8195, 1.2588) - 1.0).max()
         for z in found.solutions

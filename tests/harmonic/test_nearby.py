@@ -51,14 +51,14 @@ def test_a_window_that_one_harmonic_has_outside_the_range_is_found(accuracy):
 
 def test_where_no_level_turns_near_one_nothing_more_is_followed(monkeypatch):
     system = System(yang(100.0))
-    looked = traced(system).looked
+    found = traced(system).found
     monkeypatch.setattr("fcm.harmonic.nearby.solutions", None)
-    assert with_a_window(system, looked) == (1,)
+    assert with_a_window(system, found) == (1,)
 
 
 def test_harmonics_that_have_the_same_solutions_stay():
     """Beyond the true fold as well the level turns near 1, but above it with any harmonics."""
     system = System(scene(MODAL, [STOP], (1.665, 2.05)))
-    looked = traced(system).looked
-    assert 1.0 < min(looked[0].turns) < 2.0
-    assert with_a_window(system, looked) == (1,)
+    found = traced(system).found
+    assert 1.0 < min(found[0].turns) < 2.0
+    assert with_a_window(system, found) == (1,)

@@ -22,11 +22,11 @@ from fcm.structure.receptance import Receptance
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.problem import NONE, Problem
-    from cython.cimports.fcm.harmonic.compliance import answer, answers, slope
+    from cython.cimports.fcm.harmonic.compliance import slope, times_forces, times_tangents
     from cython.cimports.fcm.harmonic.law import KINDS, Law
 else:
     from fcm.continuation.problem import NONE, Problem
-    from fcm.harmonic.compliance import answer, answers, slope
+    from fcm.harmonic.compliance import slope, times_forces, times_tangents
     from fcm.harmonic.law import KINDS, Law
 
 OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
@@ -68,7 +68,7 @@ class Balance(Problem):
         for i in range(self.unknowns):
             self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
         if not self.rank:
-            answers(self.seen, self.tangent, self.jacobian)
+            times_tangents(self.seen, self.tangent, self.jacobian)
             for i in range(self.unknowns):
                 self.jacobian[i, i] += 1.0
         return 0
@@ -81,7 +81,7 @@ class Balance(Problem):
         first: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
         self.contact_forces(z)
-        answer(self.seen, self.force, self.residual)
+        times_forces(self.seen, self.force, self.residual)
         for p in range(2 * self.contacts):
             first = (p // 2) * self.width + p % 2
             self.residual[first] -= self.share * self.rest[p]

@@ -35,10 +35,10 @@ REPORTS = 16  # of the follower, of 16 steps each, after which it is too long
 APART = 1e-3  # of their size: solutions that come closer than this have become one
 
 
-def looked(system: System, frequencies: Sequence[float], fewer: Sequence[Found] = ()) -> tuple[Found, ...]:
+def found_at(system: System, frequencies: Sequence[float], fewer: Sequence[Found] = ()) -> tuple[Found, ...]:
     """Solutions at some frequencies, of fewer harmonics where those are known; many are known before more."""
     if len(system.harmonics) > MANY and not any(len(one.harmonics) >= MANY for one in fewer):
-        fewer = looked(system.with_harmonics(system.harmonics[:MANY]), frequencies, fewer)
+        fewer = found_at(system.with_harmonics(system.harmonics[:MANY]), frequencies, fewer)
     foresee(system, frequencies)
     known = {one.omega: one for one in fewer}
     return tuple(_at(system, omega, known.get(omega)) for omega in frequencies)

@@ -106,7 +106,7 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
             sure = judged(found, accuracy)
             if sure.reached or (sure.told <= accuracy and not np.isnan(sure.peak).any()):
                 # folds that cannot be told do not come to be by more harmonics, but windows do
-                more = with_a_window(found.system, found.traced.looked)
+                more = with_a_window(found.system, found.traced.found)
                 if more == found.system.harmonics:
                     return sure
             else:
@@ -123,7 +123,7 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
         near = _near(found, more)
         try:
             with work.up_to(PATIENCE):
-                then = outlined(system.with_harmonics(more), progress, found.traced.looked, near)
+                then = outlined(system.with_harmonics(more), progress, found.traced.found, near)
         except TooLongError:
             further, begun = more, True
             break
@@ -139,7 +139,7 @@ def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accur
     if found.seconds_with(harmonics) > AGAIN:
         return None
     near = _near(found, harmonics)
-    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.looked, near)
+    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.found, near)
     return judged(then, accuracy) if then.shown else None
 
 
@@ -164,7 +164,7 @@ def _after(before: Outline | None, system: System, progress: Progress | None = N
     """The response of a system, after that with fewer harmonics."""
     if before is None:
         return outlined(system, progress)
-    return outlined(system, progress, before.traced.looked, _near(before, system.harmonics))
+    return outlined(system, progress, before.traced.found, _near(before, system.harmonics))
 
 
 def _near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:

@@ -13,7 +13,7 @@ from fcm.structure.receptance import Receptance
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def answer(seen: Receptance, force: cython.double[::1], out: cython.double[::1]) -> cython.void:
+def times_forces(seen: Receptance, force: cython.double[::1], out: cython.double[::1]) -> cython.void:
     """Fill out (unknown,) with the answer to forces (unknown,)."""
     w: cython.Py_ssize_t = 2 + 4 * seen.count
     row: cython.Py_ssize_t
@@ -43,7 +43,9 @@ def answer(seen: Receptance, force: cython.double[::1], out: cython.double[::1])
 
 @cython.cfunc
 @cython.exceptval(check=False)
-def answers(seen: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]) -> cython.void:
+def times_tangents(
+    seen: Receptance, tangent: cython.double[:, :, ::1], out: cython.double[:, ::1]
+) -> cython.void:
     """Fill out (unknown, unknown) with the answers to the changes of forces by tangents (contact, w, w)."""
     w: cython.Py_ssize_t = 2 + 4 * seen.count
     row: cython.Py_ssize_t

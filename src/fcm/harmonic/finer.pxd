@@ -11,4 +11,4 @@ cdef class Finer:
     cdef double[:, ::1] contact, force
     cpdef int at(self, double[::1] z) except -1
     cdef void unknowns(self, double[::1] z) noexcept
-    cdef void answer(self, Py_ssize_t h) noexcept
+    cdef void displace(self, Py_ssize_t h) noexcept

@@ -59,7 +59,7 @@ class Finer:
         self.unknowns(z)
         for h in range(self.place.shape[0]):
             if self.place[h] < 0:
-                self.answer(h)
+                self.displace(h)
             for c in range(self.contacts):
                 for i in range(4):
                     size: cython.double = abs(self.x[c * self.wide + 2 + 4 * h + i])
@@ -87,8 +87,8 @@ class Finer:
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def answer(self, h: cython.Py_ssize_t) -> cython.void:
-        """One harmonic that was left out."""
+    def displace(self, h: cython.Py_ssize_t) -> cython.void:
+        """What the structure answers in one harmonic that was left out."""
         p: cython.Py_ssize_t
         q: cython.Py_ssize_t
         at: cython.Py_ssize_t

@@ -16,13 +16,13 @@ from fcm.harmonic.system import System
 ENOUGH = 3  # harmonics, with which a peak that one harmonic has at twice its height is within some per cent
 
 
-def with_a_window(system: System, looked: Sequence[Found]) -> tuple[int, ...]:
+def with_a_window(system: System, found: Sequence[Found]) -> tuple[int, ...]:
     """Harmonics of a system, and those with which other solutions hang together with rest, if some do.
 
-    looked: where solutions were looked for with those of the system, and what was found.
+    found: where solutions were looked for with those of the system, and what was found.
     """
     few = tuple(sorted({*system.harmonics, *range(1, min(ENOUGH, few_of(system)) + 1)}))
-    near = [one for one in looked if turns_near(one)]
+    near = [one for one in found if turns_near(one)]
     if few == system.harmonics or not near:
         return system.harmonics
     finer = system.with_harmonics(few)

@@ -12,7 +12,7 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic.carried import looked
+from fcm.harmonic.carried import found_at
 from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
@@ -24,10 +24,10 @@ from fcm.scene.model import FloatArray
 
 @dataclass(frozen=True)
 class Traced:
-    """Branches, and the frequencies at which solutions were looked for."""
+    """Branches, and what was found at the frequencies where solutions were looked for."""
 
     branches: Branches
-    looked: tuple[Found, ...]
+    found: tuple[Found, ...]
 
 
 def traced(
@@ -42,7 +42,7 @@ def traced(
     elsewhere, whose branches are traced too if they are within the range.
     """
     span = system.scene.frequency_range
-    found = looked(system, (*span, *resonances(system)), fewer)
+    found = found_at(system, (*span, *resonances(system)), fewer)
     inside = [z for z in near if span[0] <= z[-1] <= span[1]]
     starts = [*(z for one in found for z in one.solutions), *inside]
     branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))

@@ -130,7 +130,7 @@ def _curve(followed: _Followed) -> Curve:
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
         loose=int(loose(scene, words).sum()),
-        unsure=[one.omega for one in found.traced.looked if not one.complete],
+        unsure=[one.omega for one in found.traced.found if not one.complete],
     )
 
 
