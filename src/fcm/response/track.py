@@ -91,18 +91,12 @@ def track(
     wanted = wanted_of(scene, harmonics, accuracy)
     curves = free.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
-    tracking = Tracking(over, what, span, chosen, [])
+    place = place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1)
     response = Response.without_curves(scene)
-    response.tracking, response.method = tracking, "tracked"
+    response.tracking, response.method = Tracking(over, what, span, chosen, []), "tracked"
     with checkpoint_of(keep, resume) as checkpoint:
         work = TrackedWork(number, what, span, chosen)
-        outcome = _swept(
-            work,
-            curves,
-            checkpoint,
-            place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1),
-            progress,
-        )
+        outcome = _swept(work, curves, checkpoint, place, progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
