@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import fcm
+from fcm.orbit import sample
 from fcm.response import exact_work, not_unique
 from fcm.response.groups import KINDS
 from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
 
-from ..interrupted import interrupted_after
+from ..interrupted import interrupted_after, interrupted_beyond
 from ..motion.cases import yang
 from .curves import between, curve_of
 
@@ -135,3 +136,14 @@ def test_a_curve_with_motions_beside_it_is_kept():
     curve.orbits.stuck = [Stuck(1.2, ("E",), np.zeros(1), np.ones(2), np.ones(2))]
     (kept,) = unpacked(pickle.dumps([curve]), KINDS)
     assert kept.orbits.stuck[0].states == ("E",)
+
+
+def test_what_lies_between_points_is_not_sought_when_there_is_no_time(monkeypatch):
+    """To find where stability is lost takes longer than the points themselves."""
+    scene = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05)
+    whole = curve_of(scene)
+    monkeypatch.setattr(sample, "crossing", None)
+    curve = curve_of(scene, progress=interrupted_beyond(0.8))
+    assert curve.reason.startswith("interrupted at 2.0")
+    assert set(curve.stable) == set(whole.stable[np.isfinite(whole.stable)]) == {0.0, 1.0}
+    assert set(curve.frequency) < set(whole.frequency)

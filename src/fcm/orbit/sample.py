@@ -69,10 +69,11 @@ def settled(omega: float, motion: Steady) -> Sample:
     )  # fmt: skip
 
 
-def samples(problem: OrbitProblem, path: Path) -> list[Sample]:
+def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sample]:
     """The points of a path, with those added at which stability changes between folds.
 
     A fold belongs to the stable side, and so does a point at which stability changes.
+    located : whether to add those; to find them takes three times as long as the rest.
     """
     points = [
         sampled(problem, path.z[k], path.direction[k], int(path.mark[k])) for k in range(path.z.shape[0])
@@ -80,7 +81,7 @@ def samples(problem: OrbitProblem, path: Path) -> list[Sample]:
     turns = [k for k in range(1, len(points) - 1) if points[k].mark & Mark.FOLD]
     for k in turns:
         points[k] = replace(points[k], stable=points[k - 1].stable or points[k + 1].stable)
-    return _with_crossings(problem, path, points)
+    return _with_crossings(problem, path, points) if located else points
 
 
 def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:

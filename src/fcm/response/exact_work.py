@@ -155,7 +155,8 @@ class _Followed:
             legs.keep()
             paths, ends = legs.paths(), [*(first for _, first in begun[1:]), None]
             groups = [
-                OrbitBranches(one, paths[first:end]) for (one, first), end in zip(begun, ends, strict=True)
+                OrbitBranches(one, paths[first:end], cut_off=True)
+                for (one, first), end in zip(begun, ends, strict=True)
             ]
             reason = _cut_off(stop, self.clock.limit) + reached(scene, paths)
         return groups, reason + self.stiff if reason else ""

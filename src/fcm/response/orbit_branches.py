@@ -20,10 +20,13 @@ class OrbitBranches:
     problem: OrbitProblem
     paths: Sequence[Path]
     once: OrbitBranches | None = None
+    cut_off: bool = False  # there is no time left to find what lies between the points
 
     @cached_property
     def points(self) -> list[list[Sample]]:
         """The points of each path, with those at the frequencies at which others end."""
+        if self.cut_off:
+            return [samples(self.problem, path, located=False) for path in self.paths]
         found = [samples(self.problem, path) for path in self.paths]
         if isinstance(self.problem, Doubled) and self.once is not None:
             before = self.once.points
