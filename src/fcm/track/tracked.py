@@ -138,8 +138,8 @@ class Tracked(Problem):
         self.varied.put(float(z[-1]))
         y, balance = np.array(z[:-1]), self.varied.balance
         balance.evaluate(y)
-        t = self._tangent(jacobian_of(balance)).t
-        t /= np.linalg.norm(t)
+        scale = np.asarray(self.scale)[:-1]
+        t = _direction(jacobian_of(balance) * scale / scale[:-1, None], self.row)
         balance.report(y, np.ascontiguousarray(t * np.asarray(self.scale)[:-1]))
         return t, np.array(balance.output), np.array(balance.growth)
 
@@ -212,7 +212,10 @@ class Tracked(Problem):
 
     def is_top(self, z: FloatArray) -> bool:
         """Whether a peak that was measured last is one, and no trough: growth falls along the response."""
-        self.evaluate(z)
+        try:
+            self.evaluate(z)
+        except np.linalg.LinAlgError:  # the response crosses itself there, and a peak meets a trough
+            return False
         gradient = np.asarray(self.jacobian)[self.n, : self.n + 1]
         return bool(gradient @ (np.asarray(self.scale)[:-1] * self.row) < 0.0)
 
@@ -244,4 +247,5 @@ def _direction(matrix: FloatArray, row: FloatArray) -> FloatArray:
     size = float(np.linalg.norm(t))
     if size < ASKEW * float(np.linalg.norm(row)):
         return t / size
-    return np.linalg.svd(matrix)[2][-1]  # type: ignore[no-any-return]
+    last: FloatArray = np.linalg.svd(matrix)[2][-1]
+    return last if last @ row >= 0.0 else -last
