@@ -33,6 +33,7 @@ from fcm.track.varied import Line
 LEVELS = (0.1, 0.5, 0.9)  # of each range, at which the first responses are traced
 STARTS = 2  # of the lowest of them, from which the way leads down
 ROUNDS = 6  # of descending and tracing anew
+ITERATIONS = 20  # of one descent, after which the responses are traced anew: at some kinks it goes to and fro
 FURTHER = 1e-5  # relative: less of it along a single number is worth another way down
 COUNTS = 1e-6  # relative: what is higher than this has not been followed
 TOO_HIGH = 10.0  # relative height of a peak that has left the range, so that no step leads there
@@ -200,7 +201,7 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
             "jac": lambda x: np.column_stack((-heights(x[:-1])[1], np.ones(len(members)))),
         },
         method="SLSQP",
-        options={"ftol": 1e-10, "maxiter": 60},
+        options={"ftol": 1e-10, "maxiter": ITERATIONS},
     )
     chosen: FloatArray = np.clip(found.x[:-1], 0.0, 1.0)
     return np.where(np.abs(chosen - chosen.round()) < ROUNDING, chosen.round(), chosen)
