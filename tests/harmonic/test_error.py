@@ -190,6 +190,15 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     assert not (curve.stable[beyond] == 1.0).any()
 
 
+def test_a_harmonic_that_moves_a_peak_by_nothing_does_not_speak_for_the_others():
+    """The second meets a mode of little damping and moves peaks by 3e-6, all of them by 200 times as much."""
+    one = replace(random_scene(7309), harmonics=None)
+    (first,), (many,) = (trace(one, harmonics=tuple(range(1, h + 1))).curves for h in (1, 9))
+    for dof, peak in first.peaks.items():
+        true = abs(many.peaks[dof].amplitude / peak.amplitude - 1.0)
+        assert true > 1e-4 and true / 2.0 < peak.error < 2.0 * true
+
+
 def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
     """One harmonic has a branch of three times the amplitude down to 1.643 rad/s; that of the exact motion
     ends before, so that at 1.6487 there is nothing but the low motion."""
