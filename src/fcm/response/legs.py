@@ -97,7 +97,7 @@ class Legs:
         stations: Sequence[float],
         _progress: object = None,
     ) -> Path:
-        """See `follow`."""
+        """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
         saved = self._saved.get(len(self.finished))
         if saved is not None and _unknowns(saved) != start.size:  # with other contacts held than now
             saved = None
@@ -105,32 +105,19 @@ class Legs:
             path = saved.path
         else:
             stage = None if saved is None else saved.stage
-            path = self._followed(problem, start, span, forward, max_step, stations, stage)
+            watch = partial(self._watch, problem, float(start[-1]))
+            if isinstance(problem, Doubled):
+                problem.begins()
+            try:
+                path = follow(problem, start, span, forward, max_step, stations, None, stage, watch)
+            except _Ended:
+                assert self._last is not None
+                path = self._last.path(Status.COMPLETE)
         self._last = None
         self.finished.append(path)
         if saved is None or saved.path is None:
             self.report.save(Leg(len(self.finished) - 1, path, None))
         return path
-
-    def _followed(
-        self,
-        problem: OrbitProblem,
-        start: FloatArray,
-        span: tuple[float, float],
-        forward: bool,
-        max_step: float,
-        stations: Sequence[float],
-        stage: Stage | None,
-    ) -> Path:
-        """The curve; of motions of twice the periods of others up to where it comes to those."""
-        if isinstance(problem, Doubled):
-            problem.begins()
-        watch = partial(self._watch, problem, float(start[-1]))
-        try:
-            return follow(problem, start, span, forward, max_step, stations, None, stage, watch)
-        except _Ended:
-            assert self._last is not None
-            return self._last.path(Status.COMPLETE)
 
     def _watch(self, problem: OrbitProblem, begin: float, stage: Stage) -> None:
         if isinstance(problem, Doubled) and problem.ended(stage.z):
