@@ -43,6 +43,20 @@ def test_triangles_point_where_the_sweep_went(unit):
     assert words == ["harmonic balance", "exact motion, swept up", "swept down"]
 
 
+def test_names_stay_within_the_frame_where_legends_above_and_below_take_room():
+    curves = [
+        curve(n_0, stable=FREQUENCY < 1.3, untold=FREQUENCY > 1.8, truncation_error=0.5 * (FREQUENCY - 1.0))
+        for n_0 in (1.0, 4.0)
+    ]
+    figure = draw_response(
+        DrawnResponse(("u", "v"), "rad/s", tuple(curves)), points=swept(*curves), errors=False
+    )
+    figure.draw_without_rendering()
+    axes, frame = figure.axes[0], figure.axes[0].get_window_extent()
+    assert [len(legend.get_texts()) for legend in figure.legends] == [3, 3] and len(axes.texts) == 2
+    assert all(text.get_window_extent().y1 < frame.y1 for text in axes.texts)
+
+
 def test_points_have_the_colour_of_their_curve_in_any_order():
     curves = curve(1.0), curve(2.0)
     figure = draw_response(DrawnResponse(("u", "v"), "rad/s", curves), points=swept(curves[1], curves[0]))

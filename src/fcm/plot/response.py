@@ -75,12 +75,13 @@ def draw_response(
             draw_errors(figure, below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        _name_curves(figure, axes, curves, column, response.units)
         notes = _notes(curves, colours[0], width)
         if below is not None:
             name_errors(figure, curves, colours, width, notes)
         elif notes:
             figure.legend(notes.values(), notes.keys(), loc="outside lower center")
+        # last: whether there is room at the peaks hangs on how high the axes have become
+        _name_curves(figure, axes, curves, column, response.units)
     return figure
 
 
