@@ -65,6 +65,7 @@ def draw_convergence(lines: Sequence[Line]) -> Figure:
         axes.set_xlabel("Processor time of a curve (ms), where np.sin takes 10 ns a value")
         axes.set_ylabel("Greatest relative error of the peaks (–)")
         axes.set_ylim(bottom=0.5 * FLOOR)
+        axes.margins(x=0.08)  # for the number at the last point
         plain_ticks(axes.xaxis, 300.0)
         figure.legend(
             loc="outside lower center", ncols=2, alignment="left",

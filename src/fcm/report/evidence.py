@@ -116,7 +116,7 @@ def _left_out(
     rows += [(name, "left out", text) for name, one in found.items() for text in one["left_out"]]
     rows += [(target, "not run", text) for target, text in missing]
     text = () if rows else ("Nothing failed, and nothing was left out.",)
-    tables = (Table(("scene", "", "what"), rows),) if rows else ()
+    tables = (Table(("scene or target", "", "what"), rows),) if rows else ()
     return Section("What failed or was left out", text=text, tables=tables)
 
 

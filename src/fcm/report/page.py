@@ -19,6 +19,9 @@ figure { margin: 1rem 0; }
 figure img { max-width: 100%; height: auto; display: block; margin: 0 auto; }
 figcaption { color: var(--soft); font-size: .92rem; margin-top: .5rem; }
 pre { background: #f5f5f2; padding: .6rem .8rem; font-size: .8rem; line-height: 1.45; white-space: pre-wrap; }
+pre span { white-space: nowrap; }
+pre.printed { white-space: pre; font-size: .7rem; width: max-content; max-width: calc(100vw - 4rem);
+  box-sizing: border-box; overflow-x: auto; position: relative; left: 50%; transform: translateX(-50%); }
 table { border-collapse: collapse; width: 100%; font-size: .9rem; margin: .8rem 0; }
 th, td { text-align: left; vertical-align: top; padding: .3rem .8rem .3rem 0;
   border-bottom: 1px solid var(--line); }
@@ -51,6 +54,7 @@ class Section:
     width: float = 170.0  # [mm] of the picture
     caption: str = ""
     commands: tuple[str, ...] = ()
+    printed: str = ""  # by the last of the commands, its lines not broken
     tables: tuple[Table, ...] = ()
     after: tuple[str, ...] = ()  # what the tables show
 
@@ -109,9 +113,16 @@ def _section(section: Section) -> str:
             f'style="width: {section.width:g}mm"><figcaption>{caption}</figcaption></figure>'
         )
     if section.commands:
-        parts.append("<pre>" + "\n".join(map(escape, section.commands)) + "</pre>")
+        parts.append("<pre>" + "\n".join(map(_command, section.commands)) + "</pre>")
+    if section.printed:
+        parts.append(f'<pre class="printed">{escape(section.printed)}</pre>')
     parts += [_table(table) for table in section.tables] + _paragraphs(section.after)
     return "\n".join([*parts, "</section>"])
+
+
+def _command(line: str) -> str:
+    """A line whose words stay whole: browsers break them at hyphens."""
+    return " ".join(f"<span>{escape(word)}</span>" for word in line.split(" "))
 
 
 def _table(table: Table) -> str:

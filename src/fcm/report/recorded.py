@@ -62,5 +62,5 @@ def section(one: Recorded, results: Path, folder: Path) -> Section:
         shutil.copyfile(picture, folder / one.picture)
     return Section(
         one.title, text=(one.about,), picture=one.picture if shown else "", width=140.0, caption=one.caption,
-        commands=(one.target, file.read_text(encoding="utf-8").rstrip()),
+        commands=(one.target,), printed=file.read_text(encoding="utf-8").rstrip(),
     )  # fmt: skip
