@@ -53,13 +53,14 @@ def costs(summary: Summary) -> Rows:
 
 
 def _at_own_step(summary: Summary) -> list[Summary]:
-    runs = in_order(summary["runs"])
-    return [one for one in runs if one["max_step"] == summary["max_step"] and one["corrected"]]
+    """Once where there is nothing to leave out: with and without is the same then."""
+    own = [one for one in in_order(summary["runs"]) if one["max_step"] == summary["max_step"]]
+    return [one for one in own if one["corrected"] and (one["left_out"] or summary["left_out"])]
 
 
 def _left_out(one: Summary, summary: Summary) -> str:
     """Whether what the scene does not need was left out, if there is anything."""
-    return "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing to"
+    return "no" if not one["left_out"] else "yes" if summary["left_out"] else "nothing"
 
 
 def contributions(summary: Summary) -> Rows:
