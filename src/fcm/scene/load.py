@@ -103,43 +103,55 @@ def scene_from_dict(
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
         mistakes.raise_if_any()
     top.only(*names(""))
+    fields = _read(top, Files(Path(folder), largest_file))
+    mistakes.raise_if_any()
+    scene = _made(name, fields)
+    _check_curves(scene, mistakes)
+    return scene
+
+
+def _read(top: Section, files: Files) -> dict[str, Any]:
+    """The fields of a scene that are read from its keys, the draft of the others among them."""
     unit = _unit(top)
     response = response_table(top)
     ends, step = read_response(top, response, unit)
     harmonics, accuracy = read_harmonics(response)
-    parts, reported, notes = _parts(top, Files(Path(folder), largest_file), unit, response, ends)
+    parts, reported, notes = _parts(top, files, unit, response, ends)
     schedule, start = read_schedule(top, unit), read_start(top, parts)
-    swept = read_sweep(top, parts)
-    title, units = top.text("title", ""), read_units(top)
-    draft = Draft(parts, tuple(swept))
-    optimum = read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ()))
-    mistakes.raise_if_any()
-    modal, ring = modes_of(parts, unit)
+    draft = Draft(parts, tuple(read_sweep(top, parts)))
+    return {
+        "title": top.text("title", ""),
+        "units": read_units(top),
+        "frequency_unit": unit,
+        "frequency_range": ends,
+        "max_step": step,
+        "harmonics": harmonics,
+        "accuracy": accuracy,
+        "schedule": schedule,
+        "start": start,
+        "reported": reported,
+        "notes": tuple(notes),
+        "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),
+        "draft": draft,
+    }
+
+
+def _made(name: str, fields: dict[str, Any]) -> Scene:
+    """The scene of what was read without a mistake, with its curves and all that is to be said of it."""
+    draft: Draft = fields["draft"]
+    modal, ring = modes_of(draft.parts, fields["frequency_unit"])
     scene = Scene(
-        title=title,
+        name=name,
         modal=modal,
         ring=ring,
-        contacts=tuple(map(contact_of, parts["contact"])),
-        forces=forces_of(parts),
-        loads=tuple(map(load_of, parts["load"])),
-        units=units,
-        frequency_range=ends,
-        max_step=step,
-        harmonics=harmonics,
-        accuracy=accuracy,
-        frequency_unit=unit,
-        schedule=schedule,
-        start=start,
-        name=name,
-        reported=reported,
-        notes=tuple(notes),
-        optimum=optimum,
-        draft=draft,
+        contacts=tuple(map(contact_of, draft.parts["contact"])),
+        forces=forces_of(draft.parts),
+        loads=tuple(map(load_of, draft.parts["load"])),
+        **fields,
     )
-    scene = replace(scene, curves=tuple(draft.curve(scene, values) for values in combinations(swept)))
-    scene = replace(scene, notes=(*scene.notes, *note_of_stability(scene), *note_of_start(scene)))
-    _check_curves(scene, mistakes)
-    return scene
+    curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
+    scene = replace(scene, curves=curves)
+    return replace(scene, notes=(*scene.notes, *note_of_stability(scene), *note_of_start(scene)))
 
 
 def _parts(

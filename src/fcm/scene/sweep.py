@@ -17,7 +17,7 @@ one [[sweep.paired]] table go in step, and must have as many values each.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
@@ -81,7 +81,7 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
     return swept
 
 
-def combinations(swept: list[Swept]) -> Iterator[dict[str, float]]:
+def combinations(swept: Sequence[Swept]) -> Iterator[dict[str, float]]:
     """Values of each curve: the product in the order of the file, the last key fastest."""
     if not swept:
         return
@@ -92,7 +92,7 @@ def combinations(swept: list[Swept]) -> Iterator[dict[str, float]]:
         yield {one.key: values[one.key] for one in swept}
 
 
-def _groups(swept: list[Swept]) -> list[list[Swept]]:
+def _groups(swept: Sequence[Swept]) -> list[list[Swept]]:
     groups: dict[object, list[Swept]] = {}
     for one in swept:
         groups.setdefault(one.group, []).append(one)
