@@ -9,6 +9,8 @@ import click
 from fcm.cli.messages import Messages
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from fcm.response import Response
     from fcm.results.orbits import Orbits
     from fcm.scene.model import Scene
@@ -92,63 +94,87 @@ def traced(
 
 def remarks(response: Response) -> list[str]:
     """What to know of points whose motion does not repeat after every period, or is one of many."""
+    found = [curve.orbits for curve in response.curves if curve.orbits is not None]
+    return [
+        *_several_periods(found),
+        *_doubles(found, response.frequency_unit),
+        *_irregular(found),
+        *_not_unique(found),
+        *_unsure(found),
+        *_stuck(response),
+    ]
+
+
+def _several_periods(found: Sequence[Orbits]) -> Iterator[str]:
+    periods = [int(one) for orbits in found for one in orbits.repeats if one > 1]
+    if periods:
+        yield (
+            f"points that repeat only after several periods of the force (repeats): {len(periods)}, after "
+            f"{' or '.join(map(str, sorted(set(periods))))}"
+        )
+
+
+def _doubles(found: Sequence[Orbits], unit: str) -> Iterator[str]:
+    """Where the period doubles to motions that are not followed, and what follows them."""
     import numpy as np
 
-    found = [curve.orbits for curve in response.curves if curve.orbits is not None]
-    several = sum(int((orbits.repeats > 1).sum()) for orbits in found)
-    irregular = sum(int((orbits.repeats == 0).sum()) for orbits in found)
-    loose = [orbits for orbits in found if np.isfinite(orbits.family_greatest).any()]
-    spread = [float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in loose]
-    out = []
-    if several:
-        which = sorted({int(one) for orbits in found for one in orbits.repeats if one > 1})
-        out.append(
-            f"points that repeat only after several periods of the force (repeats): {several}, after "
-            f"{' or '.join(map(str, which))}"
-        )
-    if doubles := [one for orbits in found for one in orbits.doubles]:
-        out.append(_doubles(response, doubles, max(int(np.nanmax(orbits.repeats)) for orbits in found)))
-    if irregular:
-        out.append(
+    from fcm.units import in_unit
+
+    doubles = [one for orbits in found for one in orbits.doubles]
+    if not doubles:
+        return
+    periods = max(int(np.nanmax(orbits.repeats)) for orbits in found)
+    first = f"{float(in_unit(doubles[0], unit)):.6g} {unit}"
+    more = f": --periods {2 * periods} follows what begins there" if periods < MOST_PERIODS else ""
+    yield f"places at which the period doubles: {len(doubles)}, the first at {first}{more}"
+
+
+def _irregular(found: Sequence[Orbits]) -> Iterator[str]:
+    count = sum(int((orbits.repeats == 0).sum()) for orbits in found)
+    if count:
+        yield (
             "quasi-periodic or irregular points, or of more than 8 periods (repeats is 0; cycle_least to "
-            f"cycle_greatest): {irregular}"
+            f"cycle_greatest): {count}"
         )
-    if loose:
-        count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in loose)
-        partly = sum(int((one.family_complete == 0.0).sum()) - _unsure(one) for one in loose)
-        out.append(
-            f"points that are not unique: {count}; a contact never slips there, and its residual friction "
-            f"changes an amplitude by up to {max(spread):.0%} (family_least to family_greatest); [start] "
-            "friction chooses"
+
+
+def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
+    """Points of which residual friction makes more than one, and how far apart these are."""
+    import numpy as np
+
+    families = [orbits for orbits in found if np.isfinite(orbits.family_greatest).any()]
+    if not families:
+        return
+    count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in families)
+    spread = max(float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in families)
+    yield (
+        f"points that are not unique: {count}; a contact never slips there, and its residual friction "
+        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest); [start] "
+        "friction chooses"
+    )
+    partly = sum(int((one.family_complete == 0.0).sum()) - _untold(one) for one in families)
+    if partly:
+        yield (
+            f"at {partly} of them it may change more: not every residual friction was reached "
+            "(family_complete is 0)"
         )
-        if partly:
-            out.append(
-                f"at {partly} of them it may change more: not every residual friction was reached "
-                "(family_complete is 0)"
-            )
-    if unsure := sum(_unsure(one) for one in found):
-        out.append(
-            f"points that may not be unique: {unsure}; a contact never slips there, and not every residual "
+
+
+def _unsure(found: Sequence[Orbits]) -> Iterator[str]:
+    count = sum(map(_untold, found))
+    if count:
+        yield (
+            f"points that may not be unique: {count}; a contact never slips there, and not every residual "
             "friction of it was reached (family_complete is 0)"
         )
-    return [*out, *_stuck(response)]
 
 
-def _unsure(orbits: Orbits) -> int:
+def _untold(orbits: Orbits) -> int:
     """Points of which no other motion was found, but not every residual friction was tried."""
     import numpy as np
 
     none = np.isnan(orbits.family_greatest).all(axis=1)
     return int(((orbits.family_complete == 0.0) & none).sum())
-
-
-def _doubles(response: Response, doubles: list[float], periods: int) -> str:
-    """Where the period doubles to motions that are not followed, and what follows them."""
-    from fcm.units import in_unit
-
-    first = f"{float(in_unit(doubles[0], response.frequency_unit)):.6g} {response.frequency_unit}"
-    more = f": --periods {2 * periods} follows what begins there" if periods < MOST_PERIODS else ""
-    return f"places at which the period doubles: {len(doubles)}, the first at {first}{more}"
 
 
 def _stuck(response: Response) -> list[str]:

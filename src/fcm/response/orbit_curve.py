@@ -16,13 +16,13 @@ from fcm.orbit.sample import Sample
 from fcm.reduction.held import rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
-from fcm.response.not_unique import not_unique
+from fcm.response.not_unique import NotUnique, not_unique
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.search import Search
 from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
 from fcm.results.jumps import Swept
-from fcm.results.orbits import Orbits
+from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.scene.model import Scene
@@ -101,6 +101,7 @@ def _curve(
     rows = _told(amplitude, everywhere)
     others = not_unique(scene, points, amplitude, rows, search)
     regime = _regimes(points, len(scene.contacts))
+    stuck = stuck_beside(scene, [] if search.over else rows, frequency, regime, others)
     told = everywhere | np.isfinite(others.whole)
     stable = np.array([np.nan if p is None else float(p.stable) for p in points])
     at_top = stability_at_top(amplitude, stable).tolist()
@@ -122,20 +123,24 @@ def _curve(
         complete=not reason,
         loose=int((loose(scene, regime) & ~told).sum()),
         peaks={d: _peak(amplitude[:, i], frequency, at_top[i]) for i, d in enumerate(empty.peaks)},
-        orbits=Orbits(
-            _numbers(points, "residual"),
-            np.full(len(points), "", dtype="<U4"),
-            _numbers(points, "repeats"),
-            _cycles(points, "least", empty),
-            _cycles(points, "greatest", empty),
-            others.least,
-            others.greatest,
-            others.whole,
-            stuck=[
-                *others.beside,
-                *stuck_beside(scene, [] if search.over else rows, frequency, regime, others),
-            ],
-        ),
+        orbits=_orbits(points, empty, others, stuck),
+    )
+
+
+def _orbits(
+    points: Sequence[Sample | None], empty: Curve, others: NotUnique, stuck: Sequence[Stuck]
+) -> Orbits:
+    """What only exact curves have; stuck : motions beside the points, other than those of families."""
+    return Orbits(
+        closure_error=_numbers(points, "residual"),
+        sweep=np.full(len(points), "", dtype="<U4"),
+        repeats=_numbers(points, "repeats"),
+        cycle_least=_cycles(points, "least", empty),
+        cycle_greatest=_cycles(points, "greatest", empty),
+        family_least=others.least,
+        family_greatest=others.greatest,
+        family_complete=others.whole,
+        stuck=[*others.beside, *stuck],
     )
 
 
