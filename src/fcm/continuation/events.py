@@ -164,7 +164,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
 def located(front: Front, kind: int, k: int, limit: float, mark: int, looks: Looks | None) -> list[Found]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     if looks is not None:
-        look = looks.turn(None if kind == FOLD else k)
+        look = looks.extreme(None if kind == FOLD else k)
         return [seen(front, look, mark)] if look.at <= limit else []
     at = root_within(front, Sought(kind, k))
     return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []

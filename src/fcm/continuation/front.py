@@ -60,7 +60,7 @@ class Front(Step):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def go(self, step: cython.double) -> cython.bint:
-        """Find the place there at a step; missed and turn say how well it was predicted."""
+        """Find the place there at a step; missed and cosine say how well it was predicted."""
         i: cython.Py_ssize_t
         missed: cython.double = 0.0
         self.prediction.put(self.here, self.newton.scale, step, self.guess)
@@ -73,7 +73,7 @@ class Front(Step):
         # shorter steps would miss the curve by as much where rounding made the miss
         missed = max(sqrt(missed) - ROUNDINGS * self.newton.unsure, 0.0)
         self.step, self.missed = step, missed / step
-        self.turn = along(self.here.tangent, self.newton.tangent)
+        self.cosine = along(self.here.tangent, self.newton.tangent)
         self.record(self.there, True, True)
         self.there.incline(self.problem, self.newton.scale, self.guess)
         return True

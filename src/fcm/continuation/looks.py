@@ -47,8 +47,8 @@ class Looks:
         self.front, self.scale = front, np.array(front.newton.scale)
         self.known = [self._look(0.0, front.here), self._look(front.step, front.there)]
 
-    def turn(self, output: int | None) -> Look:
-        """Where an output is greatest, or the parameter turns back, as near as the curve is found."""
+    def extreme(self, output: int | None) -> Look:
+        """Where an output is greatest, or without one the parameter, as near as the curve is found."""
         low, high = self._between(output)
         sense, steep = self._slope(low, output), self._bend(low, high, output)
         upper, again, better = False, 0, True

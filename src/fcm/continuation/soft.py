@@ -104,9 +104,9 @@ class Soft:
         front = self.front
         same = front.there.orientation == front.here.orientation
         if front.step <= SHARP:
-            return follower.good() and (same or front.turn > STRAIGHT)
+            return follower.good() and (same or front.cosine > STRAIGHT)
         near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
-        return not self.turned_twice() and (follower.good() or (same and near and front.turn > GENTLY))
+        return not self.turned_twice() and (follower.good() or (same and near and front.cosine > GENTLY))
 
     def turned_twice(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""

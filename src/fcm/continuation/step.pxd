@@ -9,7 +9,7 @@ cdef class Step:
     cdef public Place there
     cdef public Place between
     cdef public double step
-    cdef public double turn
+    cdef public double cosine
     cdef double[::1] guess
     cpdef bint put(self, double at, bint margins, bint outputs) except -1
     cpdef bint near(self, double at, double[::1] guess) except -1

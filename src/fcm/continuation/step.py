@@ -23,14 +23,14 @@ else:
 class Step:
     """From `here` to `there`, which is `step` long; `put` and others find the place `between`.
 
-    turn: cosine of the angle by which the direction there differs from that here.
+    cosine: that of the angle by which the direction there differs from that here.
     """
 
     def __init__(self, problem: Problem) -> None:
         self.problem, self.newton = problem, Newton(problem)
         self.here, self.there, self.between = Place(problem), Place(problem), Place(problem)
         self.guess = np.zeros(problem.unknowns + 1)
-        self.step, self.turn = 0.0, 1.0
+        self.step, self.cosine = 0.0, 1.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -89,7 +89,7 @@ class Step:
         there; the shift of the step stays."""
         if not self.put(at, False, False) or not self.sharpen(True, True):
             return False
-        self.step, self.turn = at, along(self.here.tangent, self.between.tangent)
+        self.step, self.cosine = at, along(self.here.tangent, self.between.tangent)
         self.between.shift = self.there.shift
         self.there, self.between = self.between, self.there
         return True
@@ -126,8 +126,8 @@ class Step:
     @cython.cfunc
     @cython.exceptval(check=False)
     def spread(self) -> cython.double:
-        """Length in the plane of here that a length along the tangent there has: the cosine of the turn."""
-        return self.turn if self.turn > FLAT else FLAT
+        """Length in the plane of here that a length along the tangent there has: the cosine."""
+        return self.cosine if self.cosine > FLAT else FLAT
 
     @cython.cfunc
     @cython.exceptval(check=False)

@@ -18,7 +18,7 @@ else:
     from fcm.continuation.margins import crosses
 
 SHARP = cython.declare(cython.double, sharp.SHARP)
-COSINE = cython.declare(cython.double, 0.94)  # otherwise by at most 20 degrees
+COSINE = cython.declare(cython.double, 0.94)  # of the angle that a longer step may turn by: 20 degrees
 FAR = cython.declare(cython.double, 0.5)  # of its length, by which a step may miss the curve
 AIM = cython.declare(cython.double, 0.2)  # [rad] the turn that a step aims at
 MISS = cython.declare(cython.double, 0.03)  # of its length, by which a step aims to miss the curve
@@ -37,8 +37,8 @@ SHARE = cython.declare(cython.double, 0.9)  # of the next step that all aims all
 def good(front: Front) -> cython.bint:
     """Whether the curve was where it was predicted, and went on as it did."""
     if front.step <= SHARP:
-        return front.turn > 0.0
-    return kept(front) and front.missed < FAR and front.turn > COSINE and unforeseen(front) < MOST * UNEVEN
+        return front.cosine > 0.0
+    return kept(front) and front.missed < FAR and front.cosine > COSINE and unforeseen(front) < MOST * UNEVEN
 
 
 @cython.cfunc
@@ -59,7 +59,7 @@ def clear(front: Front, step: cython.double) -> cython.bint:
 @cython.exceptval(-1, check=False)
 def next_step(front: Front, longest: cython.double, hasty: cython.bint) -> cython.double:
     """Length of the step that follows a good one."""
-    growth: cython.double = AIM / max(acos(min(front.turn, 1.0)), 1e-9)
+    growth: cython.double = AIM / max(acos(min(front.cosine, 1.0)), 1e-9)
     growth = min(growth, sqrt(MISS / max(front.missed, 1e-9)), UNEVEN / max(unforeseen(front), 1e-9))
     return min(front.step * min(max(SHARE * growth, SHRINK), HASTE if hasty else GROW), longest)
 

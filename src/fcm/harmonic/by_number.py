@@ -168,9 +168,9 @@ def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
     for extreme in (samples.argmax(axis=0), samples.argmin(axis=0)):
         at = theta[extreme]
         for _ in range(4):  # Newton's method, as the extremes themselves are refined
-            turn = 1j * harmonics[:, None] * np.exp(1j * np.outer(harmonics, at)) * now
-            bend = (1j * harmonics[:, None] * turn).sum(axis=0).real
-            at = at - np.where(bend != 0.0, turn.sum(axis=0).real / np.where(bend != 0.0, bend, 1.0), 0.0)
+            slope = 1j * harmonics[:, None] * np.exp(1j * np.outer(harmonics, at)) * now
+            bend = (1j * harmonics[:, None] * slope).sum(axis=0).real
+            at = at - np.where(bend != 0.0, slope.sum(axis=0).real / np.where(bend != 0.0, bend, 1.0), 0.0)
         rates.append((np.exp(1j * np.outer(harmonics, at)) * X).sum(axis=0).real)
     growth: FloatArray = 0.5 * (rates[0] - rates[1])
     return growth
