@@ -5,6 +5,7 @@ cdef class Forced(Series):
     cdef void refresh(self, Py_ssize_t slot) noexcept nogil
     cdef void reach(self, Py_ssize_t slot, Py_ssize_t last) noexcept nogil
     cdef void _one_step(self, Py_ssize_t slot) noexcept nogil
+    cdef void _add_term(self, Py_ssize_t slot, int j, double power, double slope) noexcept nogil
     cdef void _sized(self, Py_ssize_t slot) noexcept nogil
     cdef void _double(self, Py_ssize_t slot, Py_ssize_t j) noexcept nogil
     cdef void free(self, Py_ssize_t slot, Py_ssize_t j, double[:, ::1] y, Py_ssize_t k) noexcept nogil

@@ -55,38 +55,14 @@ class Forced(Series):
 
         The j-th derivative of the forces by time grows as omega**j; what each does is known with the flow.
         """
-        n: cython.Py_ssize_t = self.linear
-        i: cython.Py_ssize_t
         j: cython.int
-        h: cython.double = self.step[slot]
-        x: cython.double = self.omega * h
-        square: cython.double = self.omega * self.omega
-        new: cython.double[:, ::1] = self.forced[slot, 0]
-        first: cython.double
-        other: cython.double
-        grade: cython.double
-        slope: cython.double
-        rate: cython.double
+        x: cython.double = self.omega * self.step[slot]
         size: cython.double = 1.0
         power: cython.double = 1.0
         before: cython.double = 0.0
-        for i in range(n):
-            new[0, i] = new[1, i] = new[2, i] = new[3, i] = 0.0
+        self.forced[slot, 0, :, :] = 0.0
         for j in range(_ORDER):
-            slope, rate = j * before * h, 2.0 * self.omega * power
-            for i in range(n):
-                first = self.pushed[slot, 0, j, i] + square * self.pushed[slot, 2, j, i]
-                other = self.pushed[slot, 1, j, i] + square * self.pushed[slot, 3, j, i]
-                grade = slope * first + rate * self.pushed[slot, 2, j, i]
-                new[j % 2, i] += power * first
-                new[2 + j % 2, i] += grade
-                grade = slope * other + rate * self.pushed[slot, 3, j, i]
-                if j % 2:
-                    new[0, i] -= power * other
-                    new[2, i] -= grade
-                else:
-                    new[1, i] += power * other
-                    new[3, i] += grade
+            self._add_term(slot, j, power, j * before * self.step[slot])
             size *= x / (j + 1)
             if size < NOTHING * x:
                 return
@@ -94,6 +70,34 @@ class Forced(Series):
             power *= -x if j % 2 else x
             if j % 2:
                 before = -before
+
+    @cython.cfunc
+    @cython.nogil
+    @cython.exceptval(check=False)
+    def _add_term(
+        self, slot: cython.Py_ssize_t, j: cython.int, power: cython.double, slope: cython.double
+    ) -> cython.void:
+        """Add what the j-th derivative does, power times, and by omega, of which that is the slope."""
+        i: cython.Py_ssize_t
+        square: cython.double = self.omega * self.omega
+        rate: cython.double = 2.0 * self.omega * power
+        first: cython.double
+        other: cython.double
+        grade: cython.double
+        new: cython.double[:, ::1] = self.forced[slot, 0]
+        for i in range(self.linear):
+            first = self.pushed[slot, 0, j, i] + square * self.pushed[slot, 2, j, i]
+            other = self.pushed[slot, 1, j, i] + square * self.pushed[slot, 3, j, i]
+            grade = slope * first + rate * self.pushed[slot, 2, j, i]
+            new[j % 2, i] += power * first
+            new[2 + j % 2, i] += grade
+            grade = slope * other + rate * self.pushed[slot, 3, j, i]
+            if j % 2:
+                new[0, i] -= power * other
+                new[2, i] -= grade
+            else:
+                new[1, i] += power * other
+                new[3, i] += grade
 
     @cython.cfunc
     @cython.nogil
