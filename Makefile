@@ -238,7 +238,7 @@ clean:  ## remove what was made, but for the environment
 
 $(VENV)/installed: pyproject.toml $(KERNELS)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'setuptools>=77' --editable .  # that for make kernels
 	@touch $@
 
 $(OTHERS)/pyharm/installed:
