@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from fcm.cli import exact, nonlinear_mode, of_peaks, schedule, track
+from fcm.cli import exact, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
@@ -21,7 +21,7 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
     """
     response = _response(messages, scene, asked, {"jobs": asked.jobs, "place": place, "keep": keep})
     if asked.sensitivity:
-        of_peaks.added(messages, response, scene)
+        sensitivity.added(messages, response, scene)
     if scene.schedule and asked.level is None and asked.track is None:
         response.histories = schedule.simulated(messages, scene, response)
     return response

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli import balance, cluster, exact, nonlinear_mode, of_peaks, schedule, track
+from fcm.cli import balance, cluster, exact, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.calculation import calculated
 from fcm.cli.files import check_different
 from fcm.cli.messages import Messages, pass_messages
@@ -77,7 +77,7 @@ def _check_options(asked: Asked) -> None:
     balance.check_options(asked.harmonics, asked.accuracy, method, asked.table)
     if asked.table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
-    of_peaks.check_options(asked.sensitivity, method, level, mode)
+    sensitivity.check_options(asked.sensitivity, method, level, mode)
     files = {"-o": asked.output, "--csv": asked.csv, "--history-csv": asked.history_csv}
     if asked.resume and not any(files.values()):
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")

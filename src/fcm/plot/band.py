@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.curve_names import name_at_side
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
-from fcm.plot.place import name_at_side
 from fcm.plot.read import LEVEL, DrawnResponse, wide
 from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of

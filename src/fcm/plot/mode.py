@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
-from fcm.plot.place import name_at_side
 from fcm.plot.read import FloatArray, floats, opened, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from fcm.plot.colour_bar import MOST_NAMES, colour_bar
+from fcm.plot.curve_names import label_at_peaks
 from fcm.plot.dof import column_of
 from fcm.plot.error_panel import (
     HEIGHT,
@@ -18,7 +19,6 @@ from fcm.plot.error_panel import (
 )
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
-from fcm.plot.place import label_at_peaks
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours

@@ -16,8 +16,8 @@ import numpy as np
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
 from fcm.harmonic.believed import BELIEVED
+from fcm.harmonic.believed_levels import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.linear_contacts import highest
-from fcm.harmonic.raised import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
