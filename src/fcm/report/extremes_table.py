@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from fcm.cli.columns import short
 from fcm.report.page import Section, Table
 
 COLUMNS = ("scene", "points", "time [s]", "residual", "table", "exact", "estimate", "condition", "outcome")
@@ -50,12 +51,8 @@ def _row(case: Case) -> tuple[str, ...]:
     compared = [point for point in case["exact"] if point["difference"] is not None]
     outcome = "passes" if case["complete"] else "passes, says why it stops"
     return (
-        case["name"], str(case["points"]), f"{case['seconds']:.2f}", _short(case["residual"]),
-        _short(case["table"]), _short(max((point["difference"] for point in compared), default=None)),
-        _short(max((point["truncation"] for point in compared), default=None)),
-        _short(case["condition"]), outcome if case["passes"] else "FAILS",
+        case["name"], str(case["points"]), f"{case['seconds']:.2f}", short(case["residual"]),
+        short(case["table"]), short(max((point["difference"] for point in compared), default=None)),
+        short(max((point["truncation"] for point in compared), default=None)),
+        short(case["condition"]), outcome if case["passes"] else "FAILS",
     )  # fmt: skip
-
-
-def _short(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1e}"
