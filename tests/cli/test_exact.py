@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import netCDF4
@@ -157,8 +158,17 @@ def test_a_time_limit_ends_a_run_as_ctrl_c_does(fcm, scene):
     assert "kept in a.nc.unfinished: continue with --resume" in run.err
     (curve,) = json.loads(run.out)["curves"]
     assert not curve["complete"] and curve["points"] > 0 and curve["reason"].startswith("interrupted at ")
+    shutil.copy("a.nc", before := "before.nc")
     again = json.loads(fcm(*args, "--time-limit", "1", "--resume").out)["curves"][0]
-    assert again["points"] > curve["points"]
+    assert again["points"] > curve["points"] == points(before)
+    assert points("a.nc") == again["points"]
+    assert fcm(*args, "--time-limit", "0.001", "--resume").code == 3 and points("a.nc") == again["points"]
+
+
+def points(path):
+    """That a file has."""
+    with netCDF4.Dataset(path) as data:
+        return int(np.isfinite(data["frequency"][:].filled(np.nan)).sum())
 
 
 @pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "x"])

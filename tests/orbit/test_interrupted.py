@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.orbit import sample
+from fcm.orbit import branch, sample
+from fcm.orbit.doubled import Doubled
 from fcm.response import exact_work, not_unique
 from fcm.response.groups import KINDS
 from fcm.results.orbits import Stuck
@@ -93,6 +94,36 @@ def test_after_an_interruption_no_other_motions_are_sought(scene, searched):
     curve = curve_of(scene, progress=interrupted_after(3))
     assert curve.points > 0 and curve.reason.startswith("interrupted at 1.")
     assert searched.times == 0
+
+
+def test_of_a_run_that_goes_on_and_is_stopped_at_once_there_is_all_that_was(scene, monkeypatch, tmp_path):
+    """Before it has come to the curve again that was begun: nothing of that is lost."""
+    first = curve_of(scene, keep=tmp_path / "kept", progress=interrupted_after(5))
+    monkeypatch.setattr(branch, "starts", stopped)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True)
+    assert first.points > 0 and again.reason == first.reason
+    np.testing.assert_array_equal(again.amplitude, first.amplitude)
+
+
+def test_so_there_is_of_motions_of_two_periods(monkeypatch, tmp_path):
+    scene = between(fcm.load_scene(SCENES / "irregular.toml"), 1.2, 1.25)
+    begins, begun = Doubled.begins, []
+
+    def progress(_share, _text):
+        if begun:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(Doubled, "begins", lambda problem: begun.append(begins(problem)))
+    first = curve_of(scene, keep=tmp_path / "kept", progress=progress, periods=2)
+    assert set(first.orbits.repeats[np.isfinite(first.orbits.repeats)]) == {1.0, 2.0}
+    monkeypatch.setattr(branch, "starts", stopped)
+    again = curve_of(scene, keep=tmp_path / "kept", resume=True, periods=2)
+    np.testing.assert_array_equal(again.amplitude, first.amplitude)
+    np.testing.assert_array_equal(again.orbits.repeats, first.orbits.repeats)
+
+
+def stopped(*_):
+    raise KeyboardInterrupt
 
 
 def test_of_peaks_alone_those_that_were_found_are_kept(monkeypatch):

@@ -82,11 +82,17 @@ class Outputs:
         return [(path, write) for path, write in files if path is not None]
 
     def _write(self, response: Response, path: Path, write: Callable[[Response, Path], None]) -> None:
-        """Write a file; a part of the curves does not take the place of what an earlier run has finished."""
-        if response.interrupted and self.checkpoint is not None and path.exists():
-            self.messages.info(f"{plain(path)} is left as it was")
-            return
+        """Write a file; a part does not take the place of what an earlier run has finished, nor of more."""
+        part = self.checkpoint if response.interrupted else None
+        points = sum(curve.points for curve in response.curves)
+        if part is not None and path.exists():
+            before = part.written(path)
+            if before is None or points < before:
+                self.messages.info(f"{plain(path)} is left as it was")
+                return
         write(response, path)
+        if part is not None:
+            part.wrote(path, points)
         self.messages.info(f"wrote {plain(path)}")
 
     def _say_kept(self, what: str) -> None:

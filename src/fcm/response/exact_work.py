@@ -138,26 +138,24 @@ class _Followed:
             If a contact that is held would not have kept its state.
         """
         legs = Legs(scene.frequency_range, self.report, self.clock.look, _watched if scene.held else None)
-        problem = OrbitProblem(scene)
-        groups, begun = list[OrbitBranches](), [(problem, 0)]
+        problems, groups = [OrbitProblem(scene)], list[OrbitBranches]()
         try:
-            paths, without = explore(problem, legs, legs.look)
+            paths, without = explore(problems[0], legs, legs.look)
             reason = incomplete(scene, paths, without)
-            groups.append(OrbitBranches(problem, paths))
-            while 2 * problem.repeats <= self.periods and not reason:
-                problem = Doubled(problem)
-                begun.append((problem, len(legs.finished)))
+            groups.append(OrbitBranches(problems[0], paths))
+            while 2 * problems[-1].repeats <= self.periods and not reason:
+                problem = Doubled(problems[-1])
+                problems.append(problem)
                 paths, lost = doubled_paths(problem, groups[-1].points, legs, legs.look)
                 reason = incomplete(scene, paths, "") if paths else ""
                 reason = reason or (_without(problem, lost) if lost else "")
                 groups.append(OrbitBranches(problem, paths, groups[-1]))
         except (KeyboardInterrupt, TimeOver) as stop:
             legs.keep()
-            paths, ends = legs.paths(), [*(first for _, first in begun[1:]), None]
-            groups = [
-                OrbitBranches(one, paths[first:end], cut_off=True)
-                for (one, first), end in zip(begun, ends, strict=True)
-            ]
+            while legs.paths(further := Doubled(problems[-1])):  # an earlier run had come to them
+                problems.append(further)
+            groups = [OrbitBranches(one, legs.paths(one), cut_off=True) for one in problems]
+            paths = [path for group in groups for path in group.paths]
             reason = _cut_off(stop, self.clock.limit) + reached(scene, paths)
         return groups, reason + self.stiff if reason else ""
 

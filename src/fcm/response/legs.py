@@ -25,8 +25,17 @@ class Leg:
     """A curve from one start in one direction: whole, or as far as it has come."""
 
     number: int  # in the order in which they are followed
+    held: tuple[int, ...]  # the contacts that were held
+    repeats: int  # periods after which the motions repeat
     path: Path | None
     stage: Stage | None
+
+    def there(self) -> Path:
+        """The points that there are, as those of a curve that is cut off."""
+        if self.path is not None:
+            return replace(self.path, status=Status.INTERRUPTED)
+        assert self.stage is not None
+        return self.stage.path(Status.INTERRUPTED)
 
 
 LEGS = (Leg, Path, Stage, Status, Kept, Points, Mark)  # what is saved consists of these
@@ -79,13 +88,11 @@ class Legs:
     ) -> None:
         self.report, self.low, self.high = report, *span
         self.look, self.passing = look, passing
-        self.finished: list[Path] = []
-        self._last: Stage | None = None
+        self.number = 0  # of the next one
+        self._begun: tuple[OrbitProblem, Stage] | None = None
         self._seen, self._took = time.monotonic(), 0.0
-        self._saved: dict[int, Leg] = {}
-        for leg in report.saved:
-            if isinstance(leg, Leg):
-                self._saved[leg.number] = leg  # the latest of each
+        saved = (leg for leg in report.saved if isinstance(leg, Leg))
+        self._known = {_key(leg): leg for leg in saved}  # the latest of each
 
     def __call__(
         self,
@@ -98,31 +105,41 @@ class Legs:
         _progress: object = None,
     ) -> Path:
         """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
-        saved = self._saved.get(len(self.finished))
-        if saved is not None and _unknowns(saved) != start.size:  # with other contacts held than now
-            saved = None
-        if saved is not None and saved.path is not None:
-            path = saved.path
-        else:
-            stage = None if saved is None else saved.stage
-            watch = partial(self._watch, problem, float(start[-1]))
-            if isinstance(problem, Doubled):
-                problem.begins()
-            try:
-                path = follow(problem, start, span, forward, max_step, stations, None, stage, watch)
-            except _Ended:
-                assert self._last is not None
-                path = self._last.path(Status.COMPLETE)
-        self._last = None
-        self.finished.append(path)
+        saved = self._known.get(_key(self._leg(problem)))
         if saved is None or saved.path is None:
-            self.report.save(Leg(len(self.finished) - 1, path, None))
-        return path
+            stage = None if saved is None else saved.stage
+            path = self._followed(problem, start, span, forward, max_step, stations, stage)
+            saved = self._leg(problem, path)
+            self._save(saved)
+        self._begun = None
+        self.number += 1
+        assert saved.path is not None
+        return saved.path
+
+    def _followed(
+        self,
+        problem: OrbitProblem,
+        start: FloatArray,
+        span: tuple[float, float],
+        forward: bool,
+        max_step: float,
+        stations: Sequence[float],
+        stage: Stage | None,
+    ) -> Path:
+        """The curve from its start, or from a stage of it on."""
+        watch = partial(self._watch, problem, float(start[-1]))
+        if isinstance(problem, Doubled):
+            problem.begins()
+        try:
+            return follow(problem, start, span, forward, max_step, stations, None, stage, watch)
+        except _Ended:
+            assert self._begun is not None
+            return self._begun[1].path(Status.COMPLETE)
 
     def _watch(self, problem: OrbitProblem, begin: float, stage: Stage) -> None:
         if isinstance(problem, Doubled) and problem.ended(stage.z):
             raise _Ended
-        self._last = stage
+        self._begun = problem, stage
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
@@ -133,22 +150,33 @@ class Legs:
 
     def keep(self) -> None:
         """Save the curve that is being followed as far as it is there."""
-        if self._last is None:
+        if self._begun is None:
             return
         begin = time.monotonic()
-        self.report.save(Leg(len(self.finished), None, self._last))
+        self._save(self._leg(self._begun[0], stage=self._begun[1]))
         self._seen = time.monotonic()
         self._took = self._seen - begin
 
-    def paths(self) -> list[Path]:
-        """What there is: whole curves, and the one that was interrupted."""
-        begun = [] if self._last is None else [self._last.path(Status.INTERRUPTED)]
-        found = [path for path in (*self.finished, *begun) if path.z.shape[0]]
-        return [replace(path, status=Status.INTERRUPTED) for path in found]
+    def paths(self, problem: OrbitProblem) -> list[Path]:
+        """What is saved of the curves of a problem, those that an earlier run came to among them."""
+        held, repeats = _kind(problem)
+        legs = [leg for leg in self._known.values() if (leg.held, leg.repeats) == (held, repeats)]
+        found = [leg.there() for leg in sorted(legs, key=lambda leg: leg.number)]
+        return [path for path in found if path.z.shape[0]]
+
+    def _leg(self, problem: OrbitProblem, path: Path | None = None, stage: Stage | None = None) -> Leg:
+        """The one that is followed now."""
+        return Leg(self.number, *_kind(problem), path, stage)
+
+    def _save(self, leg: Leg) -> None:
+        self._known[_key(leg)] = leg
+        self.report.save(leg)
 
 
-def _unknowns(leg: Leg) -> int:
-    """The numbers of a point of a leg."""
-    if leg.path is not None:
-        return int(leg.path.z.shape[1])
-    return 0 if leg.stage is None else leg.stage.z.size
+def _key(leg: Leg) -> tuple[int, tuple[int, ...], int]:
+    return leg.number, leg.held, leg.repeats
+
+
+def _kind(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
+    """The contacts that are held, and the periods: with others it is another curve."""
+    return tuple(one.place for one in problem.scene.held), problem.repeats

@@ -7,8 +7,9 @@ keeps what is finished; `fingerprint` says of what the results depend.
 from typing import TYPE_CHECKING
 
 from fcm.on_demand import on_demand
-from fcm.run.checkpoint import Checkpoint, CheckpointError, Results
+from fcm.run.checkpoint import Checkpoint, Results
 from fcm.run.fingerprint import fingerprint
+from fcm.run.lock import CheckpointError
 from fcm.run.places import Factory, Gone, Here, Place, Threads
 from fcm.run.sweep import Outcome, place_for, place_of, sweep
 from fcm.run.work import Compute, Interrupted, Lost, Progress, Report

@@ -1,41 +1,29 @@
 """Finished work of a run, in a file beside its output until that is written.
 
-The file is opened in place, never emptied, and locked as long as its process lives, so that no second run
-works on the same output. Every record says for itself of what it is (`fcm.run.records`).
+The file is never emptied, and locked, so that no second run works on the same output (`fcm.run.lock`). Every
+record says for itself of what it is (`fcm.run.records`).
 """
 
 from __future__ import annotations
 
-import errno
 import os
 import pickle
 import platform
-import stat
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from fcm.run.lock import LENGTH, TITLE, CheckpointError, locked, same
 from fcm.run.records import Record, packed, unpacked, whole
 from fcm.signals import undisturbed
 
-try:
-    import fcntl
-except ImportError:  # a system without them: two runs on one output are then not refused
-    fcntl = None  # type: ignore[assignment]
-
-TITLE = b"fcm unfinished 2, process "
-LENGTH = 64  # bytes before the first record
 MOST_ASIDE = 1000  # files moved aside for one output; then it is refused
 
 _STATE = -1  # and less are the numbers of records with states of batch 0 and more
+_WRITTEN = bytes(32)  # in the place of a fingerprint: how many points of all this a file has, and its name
 
 Fits = Callable[[int, Any], bool]  # whether results can be those of a batch
-
-
-class CheckpointError(Exception):
-    """The output cannot be worked on; the message says why."""
 
 
 class Results:
@@ -75,7 +63,7 @@ class Checkpoint:
         self.path, self.failed, self.used, self.spent = path, False, False, False
         self._file = -1
         try:
-            self._file = _locked(path)
+            self._file = locked(path)
             if os.fstat(self._file).st_size and (not resume or not self._known()):
                 self._empty(
                     "without --resume it is not continued" if self._known() else "it is not of this fcm"
@@ -93,7 +81,7 @@ class Checkpoint:
         found, others = _Kept(self, mark), 0
         for record in whole(self._file, os.fstat(self._file).st_size, LENGTH):
             if record.fingerprint != mark:
-                others += 1
+                others += record.fingerprint != _WRITTEN
                 continue
             results = unpacked(record.payload, kinds)
             if record.number < 0 and results is not None:
@@ -121,6 +109,17 @@ class Checkpoint:
                 stacklevel=2,
             )
 
+    def written(self, output: Path) -> int | None:
+        """How many points an output has of what is kept here; None if it has nothing of it."""
+        records = whole(self._file, os.fstat(self._file).st_size, LENGTH)
+        notes = (one for one in records if one.fingerprint == _WRITTEN)
+        own = [one.number for one in notes if unpacked(one.payload, ()) == output.name]
+        return own[-1] if own else None
+
+    def wrote(self, output: Path, points: int) -> None:
+        """An output is written, with so many points of what is kept here."""
+        self.append(_WRITTEN, points, output.name)
+
     def done(self) -> None:
         """The output is written: nothing is to be kept any more."""
         self.spent = True
@@ -130,7 +129,7 @@ class Checkpoint:
         """Let go of the file; one that holds nothing is removed."""
         if self._file < 0:
             return
-        if (self.spent or self.empty) and _same(self._file, self.path):
+        if (self.spent or self.empty) and same(self._file, self.path):
             self.path.unlink(missing_ok=True)
         os.close(self._file)
         self._file = -1
@@ -163,7 +162,7 @@ class Checkpoint:
         self.path.rename(aside)
         warnings.warn(f"{self.path}: {reason}; moved to {aside.name}", stacklevel=3)
         os.close(self._file)
-        self._file = _locked(self.path)
+        self._file = locked(self.path)
 
 
 class _Kept(Results):
@@ -182,53 +181,6 @@ class _Kept(Results):
 def unfinished(output: Path) -> Path:
     """Where the work for an output is kept meanwhile."""
     return output.with_name(f"{output.name}.unfinished")
-
-
-def _locked(path: Path) -> int:
-    """The file, made if there is none, open and locked by this process."""
-    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
-    while True:
-        try:
-            file = os.open(path, flags | getattr(os, "O_CLOEXEC", 0), 0o666)
-        except OSError as error:
-            if error.errno in (errno.ELOOP, errno.EISDIR, errno.ENXIO):
-                raise CheckpointError(f"{path}: {_NO_FILE}") from None
-            raise
-        try:
-            if not stat.S_ISREG(os.fstat(file).st_mode):
-                raise CheckpointError(f"{path}: {_NO_FILE}")
-            _lock(file, path)
-            if _same(file, path):  # and not removed by the one who had it, just before
-                return file
-        except BaseException:
-            os.close(file)
-            raise
-        os.close(file)
-
-
-_NO_FILE = "it is a link or no file, and finished work is kept under that name; remove it"
-
-
-def _lock(file: int, path: Path) -> None:
-    if fcntl is None:
-        return
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        if error.errno not in (errno.EACCES, errno.EAGAIN):
-            return  # a file system without locks
-        signed = os.pread(file, LENGTH, 0).removeprefix(TITLE).decode("ascii", "replace").strip()
-        raise CheckpointError(
-            f"{path.name.removesuffix('.unfinished')}: process {signed or 'another'} is at work on it; "
-            "wait for it, end it, or write to another file"
-        ) from None
-
-
-def _same(file: int, path: Path) -> bool:
-    with suppress(OSError):
-        here = os.stat(path, follow_symlinks=False)  # noqa: PTH116
-        return os.path.samestat(here, os.fstat(file))
-    return False
 
 
 def _write(file: int, data: bytes) -> None:
