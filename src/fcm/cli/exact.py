@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 MOST_PERIODS = 8  # that --periods can ask for
 MOST_FREQUENCIES = 100_000  # that can be asked for; each takes milliseconds at least
+MOST_NAMED = 3  # motions, and degrees of freedom, in a sentence
 FORMS = "give a frequency, as in 1.2, or a range FROM:TO:COUNT, as in 0.7:1.7:41"
 _DOES = {"E": "closed all through", "S": "open all through"}  # without slip; else its states are named
 OF_NO_USE = {  # with --method exact, and why
@@ -101,6 +102,7 @@ def remarks(response: Response) -> list[str]:
         *_irregular(found),
         *_not_unique(found),
         *_unsure(found),
+        *_unreached(response),
         *_stuck(response),
     ]
 
@@ -175,6 +177,26 @@ def _untold(orbits: Orbits) -> int:
 
     none = np.isnan(orbits.family_greatest).all(axis=1)
     return int(((orbits.family_complete == 0.0) & none).sum())
+
+
+def _unreached(response: Response) -> list[str]:
+    """How many stable motions no sweep came to, and the first few of them."""
+    from fcm.units import in_unit
+
+    found = [(curve, k) for curve in response.curves if curve.orbits for k in curve.orbits.unreached]
+    if not found:
+        return []
+    named = []
+    for curve, k in found[:MOST_NAMED]:
+        swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
+        where = f"{float(in_unit(curve.frequency[k], response.frequency_unit)):.6g} {response.frequency_unit}"
+        sizes = zip(response.dofs[:MOST_NAMED], curve.amplitude[k], strict=False)
+        named.append(f"{swept}{where} with " + ", ".join(f"{dof} {size:.5g}" for dof, size in sizes))
+    more = "; ..." if len(found) > MOST_NAMED else ""
+    return [
+        f"stable motions that neither sweep comes to (points without a sweep): {len(found)}, at "
+        f"{'; at '.join(named)}{more}"
+    ]
 
 
 def _stuck(response: Response) -> list[str]:

@@ -19,6 +19,7 @@ from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.exact_work import ExactWork
 from fcm.response.legs import LEGS
 from fcm.response.search import FOUND
+from fcm.response.unreached import Unreached
 from fcm.response.visit import STATES
 from fcm.response.wanted import ResponseError
 from fcm.results.result import Response
@@ -58,7 +59,8 @@ def trace_exact(
         From `fcm.load_scene`; one curve for each combination of its swept values.
     at : sequence of float, optional
         Frequencies in the scene's unit. The steady motion is visited there by an upward and then by a
-        downward sweep, each point continuing the last; without it the curve is followed through its range.
+        downward sweep, each point continuing the last, and then whatever other stable motion the solutions
+        of the balance lead to; without it the curve is followed through its range.
     progress : optional
         Called now and then with the finished fraction and a text.
     jobs, place, keep, resume
@@ -128,7 +130,7 @@ class _Run:
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:
         mark = fingerprint(METHOD, replace(self.work, limit=None))
         batches = [(one,) for one in scenes]
-        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, *LEGS, *FOUND))
+        curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, Unreached, *LEGS, *FOUND))
         contacts = tuple(contact.name for contact in scenes[0].contacts)
         return Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
 

@@ -22,6 +22,7 @@ from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.search import Search
 from fcm.response.trace import traced_curve as balance_of
+from fcm.response.unreached import unreached
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
@@ -204,9 +205,10 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
     look = Clock(limit).look
-    visitor, reason = Visitor(around, look), ""
+    visitor, others, reason = Visitor(around, look), list[Sample](), ""
     try:
         visitor.run(at, report)
+        others.extend(unreached(around, at, visitor.points, report, look))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason = _cut_off(stop, limit) + where
@@ -214,4 +216,4 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
         reason = str(error)
     reason = reason or visitor.reason
     reason = reason + stiff if reason else ""
-    return _finished(partial(visited_curve, scene, visitor), reason, Search(look, report))
+    return _finished(partial(visited_curve, scene, visitor, others), reason, Search(look, report))

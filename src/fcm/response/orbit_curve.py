@@ -79,11 +79,13 @@ def curve_of_points(scene: Scene, points: Sequence[Sample], reason: str, search:
     return _curve(scene, apart[1:], reason, search)
 
 
-def visited_curve(scene: Scene, visitor: Visitor, reason: str, search: Search) -> Curve:
-    """The points at which sweeps were steady, in order; complete without a reason."""
-    curve = _curve(scene, visitor.points, reason, search, everywhere=True)
+def visited_curve(
+    scene: Scene, visitor: Visitor, others: Sequence[Sample], reason: str, search: Search
+) -> Curve:
+    """The points at which sweeps were steady, in order, then others; complete without a reason."""
+    curve = _curve(scene, [*visitor.points, *others], reason, search, everywhere=True)
     if curve.orbits is not None:
-        curve.orbits.sweep = np.array(visitor.sweep, dtype="<U4")
+        curve.orbits.sweep = np.array(visitor.sweep + [""] * len(others), dtype="<U4")
         curve.orbits.swept = Swept(visitor.jumps, [])
     return curve
 

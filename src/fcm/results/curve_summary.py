@@ -116,6 +116,7 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
         "repeats": sorted({int(x) for x in orbits.repeats[here]}),
         **({"period_doubles": in_unit(np.array(orbits.doubles), unit).tolist()} if orbits.doubles else {}),
         "not_unique": int(known.sum()),
+        **({"unreached": _unreached(curve, orbits.unreached, unit)} if orbits.unreached else {}),
         **({} if orbits.span is None else {"only": "peaks"}),
         **({"peak_range": families} if families else {}),
         **(
@@ -124,6 +125,19 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
             else {}
         ),
     }
+
+
+def _unreached(curve: Curve, points: list[int], unit: str) -> list[dict[str, Any]]:
+    """Stable motions at visited frequencies to which neither sweep came."""
+    frequency = in_unit(curve.frequency, unit)
+    return [
+        {
+            "frequency": float(frequency[k]),
+            "regime": curve.regime[k].tolist(),
+            "amplitude": dict(zip(curve.peaks, curve.amplitude[k].tolist(), strict=True)),
+        }
+        for k in points
+    ]
 
 
 def _stuck(one: Stuck, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:

@@ -56,7 +56,7 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
             "units": "1",
         },
     ),
-    "sweep": ((), {"long_name": "direction of the sweep that visited the point, if one did: up or down"}),
+    "sweep": ((), {"long_name": "direction of the sweep that came to the point, if one did: up or down"}),
 }
 
 LENGTHS = (

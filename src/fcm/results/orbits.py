@@ -27,7 +27,7 @@ class Orbits:
     """What only the points of an exact curve have; see `fcm.response.exact.trace_exact`."""
 
     closure_error: FloatArray  # (point,) by which a period fails to close, relative to the motion
-    sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if the points were visited by sweeps, else ''
+    sweep: npt.NDArray[np.str_]  # (point,) 'up' or 'down' if a sweep came to it, else ''
     repeats: FloatArray  # (point,) periods of the force after which the motion repeats, 0 if not after 8
     cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
     cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
@@ -43,3 +43,9 @@ class Orbits:
     )  # [rad/s] where the period doubles to what is not there
     stuck: list[Stuck] = field(default_factory=list)  # beside points of peaks, or visited ones
     span: tuple[float, float] | None = None  # [rad/s] where peaks, folds and jumps alone were sought
+
+    @property
+    def unreached(self) -> list[int]:
+        """The points at frequencies that were visited to which neither sweep came."""
+        visited = self.swept is not None and self.span is None
+        return np.flatnonzero(self.sweep == "").tolist() if visited else []

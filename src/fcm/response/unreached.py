@@ -1,0 +1,114 @@
+"""Stable motions at the frequencies that are visited, to which neither of the sweeps comes.
+
+A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
+single frequency one. All solutions of the balance that hang together with rest by the level of the forces
+lead to the others, and so do the motions in which contacts stick as the scene starts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.motion.errors import SimulationError
+from fcm.motion.state import State
+from fcm.motion.system import System
+from fcm.orbit.branch import shown
+from fcm.orbit.harmonic import balanced_states
+from fcm.orbit.linear_motion import started_states
+from fcm.orbit.periodic import Look, Orbit, shoot
+from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import Sample, sampled, settled
+from fcm.orbit.start import first_point
+from fcm.orbit.steady import NEAR, Steady, steady
+from fcm.run import Report
+from fcm.scene.model import FloatArray, Scene
+
+SAME = 1e-5  # difference of two periodic motions, relative to them, below which they are one
+
+
+@dataclass(frozen=True)
+class Unreached:
+    """What was found at one frequency."""
+
+    frequency: float  # [rad/s]
+    samples: tuple[Sample, ...]
+
+
+def unreached(
+    scene: Scene, frequencies: Sequence[float], visited: Sequence[Sample], report: Report, look: Look
+) -> Iterator[Sample]:
+    """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
+
+    look is called now and then.
+    """
+    saved = {one.frequency: one for one in report.saved if isinstance(one, Unreached)}
+    problem = OrbitProblem(scene)
+    for omega in frequencies:
+        found = saved.get(omega)
+        if found is None:
+            look()
+            report(1.0, f"other motions, {shown(scene, omega)}")
+            here = [one for one in visited if one.frequency == omega]
+            found = Unreached(omega, tuple(_beside(problem, omega, here, look)))
+            report.save(found)
+        yield from found.samples
+
+
+def _beside(problem: OrbitProblem, omega: float, known: list[Sample], look: Look) -> list[Sample]:
+    """Those at one frequency that are not known.
+
+    Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
+    there: unless one that repeats after several periods, or not at all, is known, as that may lead to it.
+    """
+    scene, found = problem.scene, list[Sample]()
+    for guess in (*balanced_states(scene, omega, look), *started_states(scene, omega)):
+        try:
+            orbit = shoot(System(scene, omega), guess, look)
+            one = _stable(problem, orbit, look)
+            several = any(sample.repeats != 1 for sample in (*known, *found))
+            if one is None and not several and (orbit is None or _left_by_turns(orbit)):
+                one = _simulated(problem, omega, guess, look)
+        except SimulationError:  # it cannot be computed, or is not determined
+            continue
+        if one is not None and not any(_same(one, other) for other in (*known, *found)):
+            found.append(one)
+    return found
+
+
+def _stable(problem: OrbitProblem, orbit: Orbit | None, look: Look) -> Sample | None:
+    """The point of a motion that is stable."""
+    if orbit is None or not orbit.stable:
+        return None
+    z = first_point(problem, orbit, look)
+    sample = sampled(problem, z, np.zeros(z.size))
+    return sample if sample.stable else None
+
+
+def _left_by_turns(orbit: Orbit) -> bool:
+    """Whether disturbances grow from side to side, or around; beside others two motions lie, each near."""
+    greatest = complex(orbit.multipliers[0])
+    return greatest.real < 0.0 or greatest.imag != 0.0
+
+
+def _simulated(problem: OrbitProblem, omega: float, guess: State, look: Look) -> Sample | None:
+    """The steady motion that one from a guess comes to."""
+    system = System(problem.scene, omega)
+    found = steady(system, guess, look)
+    if not isinstance(found, Steady):
+        return None
+    return settled(omega, found) if found.periods != 1 else _stable(problem, shoot(system, found.state), look)
+
+
+def _same(one: Sample, other: Sample) -> bool:
+    """Whether two motions are one; of those that do not repeat, whether they are as large."""
+    apart = np.abs(_reach(one) - _reach(other)).max(initial=0.0)
+    near = NEAR if 0 in (one.repeats, other.repeats) else SAME
+    return bool(apart <= near * np.abs(_reach(one)).max(initial=0.0))
+
+
+def _reach(one: Sample) -> FloatArray:
+    """The greatest and least displacements of a motion: (2, dof)."""
+    return np.stack((one.measure.greatest, one.measure.least))

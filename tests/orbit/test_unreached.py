@@ -1,0 +1,67 @@
+"""Stable motions at single frequencies to which no sweep comes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fcm import load_scene
+from fcm.motion import simulate
+from fcm.response.unreached import unreached
+from fcm.run import Report
+
+from ..interrupted import interrupted_after
+from ..motion.cases import yang
+from ..program import called
+from .curves import curve_of
+
+HARMONIC = Path(__file__).parent.parent / "harmonic" / "scenes"
+
+
+@pytest.mark.parametrize(
+    ("name", "omega", "marched"), [("isola", 1.22, (1.838, 18.047)), ("isola-stuck", 1.5, (0.6025, 12.680))]
+)
+def test_a_single_frequency_has_both_motions(name, omega, marched):
+    """The fundamentals of v that marches of the contact's law in small steps have come to."""
+    curve = curve_of(load_scene(HARMONIC / f"{name}.toml"), at=[omega])
+    assert curve.complete and curve.orbits.sweep.tolist() == ["up", "down", ""]
+    assert curve.fundamental[1:, 1] == pytest.approx(marched, rel=3e-4)
+    assert (curve.stable == 1.0).all()
+
+
+def test_single_frequencies_have_what_sweeps_from_far_come_to():
+    """Between the folds there are two, beyond them one, which is not told twice."""
+    curve = curve_of(yang(), at=[1.0, 1.21, 1.6])
+    swept = curve.amplitude[curve.frequency == 1.21]
+    alone = curve_of(yang(), at=[1.21]).amplitude[1:]
+    np.testing.assert_allclose(alone, swept, rtol=1e-8)
+    assert "" not in curve.orbits.sweep and curve_of(yang(), at=[1.0, 1.05]).points == 4
+
+
+def test_they_go_on_as_they_are():
+    scene = load_scene(HARMONIC / "isola.toml")
+    _, found = unreached(scene, [1.22], [], Report(lambda *_: None), lambda: None)
+    last = simulate(scene, 1.22, 200, found.state).measures(last=1)[0]
+    assert last.amplitude == pytest.approx(found.measure.amplitude, rel=1e-9)
+
+
+def test_a_run_that_is_interrupted_goes_on_to_the_same(tmp_path):
+    scene, at, keep = load_scene(HARMONIC / "isola.toml"), [1.2, 1.22], tmp_path / "kept"
+    whole = curve_of(scene, at=at)
+    first = curve_of(scene, at=at, keep=keep, progress=interrupted_after(5))
+    assert first.reason.startswith("interrupted at") and first.points < whole.points
+    again = curve_of(scene, at=at, keep=keep, resume=True)
+    np.testing.assert_array_equal(again.amplitude, whole.amplitude)
+    assert again.orbits.sweep.tolist() == ["up", "up", "down", "down", "", ""]
+
+
+def test_they_are_said():
+    run = called("respond", HARMONIC / "isola.toml", "--method", "exact", "--at", "1.22", "--json")
+    (curve,) = json.loads(run.out)["curves"]
+    (found,) = curve["unreached"]
+    assert found["frequency"] == 1.22 and found["regime"] == ["SEPEN"]
+    assert found["amplitude"]["v"] == curve["peak"]["v"]["amplitude"] > 17.0
+    assert "neither sweep comes to (points without a sweep): 1, at 1.22 rad/s with u 8.3" in run.err
