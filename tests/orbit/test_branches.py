@@ -15,12 +15,13 @@ from fcm.continuation import Status, follow
 from fcm.continuation.newton import Newton
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
-from fcm.orbit import OrbitProblem, harmonic_state, periodic
+from fcm.orbit import OrbitProblem, harmonic_state, periodic, sample
 from fcm.orbit.apart import passes
 from fcm.orbit.branch import explore, incomplete
 from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.held import held
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
+from fcm.response import exact_work
 from fcm.response.exact import trace_exact
 from fcm.scene import Force, Modal, scene_from_dict
 
@@ -28,6 +29,8 @@ from ..interrupted import interrupted_after
 from ..motion.cases import one_mode, two_contacts, yang
 from ..response.random_scenes import random_scene
 from .curves import between, curve_of
+
+SCENES = Path(__file__).parent / "scenes"
 
 
 @pytest.mark.parametrize(("scene", "omega"), [(yang(), 1.3), (two_contacts(), 1.7)], ids=["yang", "two"])
@@ -323,3 +326,18 @@ def test_a_force_elsewhere_has_no_range_to_be_without():
     """Without a force there is no motion, and its peaks are none."""
     curve = curve_of(replace(yang(), forces=(Force(np.array([1.0, 0.0]), 0.0, 0.0),)), only="peaks")
     assert not curve.amplitude[np.isfinite(curve.frequency)].any()
+
+
+def test_peaks_of_a_curve_that_was_followed_are_located_once(monkeypatch):
+    """Where its stability is lost is sought as often as for the whole curve."""
+    scene, times = between(fcm.load_scene(SCENES / "two_periods.toml"), 2.01, 2.05), []
+    crossing = sample.crossing
+    monkeypatch.setattr(sample, "crossing", lambda *args: times.append(0) or crossing(*args))
+    whole = curve_of(scene)
+    every = len(times)
+    monkeypatch.setattr(exact_work, "peaks_alone", lambda *_: None)
+    peaks = curve_of(scene, only="peaks")
+    assert every > 0 and len(times) == 2 * every
+    assert {d: (p.amplitude, p.frequency) for d, p in peaks.peaks.items()} == {
+        d: (p.amplitude, p.frequency) for d, p in whole.peaks.items()
+    }

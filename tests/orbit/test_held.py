@@ -12,7 +12,7 @@ from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.start import first_point, near_balance
 from fcm.reduction import held
-from fcm.response import exact_work
+from fcm.response import exact_work, orbit_curve
 from fcm.response.exact import trace_exact
 from fcm.response.legs import Leg, Legs, TimeOver
 from fcm.response.trace import traced_curve
@@ -117,6 +117,28 @@ def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
     limit = 0.3 * (30.0 + load)
     expected = [(limit - np.abs(force)).min() / limit.max(), (300.0 - gap).min() / (300.0 - gap).max()]
     assert held.rooms(first.system, first.segments) == pytest.approx(expected, rel=1e-5)
+
+
+def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monkeypatch):
+    """They are the waste of a curve that is followed again: here it is seen of its points alone."""
+    w, sought = held.resting(scene), []
+    wrong = tuple(Held(i, one, False, w[i]) for i, one in enumerate(scene.contacts[:1]))
+    monkeypatch.setattr(exact_work, "foreseen", lambda *_: wrong)
+    monkeypatch.setattr(exact_work, "_watched", None)
+    monkeypatch.setattr(orbit_curve, "not_unique", spied(orbit_curve.not_unique, sought))
+    (curve,) = trace_exact(scene).curves
+    assert curve.complete and not curve.orbits.held.size
+    assert len(sought) == 1
+
+
+def spied(function, calls):
+    """The same function, its calls noted."""
+
+    def spy(*args):
+        calls.append(args)
+        return function(*args)
+
+    return spy
 
 
 def test_a_contact_that_does_not_keep_its_state_is_computed_after_all(scene, responses, monkeypatch):

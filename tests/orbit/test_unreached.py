@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -65,3 +66,19 @@ def test_they_are_said():
     assert found["frequency"] == 1.22 and found["regime"] == ["SEPEN"]
     assert found["amplitude"]["v"] == curve["peak"]["v"]["amplitude"] > 17.0
     assert "neither sweep comes to (points without a sweep): 1, at 1.22 rad/s with u 8.3" in run.err
+
+
+def test_from_rest_a_motion_of_three_periods_is_come_to():
+    """Beside a motion of one period, which the balance has: least and greatest amplitude of its cycles by a
+    march of the contact's law in 4000 steps a period, by Verlet's differences."""
+    stop = load_scene(Path(__file__).parent / "scenes" / "stop.toml")
+    curve = curve_of(stop, at=[1.074])
+    assert curve.orbits.repeats.tolist() == [1, 1, 3]
+    assert curve.orbits.cycle_least[2, 0] == pytest.approx(1.1344, abs=1e-3)
+    assert curve.orbits.cycle_greatest[2, 0] == pytest.approx(1.9960, abs=1e-3)
+
+
+def test_where_nothing_damps_what_it_begins_with_is_no_other_motion():
+    scene = yang(-1e15)
+    curve = curve_of(replace(scene, modal=replace(scene.modal, damping=np.zeros(2))), at=[0.9])
+    assert curve.orbits.sweep.tolist() == ["up", "down"]

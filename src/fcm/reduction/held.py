@@ -95,11 +95,14 @@ def _rows(system: System, one: Held) -> list[FloatArray]:
 
 
 class NotKeptError(Exception):
-    """Contacts that are held, their `places`, would not have kept their state in a motion."""
+    """Contacts that are held, their `places`, would not have kept their state in a motion.
 
-    def __init__(self, places: tuple[int, ...]) -> None:
+    reason : why the curve of such motions is not complete.
+    """
+
+    def __init__(self, places: tuple[int, ...], reason: str = "") -> None:
         super().__init__()
-        self.places = places
+        self.places, self.reason = places, reason
 
 
 def check(system: System, segments: Segments) -> None:

@@ -14,7 +14,7 @@ from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.doubled import Doubled, doubled_paths
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
-from fcm.reduction.held import NotKeptError, check, foreseen, lost_by
+from fcm.reduction.held import NotKeptError, check, foreseen
 from fcm.response.groups import Group, lost_curve
 from fcm.response.legs import Clock, Legs, TimeOver
 from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
@@ -90,11 +90,11 @@ class _Followed:
         """The curve, followed without the contacts that keep their state all along it."""
         held = foreseen(scene, balance_of(scene, look=self.clock.look))
         while True:
+            lost: tuple[int, ...] = ()
             try:
                 curve = self._held_or_lost(scene, held)
-                lost = () if curve.orbits is None else tuple(lost_by(curve.orbits.held).tolist())
             except NotKeptError as found:
-                curve, lost = lost_curve(scene, ""), found.places
+                curve, lost = lost_curve(scene, found.reason), found.places
             if not (held and (lost or not curve.points)):
                 return curve
             if curve.reason.startswith(STOPPED) or self.clock.over:

@@ -16,7 +16,7 @@ from fcm.orbit.harmonic import state_of
 from fcm.orbit.located import SAME, Guess, located
 from fcm.orbit.periodic import Look
 from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.sample import Sample, samples
+from fcm.orbit.sample import Sample
 from fcm.orbit.start import near_balance
 from fcm.reduction.put_back import unknowns
 from fcm.response.orbit_branches import OrbitBranches
@@ -77,9 +77,9 @@ def peaks_curve(scene: Scene, alone: Alone, reason: str, search: Search) -> Curv
 
 def peaks_of(groups: Sequence[OrbitBranches], reason: str, search: Search) -> Curve:
     """The peaks, folds and jumps of a curve that was followed."""
-    whole, problem = orbit_curve(groups, reason, search), groups[0].problem
+    whole, problem = orbit_curve(groups, reason, Search.none()), groups[0].problem
     tops = {peak.frequency for peak in whole.peaks.values()}
-    points = [one for group in groups for path in group.paths for one in samples(group.problem, path)]
+    points = [one for group in groups for path in group.own for one in path]
     points = [one for one in points if one.mark & Mark.FOLD or one.frequency in tops]
     return _curve(problem.scene, points, whole.swept(), problem.periods, reason, search)
 

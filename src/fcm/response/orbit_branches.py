@@ -23,11 +23,16 @@ class OrbitBranches:
     cut_off: bool = False  # there is no time left to find what lies between the points
 
     @cached_property
+    def own(self) -> list[list[Sample]]:
+        """The points of each path, and those at which it loses its stability."""
+        return [samples(self.problem, path, located=not self.cut_off) for path in self.paths]
+
+    @cached_property
     def points(self) -> list[list[Sample]]:
-        """The points of each path, with those at the frequencies at which others end."""
+        """The same, with those at the frequencies at which others end."""
+        found = self.own
         if self.cut_off:
-            return [samples(self.problem, path, located=False) for path in self.paths]
-        found = [samples(self.problem, path) for path in self.paths]
+            return found
         if isinstance(self.problem, Doubled) and self.once is not None:
             before = self.once.points
             found = [to_flips(self.problem, one, before) for one in found]

@@ -13,7 +13,7 @@ from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
-from fcm.reduction.held import rooms, whole_state, whole_states
+from fcm.reduction.held import NotKeptError, lost_by, rooms, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.not_unique import NotUnique, not_unique
@@ -34,6 +34,11 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     """The points of branches, with a point of NaN between one and the next; complete without a reason.
 
     search : for other motions beside them.
+
+    Raises
+    ------
+    NotKeptError
+        If a contact that is held would not have kept its state.
     """
     points, folds, scene = list[Sample | None](), list[float](), groups[0].problem.scene
     kept = list[FloatArray]()
@@ -43,13 +48,16 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
             whole = [_of_whole(scene, point) for point in found]
             points += [None, *whole] if points else whole
             kept += [_kept(group.problem, found)] if scene.held else []
+    least = np.min(kept, axis=0) if kept else _kept(groups[0].problem, [])
+    if lost := lost_by(least).tolist():  # other motions beside such points are of no use
+        raise NotKeptError(tuple(lost), reason)
     curve = replace(_curve(scene.whole(), points, reason, search), folds=folds)
     if curve.orbits is not None:
         curve.orbits.periods = sum(group.problem.periods for group in groups)
         last = groups[-1].points
         curve.orbits.doubles = [flip(found, k).frequency for found in last for k in flips(found)]
         if scene.held:
-            curve.orbits.held = np.min(kept, axis=0) if kept else _kept(groups[0].problem, [])
+            curve.orbits.held = least
     return curve
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.orbit.periodic import Look
+from fcm.orbit.periodic import Look, without_end
 from fcm.response.legs import TimeOver
 from fcm.results.orbits import Stuck
 from fcm.run import Report
@@ -45,6 +45,13 @@ class Search:
     def __init__(self, look: Look, report: Report) -> None:
         self._look, self._report, self.over = look, report, False
         self._known = {_key(one): one for one in report.saved if isinstance(one, Extents)}
+
+    @classmethod
+    def none(cls) -> Search:
+        """One in which nothing is looked for."""
+        search = cls(without_end, Report(lambda _fraction, _text: None))
+        search.end()
+        return search
 
     def look(self) -> None:
         """To be called now and then: raises `TimeOver` if the search is over."""

@@ -2,7 +2,7 @@
 
 A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
 single frequency one. All solutions of the balance that hang together with rest by the level of the forces
-lead to the others, and so do the motions in which contacts stick as the scene starts.
+lead to others, and so do the motions in which contacts stick as the scene starts, and the one from rest.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fcm.motion.system import System
 from fcm.orbit.branch import shown
 from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.linear_motion import started_states
-from fcm.orbit.periodic import Look, Orbit, shoot
+from fcm.orbit.periodic import Look, Orbit, shoot, unloaded
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled, settled
 from fcm.orbit.start import first_point
@@ -61,20 +61,33 @@ def _beside(problem: OrbitProblem, omega: float, known: list[Sample], look: Look
     """Those at one frequency that are not known.
 
     Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
-    there: unless one that repeats after several periods, or not at all, is known, as that may lead to it.
+    there, and from rest: unless one that repeats after several periods, or not at all, is known, as that may
+    lead to it, or a mode has no damping, so that what it begins with may stay.
     """
     scene, found = problem.scene, list[Sample]()
-    for guess in (*balanced_states(scene, omega, look), *started_states(scene, omega)):
+    guesses = [*balanced_states(scene, omega, look), *started_states(scene, omega)]
+    damped = bool((scene.modal.damping > 0.0).all())
+    for guess in (*guesses, None):
+        several = any(one.repeats != 1 for one in (*known, *found))
         try:
-            orbit = shoot(System(scene, omega), guess, look)
-            one = _stable(problem, orbit, look)
-            several = any(sample.repeats != 1 for sample in (*known, *found))
-            if one is None and not several and (orbit is None or _left_by_turns(orbit)):
-                one = _simulated(problem, omega, guess, look)
+            one = _led_to(problem, omega, guess, damped and not several, look)
         except SimulationError:  # it cannot be computed, or is not determined
             continue
         if one is not None and not any(_same(one, other) for other in (*known, *found)):
             found.append(one)
+    return found
+
+
+def _led_to(
+    problem: OrbitProblem, omega: float, guess: State | None, simulate: bool, look: Look
+) -> Sample | None:
+    """The stable motion that a guess, or rest, leads to, if it does."""
+    if guess is None:
+        return _simulated(problem, omega, unloaded(problem.scene), look) if simulate else None
+    orbit = shoot(System(problem.scene, omega), guess, look)
+    found = _stable(problem, orbit, look)
+    if found is None and simulate and (orbit is None or _left_by_turns(orbit)):
+        return _simulated(problem, omega, guess, look)
     return found
 
 
