@@ -12,11 +12,13 @@ import fcm
 from fcm.motion import SimulationError, State, simulate
 from fcm.motion.measure import measure
 from fcm.motion.system import System
+from fcm.orbit import family as family_of
 from fcm.orbit import periodic
 from fcm.orbit.family import chosen, family
 from fcm.orbit.periodic import converged
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
+from fcm.orbit.start import near_balance
 from fcm.response import not_unique
 from fcm.response.exact import trace_exact
 from fcm.response.legs import TimeOver
@@ -176,3 +178,20 @@ def test_the_extent_holds_motions_between_its_limits_and_beyond_a_gap():
     assert found[:, 0].max() > 1.02 * found[0, 0] and found[:, 0].max() == pytest.approx(
         greatest[0], rel=0.01
     )
+
+
+def test_of_a_stable_motion_the_extent_is_that_of_stable_ones(monkeypatch):
+    """Pushed a little, the member with the least amplitude stays, and one with less is left."""
+    scene, omega = fcm.load_scene(Path(__file__).parent / "scenes/lost_stability.toml"), 1.2066666666666668
+    members, shots = family_of._members, []
+    monkeypatch.setattr(family_of, "_members", lambda *args: shots.append(members(*args)) or shots[0])
+    found = family(scene, omega, next(one for one in near_balance(scene, omega) if one.stable).state)
+    amplitude = {id(shot): float(measure(shot.cycle).amplitude[2]) for shot in shots[0][0]}
+    least = min(shots[0][0], key=lambda shot: amplitude[id(shot)])
+    end = min(shots[0][0], key=lambda shot: abs(amplitude[id(shot)] - found.least[2]))
+    assert amplitude[id(least)] < 0.7 * found.least[2] == pytest.approx(0.7 * amplitude[id(end)], rel=1e-12)
+    for shot, stays in ((least, False), (end, True)):
+        pushed = replace(shot.state, velocity=shot.state.velocity * (1.0 + 1e-6))
+        last = simulate(scene, omega, 400, pushed).measures(last=20)
+        away = max(abs(one.amplitude[2] / amplitude[id(shot)] - 1.0) for one in last)
+        assert away < 1e-3 if stays else away > 0.05

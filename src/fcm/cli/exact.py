@@ -151,8 +151,8 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
     spread = max(float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in families)
     yield (
         f"points that are not unique: {count}; a contact never slips there, and its residual friction "
-        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest); [start] "
-        "friction chooses"
+        f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest, of stable motions "
+        "beside stable points); [start] friction chooses"
     )
     partly = sum(int((one.family_complete == 0.0).sum()) - _untold(one) for one in families)
     if partly:

@@ -4,12 +4,14 @@ The slider of such a contact may rest anywhere between its limits, and every pla
 family is followed from the motion that is chosen to the limits of one contact after the other, in both
 directions, and of all together. Where the other contacts do not feel it, the amplitudes stay the same; where
 one begins to slip, or to stick, the family goes on from there with those that stick then.
+
+Of a stable motion the extent is that of the stable members, which a structure shows; of another that of all.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -17,7 +19,7 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.orbit.periodic import Look, converged, without_end
+from fcm.orbit.periodic import Look, converged, within_unit_circle, without_end
 from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
 from fcm.orbit.way import SHORTEST, Way, between, moved, residual_of, stuck_in
@@ -25,6 +27,7 @@ from fcm.scene.model import FloatArray, Scene
 
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
 WITHIN = (1e-6, 0.25)  # part of bounds, by which a motion may be beyond: of one contact, of several by lines
+NEAREST = 12  # halvings of the way between two motions of which one is stable
 HALVINGS = 4  # of the way between motions, about the one with the greatest or the least amplitude
 SAME = 1e-6  # relative range of amplitudes below which they are the same
 MOST_TRIED = 500  # motions that are looked for: some contacts have hundreds of sets of those that stick
@@ -36,8 +39,8 @@ class Family:
 
     contacts: tuple[int, ...]  # that always stick
     friction: FloatArray  # (contact, 2) least and greatest friction force k_u w from which they are reached
-    least: FloatArray  # (dof,) amplitude, half the peak-to-peak
-    greatest: FloatArray  # (dof,)
+    least: FloatArray  # (dof,) amplitude, half the peak-to-peak, of the stable members if it is sought from
+    greatest: FloatArray  # (dof,) one, else of all
     complete: bool  # whether every way was followed to its end
 
     @property
@@ -90,7 +93,8 @@ def family(
     if not contacts:
         return None
     shots, complete = _members(begun, look)
-    amplitude = np.array([measure(shot.cycle).amplitude for shot in shots])
+    shown = [shot for shot in shots if _stable(shot)] if _stable(begun) else shots
+    amplitude = np.array([measure(shot.cycle).amplitude for shot in shown])
     friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
     return Family(
         tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
@@ -114,7 +118,7 @@ def _members(begun: Shot, look: Look) -> tuple[list[Shot], bool]:
             left -= sum(way.tried for way in ways)
             complete &= all(way.ended for way in ways)
             line = [*reversed(behind), first, *ahead]
-            found += [*line, *_finer(line, look)]
+            found += [*line, *_finer(line, look), *_last_stable(line, look)]
             beyond = [way.beyond for way in ways if way.beyond is not None]
             shots += beyond
             waiting += beyond
@@ -149,6 +153,26 @@ def _finer(line: list[Shot], look: Look) -> list[Shot]:
             if 0 < k < len(line) - 1:
                 added += _about(line[k - 1 : k + 2], sense, dof, look)
     return added
+
+
+def _last_stable(line: list[Shot], look: Look) -> list[Shot]:
+    """Motions ever nearer to where, within a line, stability is lost; those behind that are left out."""
+    added = list[Shot]()
+    for pair in pairwise(line):
+        if _stable(pair[0]) == _stable(pair[1]):
+            continue
+        inner, outer = sorted(pair, key=_stable, reverse=True)
+        for _ in range(NEAREST):
+            middle = between(inner, outer, look)
+            if middle is None:
+                break
+            inner, outer = (middle, outer) if _stable(middle) else (inner, middle)
+        added.append(inner)
+    return added
+
+
+def _stable(shot: Shot) -> bool:
+    return within_unit_circle(shot.multipliers)
 
 
 def _about(near: list[Shot], sense: float, dof: int, look: Look) -> list[Shot]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+_OVER_FRICTION = (
+    "over the residual friction of contacts that never slip: of a stable point that of stable motions"
+)
 ORBIT_KINDS = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
 LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, meaning, units
     ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
@@ -42,11 +45,11 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
     "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
     "family_least": (
         ("dof",),
-        {"long_name": "least amplitude over the residual friction of contacts that never slip"},
+        {"long_name": f"least amplitude {_OVER_FRICTION}"},
     ),
     "family_greatest": (
         ("dof",),
-        {"long_name": "greatest amplitude over the residual friction of contacts that never slip"},
+        {"long_name": f"greatest amplitude {_OVER_FRICTION}"},
     ),
     "family_complete": (
         (),

@@ -32,7 +32,8 @@ class Orbits:
     cycle_least: FloatArray  # (point, dof) least and greatest amplitude of a cycle,
     cycle_greatest: FloatArray  # (point, dof) which differ where the motion does not repeat after each
     family_least: FloatArray  # (point, dof) least and greatest amplitude over the residual friction of
-    family_greatest: FloatArray  # (point, dof) contacts that never slip; nan where unique, or not sought
+    family_greatest: FloatArray  # (point, dof) contacts that never slip, of stable motions where the point is
+    # stable, else of all; nan where unique, or not sought
     family_complete: FloatArray  # (point,) 1 where all of these were reached, 0 where there may be others
     swept: Swept | None = None  # what slow sweeps met; None where the curve itself tells
     periods: int = 0  # of the motion that were computed to trace the curve
