@@ -82,3 +82,12 @@ def test_where_nothing_damps_what_it_begins_with_is_no_other_motion():
     scene = yang(-1e15)
     curve = curve_of(replace(scene, modal=replace(scene.modal, damping=np.zeros(2))), at=[0.9])
     assert curve.orbits.sweep.tolist() == ["up", "down"]
+
+
+def test_branches_of_the_balance_lead_to_what_no_level_leads_to():
+    """They do not hang together with rest there, and sweeps are irregular; the amplitudes are of a march
+    in 80000 steps a period by Verlet's differences."""
+    scene = load_scene(Path(__file__).parent / "scenes" / "hard_stop.toml")
+    curve = curve_of(scene, at=[0.71058])
+    assert curve.orbits.repeats.tolist() == [0, 0, 1] and curve.stable[2] == 1.0
+    assert curve.amplitude[2] == pytest.approx([1.1080, 2.48515], rel=1e-3)

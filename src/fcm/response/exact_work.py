@@ -208,7 +208,7 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
     visitor, others, reason = Visitor(around, look), list[Sample](), ""
     try:
         visitor.run(at, report)
-        others.extend(unreached(around, at, visitor.points, report, look))
+        others.extend(unreached(scene, at, visitor.points, report, look))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason = _cut_off(stop, limit) + where

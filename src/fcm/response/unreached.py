@@ -1,20 +1,22 @@
 """Stable motions at the frequencies that are visited, to which neither of the sweeps comes.
 
 A sweep is on one motion at a time, so of several stable ones at a frequency two are met at most, and at a
-single frequency one. All solutions of the balance that hang together with rest by the level of the forces
-lead to others, and so do the motions in which contacts stick as the scene starts, and the one from rest.
+single frequency one. All solutions of the balance lead to others: those that hang together with rest by the
+level of the forces, and those of its branches over the range of the scene, if it has one. So do the motions
+in which contacts stick as the scene starts, and the one from rest.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
+from fcm.orbit.apart import states_across
 from fcm.orbit.branch import shown
 from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.linear_motion import started_states
@@ -45,28 +47,32 @@ def unreached(
     look is called now and then.
     """
     saved = {one.frequency: one for one in report.saved if isinstance(one, Unreached)}
-    problem = OrbitProblem(scene)
+    problem = OrbitProblem(replace(scene, frequency_range=(0.0, frequencies[-1])))
+    left = [omega for omega in frequencies if omega not in saved]
+    across = states_across(scene, left, look)
     for omega in frequencies:
         found = saved.get(omega)
         if found is None:
             look()
             report(1.0, f"other motions, {shown(scene, omega)}")
             here = [one for one in visited if one.frequency == omega]
-            found = Unreached(omega, tuple(_beside(problem, omega, here, look)))
+            guesses = [*balanced_states(scene, omega, look), *across.get(omega, ())]
+            guesses += started_states(scene, omega)
+            found = Unreached(omega, tuple(_beside(problem, omega, guesses, here, look)))
             report.save(found)
         yield from found.samples
 
 
-def _beside(problem: OrbitProblem, omega: float, known: list[Sample], look: Look) -> list[Sample]:
+def _beside(
+    problem: OrbitProblem, omega: float, guesses: Sequence[State], known: list[Sample], look: Look
+) -> list[Sample]:
     """Those at one frequency that are not known.
 
     Where no periodic motion is near a guess, or one that is left by turns, the motion is simulated from
     there, and from rest: unless one that repeats after several periods, or not at all, is known, as that may
     lead to it, or a mode has no damping, so that what it begins with may stay.
     """
-    scene, found = problem.scene, list[Sample]()
-    guesses = [*balanced_states(scene, omega, look), *started_states(scene, omega)]
-    damped = bool((scene.modal.damping > 0.0).all())
+    found, damped = list[Sample](), bool((problem.scene.modal.damping > 0.0).all())
     for guess in (*guesses, None):
         several = any(one.repeats != 1 for one in (*known, *found))
         try:
