@@ -180,7 +180,7 @@ def test_an_interrupted_sweep_goes_on(tmp_path):
     first = trace_exact(scene, at, interrupted_after(6), keep=keep)
     assert [curve.complete for curve in first.curves] == [True, False, False]
     assert keep.is_file()
-    done = trace_exact(scene, at, interrupted_after(10), keep=keep, resume=True)
+    done = trace_exact(scene, at, interrupted_after(14), keep=keep, resume=True)
     assert all(curve.complete for curve in done.curves) and not keep.exists()
     whole = trace_exact(scene, at)
     for one, other in zip(done.curves, whole.curves, strict=True):
