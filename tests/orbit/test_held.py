@@ -15,7 +15,6 @@ from fcm.reduction import held
 from fcm.response import exact_work, orbit_curve
 from fcm.response.exact import trace_exact
 from fcm.response.legs import Leg, Legs, TimeOver
-from fcm.response.trace import traced_curve
 from fcm.run import Report
 from fcm.scene import Contact, Force, Modal, Scene
 from fcm.scene.model import Held, Load
@@ -187,19 +186,19 @@ def test_the_balance_that_guesses_come_from_is_ended_by_a_look(scene):
 
 
 def test_contacts_are_foreseen_only_with_room(scene):
-    found = held.foreseen(scene, traced_curve(scene))
+    found = held.foreseen(scene)
     assert [(one.place, one.open) for one in found] == [(1, False), (2, True)]
     weaker = replace(
         scene, contacts=(scene.contacts[0], replace(scene.contacts[1], n_0=3.0), scene.contacts[2])
     )
-    assert [one.place for one in held.foreseen(weaker, traced_curve(weaker))] == [2]
+    assert [one.place for one in held.foreseen(weaker)] == [2]
 
 
 def test_a_stiff_contact_is_not_replaced_by_a_spring(scene):
     """Its force, computed from displacements, would have fewer digits."""
     stiff = replace(scene.contacts[1], k_u=1e6, mu=1e6)
     other = replace(scene, contacts=(scene.contacts[0], stiff, scene.contacts[2]))
-    assert [one.place for one in held.foreseen(other, traced_curve(other))] == [2]
+    assert [one.place for one in held.foreseen(other)] == [2]
 
 
 def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):

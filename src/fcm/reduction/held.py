@@ -7,19 +7,22 @@ of them is computed after all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.continuation import Status
+from fcm.harmonic.rest import RestError
+from fcm.harmonic.system import System as Balanced
+from fcm.harmonic.trace import traced
 from fcm.motion.matrices import has_friction
 from fcm.motion.measure import extremes
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
-from fcm.reduction.put_back import unknowns
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
 from fcm.scene.model import Contact, Held, Scene
@@ -34,13 +37,16 @@ WORDS = (  # on a contact that sticks, and on one that is open
 STIFF = 100.0  # times the highest mode: a stiffer spring would lose digits that the contact's force keeps
 
 
-def foreseen(scene: Scene, balanced: Curve) -> tuple[Held, ...]:
-    """The contacts that keep their state all along a curve of the balance with one harmonic."""
-    at = np.flatnonzero(np.isfinite(balanced.frequency))
-    if not (balanced.complete and at.size):
+def foreseen(scene: Scene, look: Callable[[], None] | None = None) -> tuple[Held, ...]:
+    """The contacts that keep their state all along the balance with one harmonic.
+
+    look is called now and then.
+    """
+    z = _balanced(scene, look)
+    if not z.size:
         return ()
     theta = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
-    x = unknowns(balanced, scene, at, (1,))[:, :-1].reshape(at.size, len(scene.contacts), 6)
+    x = z[:, :-1].reshape(z.shape[0], len(scene.contacts), 6)
     motion = x[:, :, :2, None] + x[:, :, 2::2, None] * np.cos(theta) - x[:, :, 3::2, None] * np.sin(theta)
     found, rest = [], resting(scene)
     for i, contact in enumerate(scene.contacts):
@@ -49,6 +55,20 @@ def foreseen(scene: Scene, balanced: Curve) -> tuple[Held, ...]:
         if one is not None and not _too_stiff(scene, contact):
             found.append(one)
     return tuple(found)
+
+
+def _balanced(scene: Scene, look: Callable[[], None] | None) -> FloatArray:
+    """Points z of that balance (point, unknown + 1), without their errors; none where it is not complete."""
+    system = Balanced(scene, (1,))
+    system.work.look = look or system.work.look
+    try:
+        branches = traced(system).branches
+    except RestError:
+        return np.zeros((0, 0))
+    if branches.status is not Status.COMPLETE or not branches.paths:
+        return np.zeros((0, 0))
+    points: FloatArray = np.concatenate([path.z for path in branches.paths])
+    return points
 
 
 def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> Held | None:

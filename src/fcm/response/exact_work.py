@@ -21,7 +21,6 @@ from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.search import Search
-from fcm.response.trace import traced_curve as balance_of
 from fcm.response.unreached import unreached
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
@@ -88,7 +87,7 @@ class _Followed:
 
     def lightly(self, scene: Scene) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
-        held = foreseen(scene, balance_of(scene, look=self.clock.look))
+        held = foreseen(scene, self.clock.look)
         while True:
             lost: tuple[int, ...] = ()
             try:
