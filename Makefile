@@ -140,6 +140,7 @@ study: $(VENV)/installed  ## bundled and two hundred random scenes: do three ste
 	$(BIN)/python tests/response/bundled_steps.py > build/study.partial
 	$(BIN)/python tests/response/random_scenes.py >> build/study.partial
 	$(BIN)/python tests/response/random_peaks.py >> build/study.partial
+	$(BIN)/python tests/response/lightly_damped.py >> build/study.partial
 	@mv build/study.partial build/study.txt; cat build/study.txt
 
 calibration: $(VENV)/installed  ## estimated over true errors of hard curves; some minutes
