@@ -162,16 +162,8 @@ def growth_of(balance: Balance, X: ComplexArray) -> FloatArray:
     if harmonics.size == 1:
         size = np.abs(now[0])
         return np.where(size > 0.0, (np.conj(now[0]) * X[0]).real / np.where(size > 0.0, size, 1.0), 0.0)
-    theta = 2.0 * np.pi * np.arange(shown.samples) / shown.samples
-    samples = (np.exp(1j * np.outer(theta, harmonics)) @ now).real
-    rates = []
-    for extreme in (samples.argmax(axis=0), samples.argmin(axis=0)):
-        at = theta[extreme]
-        for _ in range(4):  # Newton's method, as the extremes themselves are refined
-            slope = 1j * harmonics[:, None] * np.exp(1j * np.outer(harmonics, at)) * now
-            bend = (1j * harmonics[:, None] * slope).sum(axis=0).real
-            at = at - np.where(bend != 0.0, slope.sum(axis=0).real / np.where(bend != 0.0, bend, 1.0), 0.0)
-        rates.append((np.exp(1j * np.outer(harmonics, at)) * X).sum(axis=0).real)
+    turned = np.exp(1j * harmonics[:, None, None] * np.asarray(shown.angles)) * X[:, None]
+    rates = turned.sum(axis=0).real  # of the greatest and of the least displacement
     growth: FloatArray = 0.5 * (rates[0] - rates[1])
     return growth
 

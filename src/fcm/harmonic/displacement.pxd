@@ -1,37 +1,17 @@
+from fcm.harmonic.extremes cimport Extremes
 from fcm.structure.receptance cimport Receptance
 
-cdef class Displacements:
+cdef class Displacements(Extremes):
     cdef public Receptance seen
-    cdef public int dofs
-    cdef public int samples
     cdef public double[:, ::1] shapes
     cdef public double[:, ::1] static
     cdef public double[:, ::1] attached
     cdef public int[::1] apart
-    cdef public double[:, ::1] re
-    cdef public double[:, ::1] im
-    cdef public double[:, ::1] d_re
-    cdef public double[:, ::1] d_im
     cdef double q_re, q_im, r_re, r_im
     cdef public double[::1] mean
     cdef public double[::1] rest
-    cdef public double[::1] amplitude
-    cdef public double[::1] growth
-    cdef public double[:, ::1] angles
-    cdef double[:, ::1] cosine
-    cdef double[:, ::1] sine
-    cdef double[::1] wave
-    cdef double[::1] c
-    cdef double[::1] s
-    cdef double value
-    cdef double rate
-    cdef double angle
     cpdef int at(self, double load, double[::1] force, double[::1] d_force, double[::1] z, double[::1] direction) except -1
     cdef void harmonic(self, int j, double load, double[::1] force, double[::1] d_force, double d_omega) noexcept
     cdef void clear(self, int j) noexcept
     cdef void move(self, Receptance seen, int j, Py_ssize_t i, double f_re, double f_im, double g_re, double g_im, double d_omega) noexcept
     cdef void from_ports(self, Py_ssize_t d, double[::1] z, double[::1] direction) noexcept
-    cdef void single(self, Py_ssize_t d) noexcept
-    cdef void several(self, Py_ssize_t d) noexcept
-    cdef void extreme(self, Py_ssize_t d, Py_ssize_t k) noexcept
-    cdef void waves_at(self, double theta) noexcept
