@@ -10,6 +10,9 @@ from fcm.scene.model import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
 
+REFINED = 8  # Newton steps to an extreme from where it was
+SETTLED = 1e-9  # [rad] the last of them, at which the value errs by its square
+
 
 def jacobian_of(balance: Balance) -> FloatArray:
     """Of a balance as it was evaluated last, (unknown, unknown + 1), also of one that is condensed."""
@@ -56,10 +59,15 @@ class Amplitude:
         self.balance, self.dof = balance, dof
         self.value, self.slopes = 0.0, np.zeros(balance.unknowns + 1)
         self.weights = np.zeros(balance.seen.count, dtype=np.complex128)
+        self.angles = np.zeros(2)  # of the extremes, if there are several harmonics
         self.of_forces = np.zeros(balance.unknowns)  # its slopes by the contacts' forces
 
-    def at(self, z: FloatArray) -> None:
-        """Where the balance was evaluated last, z (unknown + 1,)."""
+    def at(self, z: FloatArray, near: FloatArray | None = None) -> None:
+        """Where the balance was evaluated last, z (unknown + 1,).
+
+        With near, angles (2,), of the extremes next to these, be they the greatest of the cycle or not; the
+        value is NaN where they are no more.
+        """
         balance, d, n = self.balance, self.dof, self.balance.unknowns
         direction = np.zeros(n + 1)
         direction[-1] = 1.0
@@ -67,7 +75,16 @@ class Amplitude:
         self.value, self.slopes[n] = balance.output[d], balance.growth[d]
         shown, seen, rows = balance.shown, balance.seen, places(balance)[1]
         X = np.asarray(shown.re)[:, d] + 1j * np.asarray(shown.im)[:, d]
-        self.weights = W = _weights(X, np.asarray(seen.harmonics), np.asarray(shown.angles)[:, d])
+        h, self.angles = np.asarray(seen.harmonics), np.array(shown.angles)[:, d]
+        if near is not None and h.size > 1:
+            self.angles = _extremes(X, h, near)
+            if np.isnan(self.angles).any():
+                self.value = np.nan
+                return
+        self.weights = W = _weights(X, h, self.angles)
+        if near is not None and h.size > 1:
+            by_omega = np.asarray(shown.d_re)[:, d] + 1j * np.asarray(shown.d_im)[:, d]
+            self.value, self.slopes[n] = float((W @ X).real), (W @ by_omega).real
         if not balance.contacts:
             return
         if not shown.apart[d]:  # of the contacts' own displacements
@@ -88,3 +105,21 @@ def _weights(X: ComplexArray, harmonics: FloatArray, angles: FloatArray) -> Comp
         return np.asarray(np.conj(X) / np.where(size > 0.0, size, 1.0), dtype=np.complex128)
     ends = np.exp(1j * harmonics[:, None] * angles)
     return 0.5 * (ends[:, 0] - ends[:, 1])  # type: ignore[no-any-return]
+
+
+def _extremes(X: ComplexArray, harmonics: FloatArray, near: FloatArray) -> FloatArray:
+    """Angles (2,) of the maximum and minimum of Re sum X_h exp(i h theta) next to two angles, else NaN."""
+    theta: FloatArray = near
+    h = np.asarray(harmonics, dtype=np.float64)
+    for _ in range(REFINED):
+        turned = np.exp(1j * np.outer(theta, h)) * X
+        slope, bend = -(turned.imag @ h), -(turned.real @ (h * h))
+        if not (bend[0] < 0.0 < bend[1]):
+            break
+        step = slope / bend
+        theta = theta - step
+        if np.abs(theta - near).max() * h[-1] > np.pi:  # more than half the shortest wave
+            break
+        if np.abs(step).max() < SETTLED:
+            return np.asarray(theta, dtype=np.float64)
+    return np.full(2, np.nan)

@@ -21,7 +21,6 @@ CLOSEST, WIDEST = 1e-3, 0.2  # [rad] of angles from the way back, with which the
 STEPS = 8  # of Newton's method to the surface
 EXACT = 1e-12  # a step that ends them
 SHARP = 1e-10  # [rad] to which the change of a sign is found
-BENT = 1e-4  # of directions of length 1: what differs more has a corner between
 JUMP = 1e-3  # of the greatest value on the circle: what is more on a side of a change is no zero
 
 
@@ -31,7 +30,6 @@ class Change(NamedTuple):
     angle: float  # from straight ahead
     z: FloatArray
     jump: bool
-    bend: bool  # whether the response itself has another direction on either side
 
 
 class Circle:
@@ -90,5 +88,4 @@ class Circle:
         angle = float(brentq(self.special, low, high, xtol=SHARP, rtol=SHARP))
         sides = [self.at(angle + side * SHARP) for side in (-1.0, 1.0)]
         jump = max(abs(special) for _, special in sides) > JUMP * most
-        one, other = (self.problem.along(z)[0] for z, _ in sides)
-        return Change(angle, self.at(angle)[0], jump, float(np.linalg.norm(other - one)) > BENT)
+        return Change(angle, self.at(angle)[0], jump)

@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
-from fcm.track.corner import Corner
 from fcm.track.follow import follow
 from fcm.track.spot import Ending, Spot, Way
+from fcm.track.top import is_top
 from fcm.track.tracked import Condition, Kind, Tracked
 
 CUSP = 1e-3  # of the frequency's rate beside a turn: at the turn it is less where it turns back, too
@@ -98,14 +98,3 @@ def _joined(
     return Track(
         condition, tuple(spots), z[:, -1], z[:, -2], np.array(amplitude), np.array(greatest), endings
     )
-
-
-def is_top(problem: Tracked, spot: Spot) -> bool:
-    """Whether a tracked peak that was measured is one, and not a trough."""
-    if spot.corner is None or spot.switch:
-        return problem.is_top(spot.z)
-    corner = Corner(problem, spot.corner)
-    corner.problem.row[:] = problem.row
-    corner.problem.measure(spot.z)
-    before, after = corner.sides(spot.z)
-    return bool(before > after)

@@ -12,11 +12,12 @@ import numpy as np
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
-from fcm.track.curve import Track, is_top, whole
+from fcm.track.curve import Track, whole
 from fcm.track.follow import land
 from fcm.track.known import passed
 from fcm.track.spot import Spot, Way
 from fcm.track.starts import moved, special_points
+from fcm.track.top import is_top
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import Line
 

@@ -15,11 +15,12 @@ import numpy as np
 from fcm.harmonic.corrector import ROUNDS, SETTLED
 from fcm.harmonic.further import Further
 from fcm.harmonic.ranking import Ranking
-from fcm.track.curve import Track, is_top
+from fcm.track.curve import Track
 from fcm.track.follow import follow, land
 from fcm.track.lowest import lifted
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved
+from fcm.track.top import is_top
 from fcm.track.tracked import Condition, Kind
 
 BEFORE = 3  # points before a turn from which the turn with more harmonics is sought

@@ -8,12 +8,13 @@ import numpy as np
 
 from fcm.continuation.sharp import SHARP
 from fcm.scene.model import FloatArray
-from fcm.track.circle import Change, Circle
+from fcm.track.circle import Circle
 from fcm.track.corner import nearest
 from fcm.track.meeting import NEAR, SHORTEST, Meeting
 from fcm.track.place import FIRST, KINK
 from fcm.track.spot import Ending, Spot, Way
-from fcm.track.tracked import Condition, Kind
+from fcm.track.top import is_top, overtaken
+from fcm.track.tracked import Condition
 
 COSINE = 0.94  # of the turn in a step: at most 20 degrees
 MISSED = 0.3  # of a step, by which the prediction may be wrong
@@ -22,6 +23,7 @@ RADII = (1e-6, 1e-5, 1e-4, 1e-3)  # of circles about a kink on which the curve i
 OFF = 0.1  # of such a radius, by which the point found there may be wrong
 ACROSS = 0.7  # cosine of the angle of the way on with its radius; other lines cross the circle anyhow
 BENT = 5.0  # of such a step, by which the prediction may be wrong
+HALVINGS = 30  # of a step, within which another extreme becomes the greatest
 SHORT = 1e-3  # a step below which a corner of the response is looked for ahead
 AIM = 0.2  # [rad] the turn that a step aims at
 FAR = 0.3  # in the problem's scale: a start that is corrected by more is none
@@ -41,6 +43,14 @@ class _Follower(Meeting):
     """The steps."""
 
     def land(self, z: FloatArray) -> Spot | None:
+        spot = self._landed(z)
+        if spot is not None and overtaken(self.smooth, spot.z):
+            spot = self._landed(spot.z)  # as a peak of those extremes that are the greatest of a cycle there
+            if spot is not None and overtaken(self.smooth, spot.z):
+                return None
+        return spot
+
+    def _landed(self, z: FloatArray) -> Spot | None:
         self._measure(z)
         scale = np.array(self.newton.scale)
         for off, at in nearest(self.smooth.varied, z, scale) if self.turns else ():
@@ -98,6 +108,8 @@ class _Follower(Meeting):
             turned = float(np.asarray(self.newton.tangent) @ self.t) if good else 0.0
             good = good and turned > (0.0 if sharp else COSINE)
             good = good and not self._crosses()
+            if good and overtaken(self.smooth, np.array(self.newton.z)):
+                return self._overtaken(step)
             if good and not self._holds():
                 return self._leave(step)
             if good and (kept := self._keep(step)) is not None:
@@ -108,6 +120,22 @@ class _Follower(Meeting):
                 if (taken := self._meet()) is not None:
                     return taken
         return self._round()
+
+    def _overtaken(self, step: float) -> Ending:
+        """Up to where, within a step, extremes other than those of the peak become the greatest of the cycle.
+
+        There the amplitude has a kink that is a trough: it meets a peak, and takes the place of a trough.
+        """
+        low, high = 0.0, step
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            if self._between(middle) and not overtaken(self.smooth, np.array(self.newton.z)):
+                low = middle
+            else:
+                high = middle
+        if low > 0.0 and self._between(low) and isinstance(kept := self._keep(low), Ending):
+            return kept
+        return Ending.MET if is_top(self.smooth, self.spots[-1]) else Ending.TROUGH
 
     def _round(self) -> float | Ending:
         """Go on from a kink of the curve, on a circle about the place; or why it cannot be gone on.
@@ -122,7 +150,7 @@ class _Follower(Meeting):
                 break
             for change in Circle(problem, self.z, self.t, radius).changes(back):
                 if change.jump:
-                    ending = self._at_jump(change, back)
+                    ending = Ending.CORNER
                 elif (taken := self._turn_to(change.z, radius)) is not None:
                     return taken
         return ending
@@ -154,17 +182,6 @@ class _Follower(Meeting):
             self._go_to(z, t)
             return radius
         return ending or None
-
-    def _at_jump(self, jump: Change, back: FloatArray) -> Ending:
-        """What it means that what is special does not go on as a zero, but as a jump.
-
-        The amplitude is the greater one of the extremes of a cycle. Where another one becomes the greatest it
-        has a kink that is a trough. A peak that comes there meets that, and turns back with it.
-        """
-        if jump.bend or self.condition.kind is not Kind.PEAK:
-            return Ending.CORNER
-        turns = (jump.z[-1] - self.z[-1]) * (back[-1] - self.z[-1]) > 0.0
-        return Ending.MET if turns else Ending.TROUGH
 
     def _keep(self, step: float) -> float | Ending | None:
         """Go on to the point that was found, with what happens on the way; None if not all is found."""

@@ -25,7 +25,6 @@ from fcm.track.varied import Varied
 
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
 ASIDE = 1e-5  # of the response curve's extent: how far along it the Jacobian is evaluated for a difference
-
 LEAST_ASIDE = 1e-9  # and at least, where a corner is near
 NEARER = 0.05  # of the way to a corner: beside it derivatives begin like a root, and change again close by
 ASKEW = 1e3  # times as long as the row: a tangent that is nearly across it
@@ -73,6 +72,7 @@ class Tracked(Problem):
         Problem.__init__(self, self.n + 1, 0, 0)
         self.row = np.zeros(self.n + 1)
         self.row[-1] = 1.0
+        self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
 
     def evaluate(self, z: FloatArray) -> int:
         """Residual and derivatives."""
@@ -113,12 +113,16 @@ class Tracked(Problem):
         by_s, growth = self.varied.by_s(y), np.zeros(self.n + 2)
         if self.condition.kind is Kind.PEAK:
             one = Amplitude(balance, self.condition.which)
-            one.at(y)
+            one.at(y, self.angles)
             growth = np.append(one.slopes, by_s.of(one)) / max(one.value, SMALLEST)
         return Look(jacobian_of(balance), by_s.residual, growth)
 
     def measure(self, z: FloatArray) -> int:
-        """As the balance; s by the span. The row becomes the tangent of the response curve."""
+        """As the balance; s by the span. The row becomes the tangent of the response curve.
+
+        A peak is from here on that of the extremes that are the greatest of the cycle here: they are followed
+        as theirs, as the amplitude has a kink where others become greater.
+        """
         z = np.asarray(z)
         self.varied.put(float(z[-1]))
         y, balance, scale = np.array(z[:-1]), self.varied.balance, np.asarray(self.scale)
@@ -127,6 +131,10 @@ class Tracked(Problem):
         balance.evaluate(y)
         t = _direction(jacobian_of(balance) * scale[:-1] / scale[:-2, None], self.row)
         self.row[:] = t if t @ self.row >= 0.0 else -t
+        if self.condition.kind is Kind.PEAK:
+            one = Amplitude(balance, self.condition.which)
+            one.at(y)
+            self.angles = one.angles
         return 0
 
     def along(self, z: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -209,15 +217,6 @@ class Tracked(Problem):
         """What changes along the tangent, (unknown + 2,), at a place on it."""
         look = self._look(y)
         return look.growth - np.append(adjoint @ look.jacobian, adjoint @ look.by_s)
-
-    def is_top(self, z: FloatArray) -> bool:
-        """Whether a peak that was measured last is one, and no trough: growth falls along the response."""
-        try:
-            self.evaluate(z)
-        except np.linalg.LinAlgError:  # the response crosses itself there, and a peak meets a trough
-            return False
-        gradient = np.asarray(self.jacobian)[self.n, : self.n + 1]
-        return bool(gradient @ (np.asarray(self.scale)[:-1] * self.row) < 0.0)
 
     def onset_at(self, z: FloatArray, condition: Condition) -> float:
         """The function of an onset."""
