@@ -11,9 +11,9 @@ from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.track import curves
+from fcm.track import curves, follow
 from fcm.track.curves import tracks
-from fcm.track.spot import Ending
+from fcm.track.spot import Ending, Way
 from fcm.track.starts import moved
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
@@ -64,6 +64,37 @@ def test_the_number_turns_back_only_where_it_is_said_to(found):
         rises = np.sign(np.diff(one.s))
         back = [i + 1 for i in np.flatnonzero(rises[:-1] * rises[1:] < 0.0)]
         assert [i for i, _ in one.turns()] == back
+
+
+def test_no_point_stands_twice_and_no_value_asked_for_is_passed_over(found):
+    asked = np.linspace(*SPAN, 3)[1]
+    assert sum((one.s == asked).any() for one in found) > 1
+    for one in found:
+        assert np.hypot(np.diff(one.s), np.diff(one.frequency)).min() > 0.0
+        assert not ((one.s[:-1] - asked) * (one.s[1:] - asked) < 0.0).any()
+
+
+def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene, monkeypatch):
+    """Its peak and its trough meet there, and its folds, too: the response has no one direction."""
+    span, isolated = (0.6, 0.68), 0
+    narrow = replace(scene, frequency_range=(1.45, 1.56))
+    way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span)
+    made = followed(narrow, Condition(Kind.PEAK, 2), span)
+    monkeypatch.setattr(follow, "MOST", 25)
+    for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
+        problem = way.tracked(one.condition)
+        problem.measure(one.spots[i].z)
+        problem.evaluate(one.spots[i].z)
+        scale = np.array(problem.scale)[:-1]
+        by_all = np.array(problem.jacobian)[:-1, :-1] * scale / scale[:-1, None]
+        if np.linalg.svd(by_all)[1][-1] > 1e-6:
+            continue
+        isolated += 1
+        for k in (i - 2, i - 3, i - 4):  # from wherever it is come to
+            spots, _ = follow.follow(way, one.condition, one.spots[k], one.s[k] < one.s[i])
+            assert next(spot.z[-1] for spot in spots if spot.turn) == pytest.approx(one.s[i], abs=1e-9)
+            assert not spots[-1].turn
+    assert isolated > 1 and all(one.whole for one in made)
 
 
 def tops(scene, dof, level, low, high):

@@ -13,7 +13,9 @@ from fcm.track.place import FIRST, KINK, Place
 from fcm.track.spot import Ending, Spot
 
 FINE = 1e-11  # of a step: a turn is known to this
+SKIPPED = 1e-3  # a step on which a value that was asked for may be left out, but no end
 LOOKS = 40  # at a turn
+ASIDE = (1e-5, 1e-4)  # of it, along the curve, where it cannot be looked at itself
 
 
 class Passing(Place):
@@ -25,26 +27,47 @@ class Passing(Place):
         for _ in range(LOOKS):
             at = sides.at
             if not self._between(at) or self.newton.moved > step:
-                return None
+                return self._isolated(at)
             now = float(self.newton.tangent[-1])
             if now == 0.0 or sides.width <= FINE * step:
                 break
             sides.saw(at, now)
         return replace(self._spot(np.array(self.newton.z), np.array(self.newton.tangent)), turn=True)
 
+    def _isolated(self, at: float) -> Spot | None:
+        """A turn at which the response is an isolated point, or crosses itself; None if it is not found.
+
+        The response has no one direction there, and so the turn lies between points on both sides, up to the
+        cube of their distance.
+        """
+        for aside in ASIDE:
+            sides = []
+            for there in (at - aside, at + aside):
+                if self._between(there) and self.newton.moved < aside:
+                    sides.append((np.array(self.newton.z), np.array(self.newton.tangent)))
+            if len(sides) == 2 and sides[0][1][-1] * sides[1][1][-1] < 0.0:
+                (one, before), (other, after) = sides
+                scale = np.asarray(self.newton.scale)
+                length = float(np.linalg.norm((other - one) / scale))
+                part = before[-1] / (before[-1] - after[-1])
+                way = length * part * (before + 0.5 * part * (after - before))
+                t = before + part * (after - before)
+                return replace(self._spot(one + scale * way, t / np.linalg.norm(t)), turn=True)
+        return None
+
     def _passed(self, step: float, z: FloatArray, turn: Spot | None = None) -> Ending | bool:
         """Keep what lies on the way to z, over a turn if there is one; how the curve ends there, if it does.
 
-        Else whether that could be: an end that is passed must be landed on.
+        Else whether that could be: an end that is passed must be landed on, and other values if a shorter
+        step may do so.
         """
         known, one = len(self.spots), self.z
-        for spot in (turn, None):
-            if spot is None or turn is not None:
-                ending = self._piece(step, one, z if spot is None else spot.z)
-                if ending is False:
-                    del self.spots[known:]
-                if ending is not True:
-                    return ending
+        for spot in (None,) if turn is None else (turn, None):
+            ending = self._piece(step, one, z if spot is None else spot.z)
+            if ending is False:
+                del self.spots[known:]
+            if ending is not True:
+                return ending
             if spot is not None:
                 self.spots.append(spot)
                 one = spot.z
@@ -57,7 +80,7 @@ class Passing(Place):
             guess, row = one + part * (other - one), np.zeros(one.size)
             guess[i], row[i] = value, np.sign(other[i] - one[i])
             if not self._solve(guess, row) or self.newton.moved > step:
-                if ending is not None:
+                if ending is not None or step > SKIPPED:
                     return False
                 continue
             spot = self._spot(np.array(self.newton.z), np.array(self.newton.tangent))
