@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.contact.pieces import friction, piece_at
-from fcm.contact.sequence import Sequence, word
+from fcm.contact.sequence import Sequence
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def hysteresis_loop(n0_bar: float, b_bar: float, phi: float) -> Loop:
         raise ValueError("b_bar is an amplitude and must not be negative; shift phi by pi instead")
     first, regions = Sequence().loop(n0_bar, b_bar, phi)
     letters, since, w = regions.T
-    sequence = "".join(word(int(letter)) for letter in letters)
+    sequence = "".join(chr(int(letter)) for letter in letters)
     if len(sequence) == 1:
         return Loop(n0_bar, b_bar, phi, sequence, np.empty(0), w)
     since = np.clip(np.maximum.accumulate(since), 0.0, 2.0 * np.pi)
@@ -118,8 +118,7 @@ def sequences(n0_bar: npt.ArrayLike, b_bar: npt.ArrayLike, phi: npt.ArrayLike) -
     >>> sequences([2.0, 0.5, -1.0], 0.0, 0.0).tolist()
     ['E', 'EPEN', 'S']
     """
-    broadcast = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (n0_bar, b_bar, phi)))
-    codes = Sequence().codes(np.stack([x.reshape(-1) for x in broadcast]))
-    values, which = np.unique(codes, return_inverse=True)
-    names = np.array([word(int(value)) for value in values], dtype="<U6")
-    return names[which].reshape(broadcast[0].shape)
+    points = np.empty((3, *np.broadcast(n0_bar, b_bar, phi).shape))
+    points[0], points[1], points[2] = n0_bar, b_bar, phi
+    found: npt.NDArray[np.str_] = Sequence().words(points.reshape(3, -1)).reshape(points.shape[1:])
+    return found

@@ -1,4 +1,4 @@
-"""Kernel: the sequence of the states of a contact, as a number and with the angles at which they begin."""
+"""Kernel: the sequence of the states of a contact, as a word and with the angles at which they begin."""
 
 import cython
 import numpy as np
@@ -15,13 +15,11 @@ NAN = cython.declare(cython.double, float("nan"))
 # A slip that moves w by less than this, a stick shorter than this, is below what float64 can tell from none.
 INVISIBLE = cython.declare(cython.double, 1e-15)
 
-# the letters of a sequence are digits of its number, in base 5; 0 is no sequence
-LETTER_E = cython.declare(cython.int, 1)
-LETTER_P = cython.declare(cython.int, 2)
-LETTER_N = cython.declare(cython.int, 3)
-LETTER_S = cython.declare(cython.int, 4)
-LETTERS = " EPNS"
-MOST = 7  # states of a cycle, and one more
+LETTER_E = cython.declare(cython.int, ord("E"))
+LETTER_P = cython.declare(cython.int, ord("P"))
+LETTER_N = cython.declare(cython.int, ord("N"))
+LETTER_S = cython.declare(cython.int, ord("S"))
+MOST = cython.declare(cython.int, 7)  # states of a cycle, and one more
 
 
 @cython.cclass
@@ -38,9 +36,9 @@ class Sequence(Cycle):
     def __init__(self) -> None:
         self.regions = np.empty((MOST, 3))
 
-    def of(self, n0_bar: float, b_bar: float, phi: float) -> cython.longlong:
-        """The number of the sequence; 0 where an argument is no number."""
-        self.count, self.code = 0, 0
+    def of(self, n0_bar: float, b_bar: float, phi: float) -> None:
+        """Fill the regions; none where an argument is no number."""
+        self.count = 0
         behaviour: cython.int = self.find(n0_bar, b_bar, phi)
         if behaviour == STUCK:
             self._region(LETTER_E, 0.0, -self.stuck_force())
@@ -48,7 +46,6 @@ class Sequence(Cycle):
             self._region(LETTER_S, 0.0, NAN)
         elif behaviour == SLIPPING and self.opens and self.state == 0.0 and self.last_slip != 0.0:
             self._region(LETTER_N if self.last_slip > 0.0 else LETTER_P, self.since, NAN)
-        return self.code
 
     def take(self) -> None:
         """Adds the regions of a span."""
@@ -84,7 +81,6 @@ class Sequence(Cycle):
             w,
         )
         self.count += 1
-        self.code = 5 * self.code + letter
 
     def loop(
         self, n0_bar: cython.double, b_bar: cython.double, phi: cython.double
@@ -96,21 +92,15 @@ class Sequence(Cycle):
             at = atan2(self.end_sin, self.end_cos) if self.opens else atan2(self.first_sin, self.first_cos)
         return at, np.array(self.regions[: self.count])
 
-    def codes(self, points: cython.double[:, ::1]) -> np.ndarray:
-        """The numbers of the sequences of many contacts; rows (3, point) of n0_bar, b_bar, phi."""
+    def words(self, points: cython.double[:, ::1]) -> np.ndarray:
+        """The words of many contacts, (point,); rows (3, point) of n0_bar, b_bar, phi."""
         i: cython.Py_ssize_t
-        found = np.empty(points.shape[1], dtype=np.int64)
-        out: cython.longlong[::1] = found
+        k: cython.int
+        letters = np.zeros((points.shape[1], MOST - 1), dtype=np.uint32)
+        out: cython.uint[:, ::1] = letters
         with cython.nogil:
             for i in range(points.shape[1]):
-                out[i] = self.of(points[0, i], points[1, i], points[2, i])
-        return found
-
-
-def word(code: int) -> str:
-    """The letters of a number.
-
-    >>> word(183)
-    'EPEN'
-    """
-    return word(code // 5) + LETTERS[code % 5] if code else ""
+                self.of(points[0, i], points[1, i], points[2, i])
+                for k in range(min(self.count, MOST - 1)):
+                    out[i, k] = cython.cast(cython.uint, self.regions[k, 0])
+        return letters.view(f"U{MOST - 1}")[:, 0]
