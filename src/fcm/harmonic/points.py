@@ -57,36 +57,27 @@ class Points:
         return self
 
 
-def states_of(
-    kernel: PeriodicContact,
-    x: cython.double[:, ::1],
-    first: cython.Py_ssize_t,
-    contact: cython.double[::1],
-    out: cython.int[:, ::1],
-) -> None:
-    """States of the cycles of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first], (point, piece);
-    beyond the last as before."""
-    i: cython.Py_ssize_t
-    p: cython.int
-    for i in range(x.shape[0]):
-        kernel.cycle.take(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
-        for p in range(kernel.cycle.pieces):
-            out[i, p] = kernel.cycle.state[p]
-
-
-def borne(
+def cycles_of(
     kernel: PeriodicContact,
     measures: Measures,
     x: cython.double[:, ::1],
     first: cython.Py_ssize_t,
     contact: cython.double[::1],
-    out: cython.double[:, ::1],
+    state: cython.int[:, ::1],
+    borne: cython.double[:, ::1],
 ) -> None:
-    """Greatest normal and friction force, way of the slip and energy of the same, (point, 4)."""
+    """The cycles of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first].
+
+    state (point, piece): beyond the last as before. borne (point, 4): greatest normal and friction force, way
+    of the slip and energy.
+    """
     i: cython.Py_ssize_t
+    p: cython.int
     for i in range(x.shape[0]):
         kernel.cycle.take(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
+        for p in range(kernel.cycle.pieces):
+            state[i, p] = kernel.cycle.state[p]
         measures.bear(contact[1])
-        out[i, 0] = max(measures.greatest_load, 0.0)
-        out[i, 1], out[i, 2] = measures.greatest_friction, measures.slip_path
-        out[i, 3] = measures.dissipation
+        borne[i, 0] = max(measures.greatest_load, 0.0)
+        borne[i, 1], borne[i, 2] = measures.greatest_friction, measures.slip_path
+        borne[i, 3] = measures.dissipation

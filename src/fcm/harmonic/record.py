@@ -13,7 +13,7 @@ from fcm.contact.periodic.measures import Measures
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation import Path
 from fcm.harmonic.error import Reported, reported
-from fcm.harmonic.points import Points, borne, states_of
+from fcm.harmonic.points import Points, cycles_of
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 
@@ -90,45 +90,33 @@ def loops(system: System, z: FloatArray) -> FloatArray:
     return out
 
 
-def states(system: System, z: FloatArray) -> npt.NDArray[np.str_]:
-    """What each contact does over a cycle, such as "SPEN", (point, contact).
+def cycles(system: System, z: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
+    """What each contact does over a cycle, such as "SPEN", (point, contact), and bears, (point, contact, 4).
 
-    A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE".
-    """
-    single = system.harmonics == (1,)
-    each = [
-        _single(contact, x) if single else _several(system, number, z)
-        for number, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True))
-    ]
-    return np.stack(each, axis=1) if each else np.empty((z.shape[0], 0), dtype="<U6")
-
-
-def _several(system: System, number: int, z: FloatArray) -> npt.NDArray[np.str_]:
-    """Words of a contact, (point,)."""
-    kernel, c = periodic_contact(system.harmonics, system.harmonics), system.scene.contacts[number]
-    found = np.full((z.shape[0], kernel.cycle.state.shape[0]), NONE, dtype=np.intc)
-    law, first = np.array([c.mu, c.k_u, c.k_v, c.n_0]), number * (2 + 4 * len(system.harmonics))
-    states_of(kernel, np.ascontiguousarray(z), first, law, found)
-    longest = int((found != NONE).sum(axis=1).max(initial=1))
-    letters = np.ascontiguousarray(LETTERS[found[:, :longest]])
-    words: npt.NDArray[np.str_] = letters.view(f"<U{longest}")[:, 0]
-    return words
-
-
-def cycles(system: System, z: FloatArray) -> FloatArray:
-    """What each contact bears over a cycle, (point, contact, 4).
-
-    Greatest normal and greatest friction force, the way of the slip, and the energy that friction takes.
+    A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE". What
+    it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
+    takes.
     """
     contacts, harmonics = system.scene.contacts, system.harmonics
-    out = np.zeros((len(contacts), z.shape[0], 4))
-    z = np.ascontiguousarray(z)
-    kernel = periodic_contact(system.harmonics, system.harmonics)
-    measures = Measures(kernel.cycle)
-    for i, c in enumerate(contacts):
-        law = np.array([c.mu, c.k_u, c.k_v, c.n_0])
-        borne(kernel, measures, z, i * (2 + 4 * len(harmonics)), law, out[i])
-    return out.swapaxes(0, 1)
+    kernel, z = periodic_contact(harmonics, harmonics), np.ascontiguousarray(z)
+    measures, words = Measures(kernel.cycle), []
+    state = np.empty((z.shape[0], kernel.cycle.state.shape[0]), dtype=np.intc)
+    borne = np.zeros((len(contacts), z.shape[0], 4))
+    for i, (c, x) in enumerate(zip(contacts, _blocks(system, z), strict=True)):
+        law, first = np.array([c.mu, c.k_u, c.k_v, c.n_0]), i * (2 + 4 * len(harmonics))
+        state[:] = NONE
+        cycles_of(kernel, measures, z, first, law, state, borne[i])
+        words.append(_single(c, x) if harmonics == (1,) else _spelt(state))
+    each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
+    return each, borne.swapaxes(0, 1)
+
+
+def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
+    """Words (point,) of states (point, piece)."""
+    longest = int((state != NONE).sum(axis=1).max(initial=1))
+    letters = np.ascontiguousarray(LETTERS[state[:, :longest]])
+    words: npt.NDArray[np.str_] = letters.view(f"<U{longest}")[:, 0]
+    return words
 
 
 def _single(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:

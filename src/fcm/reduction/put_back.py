@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.newton import Newton
-from fcm.harmonic.record import amplitudes_at, cycles, loops, states
+from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.system import System
 from fcm.reduction.leave_out import Lighter
 from fcm.results.result import Curve, Response
@@ -48,9 +48,8 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
     regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
     system, z = System(scene), unknowns(curve, scene, at, (1,))
-    loop[at], regime[at] = loops(system, z), states(system, z)
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
-    cycle[at] = cycles(system, z)
+    loop[at], (regime[at], cycle[at]) = loops(system, z), cycles(system, z)
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
     curve.loop, curve.regime, curve.cycle = loop, regime, cycle
 

@@ -18,7 +18,7 @@ from fcm.continuation.path import Path
 from fcm.harmonic.believed import BELIEVED
 from fcm.harmonic.believed_levels import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.linear_contacts import highest
-from fcm.harmonic.record import cycles, loops, recorded_at_levels, states
+from fcm.harmonic.record import cycles, loops, recorded_at_levels
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
@@ -140,6 +140,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     stable = stable_at_levels(system, z, even)
     known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
+    words, borne = cycles(system, z)
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,
@@ -147,9 +148,9 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "fundamental": np.abs(first),
         "phase": np.angle(first),
         "mean": mean,
-        "regime": states(system, z),
+        "regime": words,
         "loop": loops(system, z),
-        "cycle": cycles(system, z),
+        "cycle": borne,
         "stable": stable,
         "table_error": np.zeros(level.size),
         "error": error,

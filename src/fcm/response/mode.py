@@ -12,7 +12,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic.cost import AGAIN, seconds_with
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
-from fcm.harmonic.record import cycles, loops, states
+from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.trace import pick
@@ -129,7 +129,7 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
     X, mean = mode.displacements()
     amplitude = half_peak_to_peak(X, system.harmonics)
     X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
-    whole = path.status is Status.COMPLETE
+    whole, (words, borne) = path.status is Status.COMPLETE, cycles(system, mode.contacts)
     return replace(
         empty,
         frequency=mode.omega,
@@ -137,9 +137,9 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         fundamental=np.abs(X[:, first]),
         phase=np.angle(X[:, first]),
         mean=mean,
-        regime=pick(states(system, mode.contacts), rows),
+        regime=pick(words, rows),
         loop=loops(system, mode.contacts),
-        cycle=cycles(system, mode.contacts),
+        cycle=borne,
         stable=unknown,
         table_error=unknown,
         error=np.full(amplitude.shape, np.nan),

@@ -16,7 +16,7 @@ from fcm.harmonic.choice import Accurate, accurate, finer, given
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.lost import Lost, lost_along
-from fcm.harmonic.record import Record, cycles, loops, recorded, states
+from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
@@ -99,7 +99,7 @@ def _curve(followed: _Followed) -> Curve:
     points, rounding = with_digits(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
     rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
-    words = states(system, points.z)
+    words, borne = cycles(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = _incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -116,7 +116,7 @@ def _curve(followed: _Followed) -> Curve:
         mean=pick(points.mean, rows),
         regime=pick(words, rows),
         loop=pick(loops(system, points.z), rows),
-        cycle=pick(cycles(system, points.z), rows),
+        cycle=pick(borne, rows),
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
         error=pick(error, rows),

@@ -8,7 +8,7 @@ cdef class Motion:
     cdef readonly int[::1] number
     cdef readonly double[::1] order, mean, load_bound, limit_bound
     cdef readonly double[:, ::1] re, im, node_cos, node_sin, at
-    cdef bint taken
+    cdef bint taken, sampled
     cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil
     cdef int behaviour(self) noexcept nogil

@@ -46,7 +46,8 @@ NODES_PER_HARMONIC = cython.declare(cython.int, 4)  # at first: where that prove
 class Motion:
     """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
-    taken: whether a cycle remembers the motion that is loaded; see `Cycle.take`.
+    taken: whether a cycle remembers the motion that is loaded; see `Cycle.take`. sampled: whether the nodes
+    are those of that motion.
     """
 
     def __init__(self, harmonics: list[int]) -> None:
@@ -65,7 +66,7 @@ class Motion:
         self.im = np.zeros((ROWS, max(self.count, 1)))
         self.mean = np.zeros(ROWS)
         self.scale = self.load_scale = self.ratio = self.preload = 0.0
-        self.taken = False
+        self.taken = self.sampled = False
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
         self.at = np.zeros((REACH, self.nodes))
 
@@ -79,7 +80,7 @@ class Motion:
         n_0: float,
     ) -> cython.int:
         """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
-        self.taken = False
+        self.taken = self.sampled = False
         k: cython.int
         i: cython.Py_ssize_t = first + 2
         motion: float = 0.0
@@ -163,6 +164,9 @@ class Motion:
 
     def sample(self) -> None:
         """Load and limits with their derivatives at all nodes."""
+        if self.sampled:
+            return
+        self.sampled = True
         j: cython.int
         k: cython.int
         c: float
