@@ -57,3 +57,24 @@ def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(bl
             needed += exact.newton.evaluations - before[1]
     assert moved > 5
     assert taken < 0.6 * needed
+
+
+def test_a_balance_is_left_as_it_was_made():
+    """Whatever contacts it was of, and whatever fewer harmonics its points had."""
+    one, other = (System(load_scene(name), (1,)) for name in ("yang1998-n5", "yang1998-jump"))
+    more = (1, 2, 3, 4, 5, 6)
+    used, new = (Lifted(one.with_harmonics(more).balance(), [1], list(more), ENOUGH) for _ in range(2))
+    of_one = [(c.mu, c.k_u, c.k_v, c.n_0) for c in one.scene.contacts]
+    few = one.with_harmonics((1, 2, 3))
+    (path, *_), (longer, *_) = (traced(system).branches.paths for system in (one, few))
+    used.take(list(few.harmonics), [(c.mu, c.k_u, c.k_v, 2.0 * c.n_0) for c in other.scene.contacts])
+    top = np.abs(longer.z[:, 6:-1]).max(axis=1).argmax()  # of the second and third harmonic
+    used.beside(longer.z[top], longer.direction[top])
+    used.take([1], of_one)
+    compared = 0
+    for i in range(0, len(path.z), 16):
+        found = [lifted.beside(path.z[i], path.direction[i]) for lifted in (used, new)]
+        assert found[0] == found[1]
+        assert not found[0] or np.array_equal(used.found, new.found)
+        compared += found[0]
+    assert compared > 5

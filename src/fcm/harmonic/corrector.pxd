@@ -8,6 +8,7 @@ cdef class Corrector:
     cdef readonly Further further
     cdef bint again
     cdef double enough
+    cdef int most
     cdef list lifts
     cdef dict second
     cdef dict spare

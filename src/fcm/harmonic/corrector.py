@@ -22,6 +22,8 @@ MOST = 16  # balances, and correctors, that are kept for the next system,
 MANY = 64  # and of balances so many, where each is small
 NAN = cython.declare(cython.double, float("nan"))
 
+Spare = dict[tuple[int, ...], list[Lifted]]  # balances by their harmonics
+
 
 @cython.cclass
 class Corrector:
@@ -31,21 +33,35 @@ class Corrector:
     branch of few harmonics may have a neighbour with some more and none with many.
     """
 
-    def __init__(self, system: System, again: bool = True, enough: float = ENOUGH) -> None:
+    def __init__(
+        self, system: System, again: bool = True, enough: float = ENOUGH, spare: Spare | None = None
+    ) -> None:
         self.again, self.enough = again, enough
         self.ranking = Ranking(system)
         self.further = self.ranking.further
         self.found = np.zeros(1 + system.linear.dofs.shape[1])
-        self.spare: dict[tuple[int, ...], Lifted] = {}  # made for systems that were taken before,
+        self.most = MANY if self.ranking.cheap else MOST
+        self.spare: Spare = {} if spare is None else spare  # made for systems that were taken before,
         self.spares: dict[tuple[int, ...], Corrector] = {}  # as these were
+        self.lifts: list[Lifted] = []  # of the sets of the ranking
+        self.second: dict[tuple[int, ...], Corrector] = {}
         self.take(system)
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others; no set is known."""
         self.system = system
+        self.forget()
         self.ranking.take(system)
-        self.lifts: list[Lifted] = []  # of the sets of the ranking
-        self.second: dict[tuple[int, ...], Corrector] = {}
+
+    def forget(self) -> None:
+        """Leave the balances to whichever corrector needs them next."""
+        for more, lifted in zip(self.ranking.sets, self.lifts, strict=False):
+            if more not in self.spare and len(self.spare) == self.most:
+                self.spare.clear()
+            self.spare.setdefault(more, []).append(lifted)
+        for other in self.second.values():
+            other.forget()
+        self.lifts, self.second = [], {}
 
     def move(
         self,
@@ -147,14 +163,12 @@ class Corrector:
 
     def _lifted(self, more: tuple[int, ...]) -> Lifted:
         """The same as if it were new."""
-        system, made = self.system, self.spare.get(more)
-        if made is not None:
-            made.take([(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts])
-            return made
-        if len(self.spare) == (MANY if self.ranking.cheap else MOST):
-            self.spare.clear()
-        balance = system.with_harmonics(more).balance()
-        made = self.spare[more] = Lifted(balance, list(system.harmonics), list(more), self.enough)
+        system, spare = self.system, self.spare.get(more)
+        if not spare:
+            balance = system.with_harmonics(more).balance()
+            return Lifted(balance, list(system.harmonics), list(more), self.enough)
+        made = spare.pop()
+        made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts])
         return made
 
     def of(self, harmonics: tuple[int, ...]) -> Corrector:
@@ -164,9 +178,10 @@ class Corrector:
             if made is not None:
                 made.take(system)
             else:
-                if len(self.spares) == MOST:
+                if len(self.spares) == self.most:
                     self.spares.clear()
-                made = self.spares[harmonics] = Corrector(system, again=False, enough=self.enough)
+                made = Corrector(system, again=False, enough=self.enough, spare=self.spare)
+                self.spares[harmonics] = made
             self.second[harmonics] = made
         return self.second[harmonics]
 

@@ -7,6 +7,7 @@ cdef class Lifted:
     cdef public Homotopy homotopy
     cdef public Newton newton
     cdef public double enough
+    cdef list more, fewer
     cdef bint dear
     cdef public double[::1] found
     cdef int[::1] place

@@ -35,17 +35,27 @@ class Lifted:
         self.balance, self.enough, self.dear = balance, enough, balance.unknowns >= DEAR
         self.homotopy = Homotopy(balance)
         self.newton = Newton(self.homotopy)
-        width, wide = 2 + 4 * len(fewer), 2 + 4 * len(more)
-        block = [0, 1, *(2 + 4 * more.index(h) + i for h in fewer for i in range(4))]
-        place = np.arange(0, balance.contacts * wide, wide)[:, None] + np.array(block)
-        assert place.size == balance.contacts * width
-        self.place = np.append(place, balance.unknowns).astype(np.intc)
         self.guess, self.row = np.zeros(balance.unknowns + 1), np.zeros(balance.unknowns + 1)
         self.still = np.zeros(balance.unknowns + 1)
         self.found = np.zeros(1 + balance.outputs)
+        self.more = more
+        self.fewer: list[int] = []
+        self.put(fewer)
 
-    def take(self, contacts: list[tuple[float, float, float, float]]) -> None:
-        """Contacts with other mu, k_u, k_v, n_0, as if nothing had been looked at yet."""
+    def put(self, fewer: list[int]) -> None:
+        """Points are of a balance of those harmonics; the others are nothing where they are looked from."""
+        if fewer == self.fewer:
+            return
+        self.fewer = fewer
+        contacts, wide = self.balance.contacts, 2 + 4 * len(self.more)
+        block = [0, 1, *(2 + 4 * self.more.index(h) + i for h in fewer for i in range(4))]
+        place = np.arange(0, contacts * wide, wide)[:, None] + np.array(block)
+        self.place = np.append(place, self.balance.unknowns).astype(np.intc)
+        self.guess[:], self.row[:] = 0.0, 0.0
+
+    def take(self, fewer: list[int], contacts: list[tuple[float, float, float, float]]) -> None:
+        """Points of those harmonics, contacts with other mu, k_u, k_v, n_0, as if nothing were known yet."""
+        self.put(fewer)
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
             law.mu, law.k_u, law.k_v, law.n_0 = numbers
         self.balance.largest[:] = 0.0
