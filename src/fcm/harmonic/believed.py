@@ -58,5 +58,7 @@ def _untold_beside(frequency: FloatArray, truncation: FloatArray, stable: FloatA
 
 def runs(which: Mask) -> list[tuple[int, int]]:
     """The first of each run of points, and the one behind its last."""
+    if not which.any():
+        return []
     ends = np.flatnonzero(np.diff(np.concatenate(([False], which, [False]))))
     return [(int(first), int(end)) for first, end in ends.reshape(-1, 2)]

@@ -158,14 +158,13 @@ def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> 
     path, place, rate = corrected.path, corrected.place, corrected.path.direction[:, -1]
     moved = path.parameter * (1.0 + change[:, 0])
     value = shown.amplitude + corrected.unit * change[:, 1:]
-    beside = Beside(place, moved, rate + _slope(place, moved - path.parameter))
-    out = np.empty(value.shape)
-    slope = shown.growth + _slope(place, value - shown.amplitude)
+    slope = _slope(place, np.column_stack((moved - path.parameter, value - shown.amplitude)))
+    beside, out = Beside(place, moved, rate + slope[:, 0]), np.empty(value.shape)
     beside.values(
         np.ascontiguousarray(path.parameter),
         np.sign(rate),
         np.ascontiguousarray(value),
-        np.ascontiguousarray(slope),
+        np.ascontiguousarray(shown.growth + slope[:, 1:]),
         out,
     )
     shift: FloatArray = (out - shown.amplitude) / corrected.unit
@@ -174,16 +173,17 @@ def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> 
 
 def _medians(values: FloatArray) -> FloatArray:
     """Of each row, NaN where all of it is; as `numpy.median`, which takes ten times as long for so few."""
-    count, ordered = values.shape[1], np.sort(values, axis=1)
+    count = values.shape[1]
+    ordered = np.sort(values, axis=1) if count > 2 else values
     middle: FloatArray = 0.5 * (ordered[:, (count - 1) // 2] + ordered[:, count // 2])
     return middle
 
 
 def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
-    """Rate of change along the path, from differences; points may coincide."""
-    step = np.diff(place)
-    step = np.where(step > 0.0, step, 1.0).reshape(-1, *(1,) * (values.ndim - 1))
-    pieces = np.diff(values, axis=0) / step
+    """Rates of change (point, value) along the path, from differences; points may coincide."""
+    step = place[1:] - place[:-1]
+    step[~(step > 0.0)] = 1.0
+    pieces = (values[1:] - values[:-1]) / step[:, None]
     return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))
 
 

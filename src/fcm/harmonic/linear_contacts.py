@@ -17,19 +17,19 @@ from fcm.scene.model import Contact, FloatArray
 
 BEYOND = 3.0  # times the level at which the last contact changes what it does
 GREATEST = 1e4  # level
+MOST = 8  # systems of which linear responses are kept, as contacts of a sweep are closed at rest, or open
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class _Last(threading.local):
-    """The linear responses that each thread found last, and what they are of."""
+class _Known(threading.local):
+    """The linear responses that each thread found last, by what they are of."""
 
     def __init__(self) -> None:
-        self.key: tuple[object, ...] = ()
-        self.found: ComplexArray = np.empty((0, 3, 0), dtype=np.complex128)
+        self.of: dict[tuple[object, ...], ComplexArray] = {}
 
 
-_LAST = _Last()
+_KNOWN = _Known()
 
 
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
@@ -48,14 +48,17 @@ def _on_ports(system: System, omega: float) -> ComplexArray:
 def foresee(system: System, frequencies: Sequence[float]) -> None:
     """Find the linear responses at all frequencies at which solutions will be asked for, at once.
 
-    Those of the last system are still known: of a sweep most are the same.
+    Those of the last systems are still known: of a sweep most are the same.
     """
-    at_rest = np.repeat((loads_at_rest(system) > 0.0).astype(np.float64), 2)
+    at_rest = np.repeat([load > 0.0 for load in loads_at_rest(system)], 2)
     held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
     key = (*system.linear.numbers, *frequencies, held.tobytes())
-    if key != _LAST.key or system.scene.ring is not None:
-        _LAST.key, _LAST.found = key, _with_springs(system, frequencies, held)
-    system.on_ports.update(zip(frequencies, _LAST.found, strict=True))
+    known = _KNOWN.of
+    if key not in known or system.scene.ring is not None:
+        if len(known) == MOST:
+            known.clear()
+        known[key] = _with_springs(system, frequencies, held)
+    system.on_ports.update(zip(frequencies, known[key], strict=True))
 
 
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
@@ -68,11 +71,10 @@ def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray
     return found
 
 
-def loads_at_rest(system: System) -> FloatArray:
-    """Normal loads (contact,) at rest, negative where a contact is open."""
-    law = np.array([(c.n_0, c.k_v) for c in system.scene.contacts]).reshape(-1, 2)
-    loads: FloatArray = law[:, 0] + law[:, 1] * system.rest[1::2]
-    return loads
+def loads_at_rest(system: System) -> list[float]:
+    """Normal loads of the contacts at rest, negative where one is open."""
+    contacts, normal = system.scene.contacts, system.rest[1::2].tolist()
+    return [c.n_0 + c.k_v * displacement for c, displacement in zip(contacts, normal, strict=True)]
 
 
 def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:
@@ -85,7 +87,7 @@ def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int
 
 def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
-    levels, loads = [1.0], np.abs(loads_at_rest(system))
+    levels, loads = [1.0], [abs(load) for load in loads_at_rest(system)]
     for ports in _on_ports(system, omega)[1:]:
         for load, (variation, slip, contact) in zip(loads, _motions(system, ports), strict=True):
             levels += [load / variation] if variation > 0.0 else []

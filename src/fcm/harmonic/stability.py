@@ -99,8 +99,8 @@ class _Along:
         parts = max(-(-(last - first) // SPAN), 1)
         angle = self.verdicts.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / PHASE)
-        some = np.linspace(first, last, parts + 1).astype(int)
-        nodes = sorted({*some.tolist(), *(first + 1 + np.flatnonzero(np.diff(passed))).tolist()})
+        some = (first + k * (last - first) // parts for k in range(parts + 1))
+        nodes = sorted({*some, *(first + 1 + (passed[1:] != passed[:-1]).nonzero()[0]).tolist()})
         for i in nodes:
             self.verdicts.at(i)
         for a, b in itertools.pairwise(nodes):
@@ -130,14 +130,14 @@ class _Along:
         self, before: list[float], ends: tuple[float, float], after: list[float], divided: int
     ) -> float | None:
         """A place between two, with its verdict, at which stability may be another; None if there is none."""
-        one, other = (self.verdicts[t] for t in ends)
+        one, other = self.verdicts[ends[0]], self.verdicts[ends[1]]
         if one.passive or other.passive or max(one.growth, other.growth) < ENOUGH:
             return None
         if max(len(one.values), len(other.values)) > MANY:
             return None
         if math.isnan(one.stable) != math.isnan(other.stable):
             return self._edge(*ends)
-        if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(ends)):
+        if one.stable != other.stable or (one.stable == 1.0 and not self._may_meet(*ends)):
             return None
         verdicts, seen = self.verdicts, self.verdicts.seen
         alike = [t for t in (*before, *ends, *after) if verdicts[t].stable == one.stable]
@@ -153,10 +153,10 @@ class _Along:
             return None
         return verdicts.put(0.5 * (verdicts.seen(a).length + verdicts.seen(b).length))
 
-    def _may_meet(self, ends: tuple[float, float]) -> bool:
+    def _may_meet(self, a: float, b: float) -> bool:
         """Whether two multipliers may meet between two places of a stable way."""
-        nearest = sum(self.verdicts.apart(t) for t in ends)
-        return nearest < AHEAD * self.verdicts.way(*ends) + ABOUT
+        nearest = self.verdicts.apart(a) + self.verdicts.apart(b)
+        return nearest < AHEAD * self.verdicts.way(a, b) + ABOUT
 
     def _inside(self, stable: FloatArray) -> Iterator[Inserted]:
         """The places between points that are stable where both neighbours are not, or the other way round."""
@@ -180,6 +180,8 @@ class _Along:
     def _crossings(self, places: list[float]) -> Iterator[Crossing]:
         """Where the growth changes sign between places that are told, and what is not told between them."""
         known = [t for t in places if not math.isnan(self.verdicts[t].growth)]
+        if len({self.verdicts.grows(t) for t in known}) < 2:
+            return
         told = [k for k, t in enumerate(known) if not math.isnan(self.verdicts[t].stable)]
         for first, last in itertools.pairwise(told):
             ways = itertools.pairwise(known[first : last + 1])

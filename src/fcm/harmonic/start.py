@@ -61,13 +61,15 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
         few = system.with_harmonics(system.harmonics[: few_of(system)])
         reach = _followed(few, omega, linear, most).reach
     found = _followed(system, omega, linear, most if reach is None else min(reach, most))
+    known = found.solutions
     if linear >= 1.0:
-        first = np.append(next(linear_responses(system, omega, 1.0)), omega)
-        found = replace(found, solutions=(first, *found.solutions))
-    elif not found.solutions:
-        found = replace(found, solutions=tuple(_from_linear(system, omega)))
+        known = (np.append(next(linear_responses(system, omega, 1.0)), omega), *known)
     enough = len(system.harmonics) >= few_of(system)
-    return found if enough else replace(found, reach=np.inf)
+    return replace(
+        found,
+        solutions=known or tuple(_from_linear(system, omega)),
+        reach=found.reach if enough else np.inf,
+    )
 
 
 def _followed(system: System, omega: float, linear: float, top: float) -> Found:
@@ -145,7 +147,7 @@ def _reach(status: Status, levels: FloatArray) -> float:
 
 def _turns(levels: FloatArray) -> tuple[float, ...]:
     """Levels about which a curve folds."""
-    rises = np.diff(levels) > 0.0
+    rises = levels[1:] > levels[:-1]
     return tuple(levels[1:-1][rises[:-1] != rises[1:]].tolist())
 
 

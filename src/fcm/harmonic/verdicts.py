@@ -139,4 +139,5 @@ def _rotation(system: System, path: Path) -> FloatArray:
     lasting = np.exp(-2.0 * np.pi * linear.damping * linear.natural / omega.min(initial=np.inf)) > SMALL
     few = 2 * near.sum() + len(system.scene.contacts) <= MANY
     fastest = float(linear.natural[lasting & near].max(initial=0.0)) if few else 0.0
-    return np.concatenate(([0.0], np.cumsum(np.abs(np.diff(2.0 * np.pi * fastest / omega)))))
+    angle = 2.0 * np.pi * fastest / omega
+    return np.concatenate(([0.0], np.cumsum(np.abs(angle[1:] - angle[:-1]))))
