@@ -6,6 +6,7 @@ from scipy.optimize import brentq
 
 from fcm.continuation import Mark, Problem, Status, all_branches, follow
 from fcm.continuation.front import Front
+from fcm.continuation.newton import Newton
 
 STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
 CLOSE = 1e-10  # to which a point is on its curve
@@ -689,3 +690,30 @@ def test_a_margin_is_the_same_only_within_its_group():
         np.asarray(place.angle)[:] = angles
         np.asarray(place.margin)[:] = np.arange(1.0, 5.0)
     assert [front.here.margin_at(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_where_places_are_dear_the_last_step_takes_the_derivatives_from_before():
+    """The point is as exact as with those there, the direction to what the step before was long."""
+
+    class Counted(Planar):
+        evaluated = probed = 0
+
+        def evaluate(self, z):
+            self.evaluated += 1
+            return super().evaluate(z)
+
+        def probe(self, z):
+            self.probed += 1
+            return super().evaluate(z)
+
+    newton = Newton(Counted(circle().f))
+    for dear, counts in ((False, (4, 0)), (True, (3, 1))):
+        newton.problem.evaluated = newton.problem.probed = 0
+        newton.problem.dear = dear
+        newton.z[:], newton.scale[:] = start(3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5)), 1.0
+        newton.row[:] = np.array([0.0, 0.0, 1.0])
+        assert newton.correct(1.0)
+        assert (newton.problem.evaluated, newton.problem.probed) == counts
+        x, p = newton.z[0], newton.z[2]
+        assert x == pytest.approx(3.0 + np.sqrt(4.0 - (p - 2.0) ** 2), rel=1e-15)
+        assert newton.tangent[2] / newton.tangent[0] == pytest.approx(-(x - 3.0) / (p - 2.0), rel=1e-4)

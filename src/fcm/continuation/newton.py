@@ -27,6 +27,8 @@ CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian f
 HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
 SLIGHT = cython.declare(cython.double, 1e-3)  # of the most: a second step this short is no sign of failure
 CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
+# a step after which a last one takes the Jacobian from before it, and the direction is that from there
+SHORT = cython.declare(cython.double, 1e-5)
 COARSEST = cython.declare(cython.double, 1e-6)  # a longer step is none that rounding makes
 
 
@@ -81,6 +83,8 @@ class Newton(Bordered):
                 return self.direct()
             if noise:
                 self.unsure = step
+                return self.direct()
+            if self.problem.dear and count > 0 and step < SHORT and _again(self, step):
                 return self.direct()
             before = step
         return False
@@ -145,3 +149,18 @@ class Newton(Bordered):
         """Tangent and orientation at z as it stands; false if they are not determined there."""
         self.guess[:] = self.z
         return self.factor() and self.direct()
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def _again(newton: Newton, before: cython.double) -> cython.bint:
+    """Whether a step with the Jacobian from before the last, of a length, leads to the curve; else it is not
+    taken. What it leaves is less by as much again."""
+    i: cython.Py_ssize_t
+    newton.problem.probe(newton.z)
+    step: cython.double = newton.step()
+    if not step * step < CLOSE * before:
+        return False
+    for i in range(newton.problem.unknowns + 1):
+        newton.z[i] += newton.scale[i] * newton.delta[i]
+    return True

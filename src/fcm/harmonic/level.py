@@ -21,7 +21,7 @@ class Level(Problem):
 
     def __init__(self, balance: Balance, omega: cython.double = 0.0) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
-        self.group = balance.group
+        self.group, self.jacobian = balance.group, balance.jacobian
         self.boundless *= self.boundless  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
         self.many = self.dear
@@ -42,18 +42,23 @@ class Level(Problem):
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
-        k: cython.Py_ssize_t
         self.place(z)
         b.evaluate(self.z)
+        self.residual[:] = b.residual
         for i in range(n):
-            self.residual[i] = b.residual[i]
-            for k in range(0 if self.rank else n):
-                self.jacobian[i, k] = b.jacobian[i, k]
             self.jacobian[i, last] = 0.0
         for p in range(2 * b.contacts):
             row = (p // 2) * b.width + j + 2 * (p % 2)
             self.jacobian[row, last] = -b.seen.X_re[p]
             self.jacobian[row + 1, last] = -b.seen.X_im[p]
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, z: cython.double[::1]) -> cython.int:
+        self.place(z)
+        self.balance.probe(self.z)
+        self.residual[:] = self.balance.residual
         return 0
 
     @cython.ccall
@@ -88,7 +93,6 @@ class Level(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
-        self.balance.jacobian[:, :] = self.jacobian
         return self.balance.condense(row, matrix)
 
     @cython.ccall

@@ -68,6 +68,10 @@ class _Paid(Replaced):
         self.inner.evaluate(z)
         return 0
 
+    def probe(self, z: FloatArray) -> int:
+        self.inner.probe(z)
+        return 0
+
     def measure(self, z: FloatArray) -> int:
         self.inner.measure(z)
         return 0
