@@ -2,6 +2,7 @@
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.believed import astray
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.error import errors_along
+from fcm.harmonic.error import _may_exceed, errors_along
 from fcm.harmonic.stability import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
@@ -188,6 +189,21 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     beyond = astray(curve.truncation_error)
     assert beyond.sum() > 64
     assert not (curve.stable[beyond] == 1.0).any()
+
+
+@pytest.mark.parametrize(
+    ("height", "rise", "moved", "may"),
+    [(0.9, 0.01, 0.01, False), (0.9, 0.1, 0.0, True), (0.9, 0.0, 0.1, True), (0.7, 0.1, 0.1, False)],
+)
+def test_a_level_stretch_below_the_peak_does_not_become_the_highest(height, rise, moved, may):
+    """What is known at its ends and along itself says how far it may rise; without ends nothing does."""
+    amplitude = np.full((20, 1), 0.5)
+    amplitude[5:15, 0] = np.linspace(height - rise, height, 10)
+    curve, change = SimpleNamespace(amplitude=amplitude, unit=amplitude), np.full((20, 1), np.nan)
+    change[[4, 15], 0] = -moved / 0.5, 0.0
+    assert _may_exceed(curve, change, 5, 15, np.ones(1)) == [may]
+    whole = SimpleNamespace(amplitude=amplitude[5:15], unit=amplitude[5:15])
+    assert _may_exceed(whole, change[5:15], 0, 10, np.ones(1)) == [height > 0.8]
 
 
 def test_a_harmonic_that_moves_a_peak_by_nothing_does_not_speak_for_the_others():

@@ -28,8 +28,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
-
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
+LEAP = 4.0  # times what it changes along itself, and is displaced at its ends: a stretch rises by no more
 GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
@@ -208,7 +208,7 @@ def _heights(corrected: Corrected, shown: Reported, change: FloatArray, tops: In
             )
     unknown = np.zeros(len(tops), dtype=np.bool_)
     for first, end in runs(np.isnan(change[:, 0])):
-        may = amplitude[first:end].max(axis=0) > RIVAL * now if end - first > FEW else d < 0
+        may = _may_exceed(corrected, change, first, end, now) if end - first > FEW else d < 0
         rivals = may | ((first <= tops) & (tops < end))
         if rivals.any():
             followed = heights(corrected, first - 1, end)
@@ -218,6 +218,19 @@ def _heights(corrected: Corrected, shown: Reported, change: FloatArray, tops: In
                 greatest = np.maximum(greatest, followed)
     known: FloatArray = np.where(unknown, np.nan, greatest)
     return known
+
+
+def _may_exceed(
+    corrected: Corrected, change: FloatArray, first: int, end: int, now: FloatArray
+) -> npt.NDArray[np.bool_]:
+    """Whether the corrected curve (dof,) may be higher than now along a stretch without displacements."""
+    inside, ends = corrected.amplitude[first:end], [i for i in (first - 1, end) if 0 <= i < len(change)]
+    highest = inside.max(axis=0)
+    may: npt.NDArray[np.bool_] = highest > RIVAL * now
+    if ends:
+        moved = (np.abs(change[ends]) * corrected.unit[ends]).max(axis=0)
+        may &= highest + LEAP * (np.ptp(inside, axis=0) + moved) > now
+    return may
 
 
 def _gap(corrected: Corrected, shown: Reported, top: int) -> bool:
