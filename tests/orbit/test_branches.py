@@ -96,6 +96,20 @@ def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range()
     assert max(one[0] for one in there) == pytest.approx(0.4170, rel=1e-2)
 
 
+def test_a_closed_branch_that_neither_the_ends_nor_the_resonances_of_the_range_lead_to_is_found():
+    """The motion of a simulation from a state near it stays on it."""
+    scene, omega = fcm.load_scene(Path(__file__).parent / "scenes/closed_inside.toml"), 1.275
+    near = State(np.array([5.6, -0.4, -0.7]), np.array([-37.8, 5.4, -6.7]), np.zeros(2))
+    amplitude = simulate(scene, omega, 200, near).measures(last=1)[0].amplitude
+    assert amplitude[0] > 40.0
+    curve = curve_of(scene)
+    off = curve.frequency - omega
+    across = np.flatnonzero((off[:-1] * off[1:] <= 0.0) & (curve.amplitude[:-1, 0] > 40.0))
+    share = (off[across] / (off[across] - off[across + 1]))[:, None]
+    there = (1.0 - share) * curve.amplitude[across] + share * curve.amplitude[across + 1]
+    assert curve.complete and np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
+
+
 def lightly_damped(seed):
     scene = random_scene(seed)
     damping = np.full(scene.modal.mass.size, 1e-4)
@@ -130,10 +144,10 @@ def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
 def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
     scene = lightly_damped(20)
     problem = OrbitProblem(scene)
-    found, missed, _ = starts(problem)
+    found, missed, sought, _ = starts(problem)
     (z,) = found
     low, high = scene.frequency_range
-    assert low < z[-1] < high and set(missed) == {low, high}
+    assert sought and low < z[-1] < high and set(missed) == {low, high}
     assert off_after_a_period(scene, z) < 1e-9
     piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), True, scene.max_step)
     assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""

@@ -1,4 +1,4 @@
-"""Branches of the exact motion beside others: what all branches of the balance over the range lead to."""
+"""Branches of the exact motion beside others: what branches of the balance over the range lead to."""
 
 from __future__ import annotations
 
@@ -19,8 +19,10 @@ from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
     from fcm.harmonic.choice import Outline
+    from fcm.harmonic.system import System
 
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
+ACCURACY = 1e-2  # of the other balance that is looked at, as of a response by default
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
 
@@ -46,15 +48,24 @@ def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArra
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
 
 
-def states_along(scene: Scene, look: Look) -> Iterator[list[Place]]:
-    """Guesses beside each top of each branch of the balance, the nearest to the top first."""
+def states_along(scene: Scene, apart: bool, look: Look) -> Iterator[tuple[float, list[Place]]]:
+    """The height of each end and top of each branch of the balance, and guesses beside it, the nearest first.
+
+    The balance has as many harmonics as it takes; where branches of few are known to be apart, also `SOME`,
+    as others may lead to no closed branch. Of many contacts one harmonic, and only then.
+    """
     from fcm.harmonic.beside import around, tops
 
-    found, harmonics = _balanced(scene, look)
-    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-        for top, even in tops(path, shown.amplitude):
-            places = around(even, top)
-            yield [(float(path.z[i, -1]), computed_state(scene, harmonics, path.z[i])) for i in places]
+    whole = scene.whole()
+    if not (whole.modal.frequency.all() and whole.contacts):
+        return
+    for found in _balances(whole, apart, look):
+        for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
+            beside = [(top, list(around(even, top))) for top, even in tops(path, shown.amplitude)]
+            for top, points in [(0, [0]), (-1, [-1]), *beside]:
+                guesses = [computed_state(scene, found.system.harmonics, path.z[i]) for i in points]
+                places = list(zip(path.parameter[points].tolist(), guesses, strict=True))
+                yield float(shown.amplitude[top].max()), places
 
 
 def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dict[float, list[State]]:
@@ -66,11 +77,11 @@ def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dic
     if not (inside and whole.contacts and whole.modal.frequency.all()):
         return {}
     try:
-        found, harmonics = _balanced(scene, look)
+        found = _outlined(_single(whole, look))
     except RestError:
         return {}
     return {
-        omega: [computed_state(scene, harmonics, z) for z in _crossings(found.traced.branches.paths, omega)]
+        omega: [computed_state(scene, found.system.harmonics, z) for z in _crossings(found.traced.branches.paths, omega)]
         for omega in inside
     }
 
@@ -85,13 +96,27 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
             yield np.append((before[k] + share * (after[k] - before[k]))[:-1], omega)
 
 
-def _balanced(scene: Scene, look: Look) -> tuple[Outline, tuple[int, ...]]:
-    """The branches of the balance over the range, and its harmonics."""
-    from fcm.harmonic.choice import outlined
-    from fcm.harmonic.system import System as Balanced
+def _balances(whole: Scene, apart: bool, look: Look) -> Iterator[Outline]:
+    """The responses of the balance that are looked at."""
+    from fcm.harmonic.choice import accurate
 
-    whole = scene.whole()
-    harmonics = SOME if len(whole.contacts) < MANY else SOME[:1]
-    balanced = Balanced(whole, harmonics)
-    balanced.work.look = look
-    return outlined(balanced), harmonics
+    if len(whole.contacts) < MANY:
+        yield accurate(_single(whole, look), ACCURACY)
+    if apart:
+        yield _outlined(_single(whole, look))
+
+
+def _single(whole: Scene, look: Look) -> System:
+    """The balance of one harmonic."""
+    from fcm.harmonic.system import System
+
+    one = System(whole, (1,))
+    one.work.look = look
+    return one
+
+
+def _outlined(one: System) -> Outline:
+    """The branches of `SOME` harmonics, or of one where there are many contacts."""
+    from fcm.harmonic.choice import outlined
+
+    return outlined(one if len(one.scene.contacts) >= MANY else one.with_harmonics(SOME))

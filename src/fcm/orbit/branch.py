@@ -13,7 +13,7 @@ from fcm.orbit.apart import passes
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
-from fcm.orbit.start import beside_tops, first_point, starts
+from fcm.orbit.start import along_balance, first_point, starts
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
 
@@ -92,13 +92,12 @@ def explore(
 ) -> tuple[list[Path], str]:
     """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
-    found, missed, apart = starts(problem, look)
+    found, missed, sought, apart = starts(problem, look)
     branches = partial(all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step)
     paths = branches(found, along=along).paths
-    if apart:  # what is passed already is known without being followed again
-        beside = [
-            z for z in beside_tops(problem, look) if not any(passes(path, z, problem) for path in paths)
-        ]
+    if not sought:  # what is passed already is known without being followed again
+        along_it = along_balance(problem, apart, look)
+        beside = [z for z in along_it if not any(passes(path, z, problem) for path in paths)]
         paths = branches(beside, along=along, known=paths).paths
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join(missed[end] for end in ends)

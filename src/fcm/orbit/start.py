@@ -25,7 +25,8 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.undetermined import not_determined, rests_elsewhere
 from fcm.scene.model import FloatArray, Scene
 
-TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed
+TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed,
+AS_HIGH = 0.95  # of the top's height: or the first that is so high
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
 FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
 ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
@@ -37,7 +38,8 @@ class Starts(NamedTuple):
 
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
-    apart: bool  # whether the balance has more solutions than there are points: see `beside_tops`
+    sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
+    apart: bool  # whether the balance has more solutions than there are points: see `along_balance`
 
 
 def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
@@ -72,20 +74,25 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
                 missed[omega] = str(error)
         apart = apart or len(found) - before < len(guesses)
     at_ends = {omega: missed[omega] for omega in missed if omega not in inside}
-    return Starts(found or _anywhere(problem, look), at_ends, apart and bool(found))
+    return Starts(found or _anywhere(problem, look), at_ends, not found, apart)
 
 
-def beside_tops(problem: OrbitProblem, look: Look = without_end) -> list[FloatArray]:
-    """Points beside the tops of the balance's branches, where it has more solutions than there are motions:
-    a branch on which it leads away from an end of the range may be closed.
+def along_balance(problem: OrbitProblem, apart: bool, look: Look = without_end) -> list[FloatArray]:
+    """Points beside the ends and tops of the balance's branches, to which the few harmonics that `starts` has,
+    at its frequencies, need not lead: some are closed, or are so for the exact motion alone.
 
+    apart: whether one on which the balance leads away from an end of the range may be closed.
     look is called now and then.
     """
     found = list[FloatArray]()
-    for places in states_along(problem.scene, look):
-        there = [z for place in places[:TRIED] for z in _points(problem, place, look)]
+    for height, places in states_along(problem.scene, apart, look):
+        there = list[tuple[float, FloatArray]]()
+        for place in places[:TRIED]:
+            there += [(_height(problem, z), z) for z in _points(problem, place, look)]
+            if there and there[-1][0] > AS_HIGH * height:
+                break
         if there:  # some may lead to a lower branch
-            _add(problem, found, max(there, key=lambda z: _height(problem, z)))
+            _add(problem, found, max(there, key=lambda one: one[0])[1])
     return found
 
 
