@@ -11,13 +11,13 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import fcm
-from fcm.continuation import Status, follow
+from fcm.continuation import Mark, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic, sample
 from fcm.orbit.apart import passes
-from fcm.orbit.branch import explore, incomplete
+from fcm.orbit.branch import explore, incomplete, known, spread
 from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.held import held
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
@@ -108,6 +108,17 @@ def test_a_closed_branch_that_neither_the_ends_nor_the_resonances_of_the_range_l
     share = (off[across] / (off[across] - off[across + 1]))[:, None]
     there = (1.0 - share) * curve.amplitude[across] + share * curve.amplitude[across + 1]
     assert curve.complete and np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
+
+
+def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_not():
+    """It has other points than before."""
+    problem = OrbitProblem(fcm.load_scene(Path(__file__).parent / "scenes/isolated.toml"))
+    (other, isolated), _ = explore(problem)
+    beside = isolated.z[isolated.where(Mark.FOLD)[0] + 2]
+    span = problem.scene.frequency_range
+    again = follow(problem, beside, span, True, 0.7 * problem.scene.max_step)
+    assert len(again.z) > 10
+    assert known([isolated], spread(again), problem) and not known([other], spread(again), problem)
 
 
 def lightly_damped(seed):

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+import numpy as np
+
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.motion.errors import SimulationError
@@ -15,9 +17,10 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import along_balance, first_point, starts
 from fcm.scene.modal import UNITS
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 
 Progress = Callable[[float, str], None]
+SPREAD = 7  # motions of a branch that are looked for on the others
 ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
 
 
@@ -96,11 +99,22 @@ def explore(
     branches = partial(all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step)
     paths = branches(found, along=along).paths
     if not sought:  # what is passed already is known without being followed again
-        along_it = along_balance(problem, apart, look)
-        beside = [z for z in along_it if not any(passes(path, z, problem) for path in paths)]
-        paths = branches(beside, along=along, known=paths).paths
+        for z in along_balance(problem, apart, look):
+            if not known(paths, [z], problem):
+                more = branches([z], along=along, known=paths).paths[len(paths) :]
+                paths += tuple(path for path in more if not known(paths, spread(path), problem))
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join(missed[end] for end in ends)
+
+
+def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
+    """Whether any of some motions is passed by a path."""
+    return any(passes(path, z, problem) for path in paths for z in motions)
+
+
+def spread(path: Path) -> list[FloatArray]:
+    """Motions of a path far from one another: at a fold one may not be found on another path that has it."""
+    return list(path.z[np.linspace(0.0, len(path.z) - 1.0, SPREAD).astype(np.intp)]) if len(path.z) else []
 
 
 def branch_of(problem: OrbitProblem, path: Path) -> Branch:

@@ -78,10 +78,12 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
 
 
 def along_balance(problem: OrbitProblem, apart: bool, look: Look = without_end) -> list[FloatArray]:
-    """Points beside the ends and tops of the balance's branches, to which the few harmonics that `starts` has,
-    at its frequencies, need not lead: some are closed, or are so for the exact motion alone.
+    """Points beside the ends and tops of the balance's branches.
 
-    apart: whether one on which the balance leads away from an end of the range may be closed.
+    The few harmonics that `starts` has, at its frequencies, need not lead there: some branches are closed, or
+    are so for the exact motion alone.
+
+    apart: whether a branch on which the balance leads away from an end of the range may be closed.
     look is called now and then.
     """
     found = list[FloatArray]()
