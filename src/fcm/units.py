@@ -46,3 +46,13 @@ def unit_of_number(key: str, length: str, force: str) -> str:
     stiffness = f"{force}/{length}" if force and length else ""
     units = {"n_0": force, "gap": length, "k_u": stiffness, "k_v": stiffness}
     return units.get(key.rpartition(".")[2], "")
+
+
+def headed(key: str, units: tuple[str, str]) -> str:
+    """The head of a column of numbers of a contact, with their unit where it is known.
+
+    >>> headed("contact.shroud.n_0", ("mm", "N")), headed("contact.shroud.mu", ("mm", "N"))
+    ('contact.shroud.n_0 [N]', 'contact.shroud.mu')
+    """
+    unit = unit_of_number(key, *units)
+    return f"{key} [{unit}]" if unit else key

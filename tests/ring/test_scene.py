@@ -20,6 +20,8 @@ MODAL = {
     "dofs": rings.DOFS, "damping": 0.01, "frequency": [100.0, 200.0, 300.0], "nodal_diameter": [0, 1, 1],
     "shapes": [[1, 1, 1], [1, 0.5, [0.2, 0.3]], [1.0, [1, 2], 0]],
 }  # fmt: skip
+BASE = {"acceleration": 1.0, "direction": {"tip": 1.0}}
+STILL = {"sectors": 6, "engine_order": 0}
 WHOLE = "a simulation in time needs the whole ring"
 
 
@@ -40,7 +42,9 @@ def wrong(**tables):
         ({"cyclic": None}, ["structure.coupling: couples the", '"next.tip"', '"next.blade"']),
         ({"force": [{"dof": "next.tip", "amplitude": 1.0}]}, ['force[0].dof: is of the next']),
         ({"schedule": [{"frequency": 1.0, "cycles": 2}]}, [f"schedule: cannot be beside [cyclic]: {WHOLE}"]),
-        ({"base": {"acceleration": 1.0, "direction": {"tip": 1.0}}}, ["base: cannot be beside [cyclic]"]),
+        ({"base": BASE}, ["base: cannot be beside [cyclic]"]),
+        ({"base": BASE, "cyclic": STILL, "sweep": {"cyclic.engine_order": [0, 1]}},
+         ["base: cannot be beside [cyclic] with an engine_order other than 0"]),
         ({"contact": [rings.SHROUD | {"tangential": "next.tp"}]}, ['unknown degree of freedom "next.tp"']),
         ({"sweep": {"cyclic.engine_order": [1, 1.5]}}, ['"cyclic.engine_order"[1]: must be a whole number']),
         ({"sweep": {"cyclic.sectors": [5, 6]}}, ['did you mean "cyclic.engine_order"?']),

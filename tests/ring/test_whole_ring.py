@@ -130,3 +130,21 @@ def test_stability_of_all_points_is_told_by_the_multipliers_of_few():
     each = multipliers_of(system, float(path.parameter.max()))
     np.testing.assert_array_equal(found.stable, [each.verdict(z).stable for z in path.z])
     assert found.evaluations < 0.6 * len(path.z)
+
+
+def test_a_base_that_moves_along_the_axis_shakes_all_sectors():
+    """Of coupled masses each sector has its half, and that of its neighbour."""
+    heavy = {"stiffness": rings.SKEW, "mass": [[0.05, 0.0, 0.01], [0.0, 0.0, 0.0], [0.0, 0.02, 0.0]]}
+    data = rings.sector(4, 0, BOTH)
+    data["structure"] = data["structure"] | {"coupling": heavy, "mass": np.diag([1.2, 0.35, 0.25]).tolist()}
+    data["base"] = {"acceleration": 900.0, "phase": 0.3, "direction": dict.fromkeys(rings.DOFS, 1.0)}
+    full = rings.written_out(data)
+    full["base"] = data["base"] | {"direction": dict.fromkeys(full["structure"]["dofs"], 1.0)}
+    one, whole = (System(scene_from_dict(found), (1, 3)) for found in (data, full))
+    (z,) = solutions(one, 2.0 * np.pi * 95.0).solutions
+    around = rings.around(z, (1, 3), 2, one.scene.ring)
+    balance = whole.balance()
+    balance.evaluate(around)
+    assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()
+    (X,), (ring_X,) = (amplitudes_at(of, at[None])[0] for of, at in ((one, z), (whole, around)))
+    assert ring_X[:, :3] == pytest.approx(X[:, :3], rel=1e-9, abs=1e-11 * np.abs(X).max())

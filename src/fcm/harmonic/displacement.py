@@ -1,24 +1,31 @@
-"""Displacements of the degrees of freedom that are reported, and how fast they grow along a curve."""
+"""Displacements of the degrees of freedom that are reported, and how fast they change along a curve."""
 
 from __future__ import annotations
 
 import cython
 import numpy as np
 
-from fcm.harmonic.extremes import Extremes
 from fcm.structure.linear import Linear
 from fcm.structure.receptance import Receptance
+
+if cython.compiled:
+    from cython.cimports.fcm.harmonic.extremes import MANY, Extremes
+else:
+    from fcm.harmonic.extremes import MANY, Extremes
 
 
 @cython.cclass
 class Displacements(Extremes):
-    """Of x = mean + Re sum X exp(i h theta): mean (dof,), and rest, the answer to static loads alone."""
+    """`Extremes` whose parts `at` fills: sums of the shapes (mode, dof) times the parts of each mode,
+    of_modes (4 * harmonic, mode). mean (dof,); rest (dof,): the answer to static loads alone.
+    """
 
     def __init__(self, seen: Receptance, linear: Linear) -> None:
-        dofs = linear.dofs.shape[1]
+        count, dofs = seen.count, linear.dofs.shape[1]
         Extremes.__init__(self, seen.harmonics, dofs)
         self.seen = seen
         self.shapes, self.static = linear.dofs, linear.static_of_dofs
+        self.of_modes = np.zeros((4 * count, seen.modes))
         self.mean, self.rest = np.zeros(dofs), np.zeros(dofs)
         self.attached, self.apart = linear.attached
 
@@ -48,13 +55,11 @@ class Displacements(Extremes):
             self.mean[d] = total
         for j in range(self.seen.count):
             self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
+        self.sum_modes()
         for d in range(self.dofs):
             if not self.apart[d]:
                 self.from_ports(d, z, direction)
-            if self.seen.count == 1:
-                self.single(d)
-            else:
-                self.several(d)
+        self.fill()
         return 0
 
     @cython.cfunc
@@ -67,14 +72,13 @@ class Displacements(Extremes):
         d_force: cython.double[::1],
         d_omega: cython.double,
     ) -> cython.void:
-        """Amplitudes of one harmonic, mode by mode."""
-        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
+        """Amplitudes of the modes in one harmonic."""
+        n: cython.Py_ssize_t = self.seen.count
+        w: cython.Py_ssize_t = 2 + 4 * n
         i: cython.Py_ssize_t
-        d: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
         driven: cython.double = load if j == self.seen.driven else 0.0
-        self.clear(j)
         for i in range(self.seen.modes):
             f_re: cython.double = driven * self.seen.force_re[i]
             f_im: cython.double = driven * self.seen.force_im[i]
@@ -87,20 +91,26 @@ class Displacements(Extremes):
                 g_re -= self.seen.shapes[i, p] * d_force[k]
                 g_im -= self.seen.shapes[i, p] * d_force[k + 1]
             self.move(self.seen, j, i, f_re, f_im, g_re, g_im, d_omega)
-            for d in range(self.dofs):
-                shape: cython.double = self.shapes[i, d]
-                self.re[j, d] += shape * self.q_re
-                self.im[j, d] += shape * self.q_im
-                self.d_re[j, d] += shape * self.r_re
-                self.d_im[j, d] += shape * self.r_im
+            self.of_modes[j, i], self.of_modes[n + j, i] = self.q_re, self.q_im
+            self.of_modes[2 * n + j, i], self.of_modes[3 * n + j, i] = self.r_re, self.r_im
 
     @cython.cfunc
-    @cython.exceptval(check=False)
-    def clear(self, j: cython.int) -> cython.void:
-        """No amplitudes of a harmonic."""
+    @cython.exceptval(-1, check=False)
+    def sum_modes(self) -> cython.int:
+        """From the modes to the degrees of freedom."""
+        k: cython.Py_ssize_t
+        i: cython.Py_ssize_t
         d: cython.Py_ssize_t
-        for d in range(self.dofs):
-            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+        if self.dofs > MANY:
+            np.matmul(np.asarray(self.of_modes), np.asarray(self.shapes), out=np.asarray(self.parts))
+            return 0
+        for k in range(self.parts.shape[0]):
+            for d in range(self.dofs):
+                self.parts[k, d] = 0.0
+            for i in range(self.seen.modes):
+                for d in range(self.dofs):
+                    self.parts[k, d] += self.shapes[i, d] * self.of_modes[k, i]
+        return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)

@@ -82,8 +82,10 @@ def reported_at(system: System, z: FloatArray, direction: FloatArray) -> Reporte
     """The same of points z with directions there, both (point, unknown + 1)."""
     points = Points(system.looking, len(z))
     points.take(z, direction, np.ones(len(z)))
+    X = np.empty(np.shape(points.re), dtype=np.complex128)
+    X.real, X.imag = points.re, points.im
     return Reported(
-        X=np.asarray(points.re) + 1j * np.asarray(points.im),
+        X=X,
         mean=np.asarray(points.mean),
         amplitude=np.asarray(points.amplitude),
         force=np.asarray(points.force),

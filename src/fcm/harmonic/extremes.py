@@ -1,4 +1,4 @@
-"""The greatest and the least value of a motion of several harmonics over a cycle."""
+"""The greatest and the least displacement of a motion of several harmonics over a cycle."""
 
 from __future__ import annotations
 
@@ -9,27 +9,47 @@ from cython.cimports.libc.math import cos, fabs, hypot, sin
 from fcm.harmonic.waves import waves
 
 REFINED = cython.declare(cython.int, 4)  # Newton steps from a sample to the extreme, at most
-CLOSE = cython.declare(cython.double, 1e-9)  # [rad] the last of them, at which the value errs by its square
+# [rad] the last of them, after which the angle errs by its square
+CLOSE = cython.declare(cython.double, 1e-6)
+BLOCK = cython.declare(cython.int, 256)  # degrees of freedom whose samples lie in the processor's cache
+MANY = cython.declare(cython.int, 50)  # degrees of freedom from which on sums over modes and waves are BLAS's
 
 
 @cython.cclass
 class Extremes:
-    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates.
+    """re, im (harmonic, dof) amplitudes of x = mean + Re sum X exp(i h theta), d_re, d_im their rates: parts
+    (4 * harmonic, dof) one after the other.
 
     amplitude (dof,): half the peak-to-peak displacement, with one harmonic |X|; growth: its rate; angles
     (2, dof): of the greatest and the least displacement, if there are several.
     """
 
     def __init__(self, harmonics: cython.double[::1], dofs: cython.int) -> None:
-        count = harmonics.shape[0]
+        count: cython.int = harmonics.shape[0]
         self.harmonics, self.count, self.dofs = harmonics, count, dofs
-        self.re, self.im = np.zeros((count, dofs)), np.zeros((count, dofs))
-        self.d_re, self.d_im = np.zeros((count, dofs)), np.zeros((count, dofs))
+        self.parts = np.zeros((4 * count, dofs))
+        self.re, self.im, self.d_re, self.d_im = np.asarray(self.parts).reshape(4, count, dofs)
         self.amplitude, self.growth, self.angles = np.zeros(dofs), np.zeros(dofs), np.zeros((2, dofs))
         self.cosine, self.sine = waves(tuple(np.asarray(harmonics).tolist()))
         self.samples = self.cosine.shape[1]
+        self.sampling = np.concatenate((self.cosine, np.negative(self.sine)))
         self.wave, self.c, self.s = np.zeros(self.samples), np.zeros(count), np.zeros(count)
         self.value = self.rate = self.angle = 0.0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def fill(self) -> cython.int:
+        """Amplitude, growth and angles from the parts."""
+        d: cython.Py_ssize_t
+        if self.count == 1:
+            for d in range(self.dofs):
+                self.single(d)
+        elif self.dofs > MANY:
+            self.many()
+        else:
+            for d in range(self.dofs):
+                self.several(d)
+        return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -47,17 +67,39 @@ class Extremes:
         """Several: half the distance of the greatest and the least displacement."""
         k: cython.Py_ssize_t
         j: cython.int
-        step: cython.double = 6.283185307179586 / self.samples
-        between: cython.double = 0.0
         for k in range(self.samples):
             self.wave[k] = 0.0
         for j in range(self.count):
             re: cython.double = self.re[j, d]
             im: cython.double = self.im[j, d]
-            h: cython.double = self.harmonics[j] * step
-            between += 0.125 * h * h * hypot(re, im)
             for k in range(self.samples):
                 self.wave[k] += re * self.cosine[j, k] - im * self.sine[j, k]
+        self.both(d)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def many(self) -> cython.int:
+        """The same of all degrees of freedom."""
+        d: cython.Py_ssize_t
+        first: cython.Py_ssize_t
+        amplitudes = np.asarray(self.parts)[: 2 * self.count].T
+        for first in range(0, self.dofs, BLOCK):
+            sampled: cython.double[:, ::1] = amplitudes[first : first + BLOCK] @ self.sampling
+            for d in range(sampled.shape[0]):
+                self.wave[:] = sampled[d]
+                self.both(first + d)
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def both(self, d: cython.Py_ssize_t) -> cython.void:
+        """The greatest and the least of a sampled displacement."""
+        j: cython.int
+        step: cython.double = 6.283185307179586 / self.samples
+        between: cython.double = 0.0
+        for j in range(self.count):
+            h: cython.double = self.harmonics[j] * step
+            between += 0.125 * h * h * hypot(self.re[j, d], self.im[j, d])
         self.amplitude[d] = self.growth[d] = 0.0
         self.greatest(d, 0, between)
         self.greatest(d, 1, between)

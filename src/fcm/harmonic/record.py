@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -46,9 +47,8 @@ def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | 
     z = np.concatenate([path.z for path in paths])
     if shown is None:
         shown = [reported(system, path) for path in paths]
-    X = np.concatenate([one.X for one in shown])
-    mean, amplitude, force = (
-        np.concatenate([getattr(one, name) for one in shown]) for name in ("mean", "amplitude", "force")
+    X, mean, amplitude, force = (
+        _joined([getattr(one, name) for one in shown]) for name in ("X", "mean", "amplitude", "force")
     )
     number = np.repeat(np.arange(len(paths)), [path.z.shape[0] for path in paths])
     names = ("mark", "direction", "orientation", "shift")
@@ -56,6 +56,11 @@ def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | 
     # a unit of the unknowns is their size times the root of their number
     shift = shift * np.sqrt(2.0 * len(system.scene.contacts))
     return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, shift)
+
+
+def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """One after the other; one alone is not copied."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def amplitudes_at(system: System, z: FloatArray) -> tuple[ComplexArray, FloatArray]:

@@ -68,3 +68,17 @@ class TravellingDisplacements(Displacements):
                 self.im[j, d] += a * self.q_im + b * self.q_re
                 self.d_re[j, d] += a * self.r_re - b * self.r_im
                 self.d_im[j, d] += a * self.r_im + b * self.r_re
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def clear(self, j: cython.int) -> cython.void:
+        """No amplitudes of a harmonic."""
+        d: cython.Py_ssize_t
+        for d in range(self.dofs):
+            self.re[j, d] = self.im[j, d] = self.d_re[j, d] = self.d_im[j, d] = 0.0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def sum_modes(self) -> cython.int:
+        """Done for each harmonic."""
+        return 0

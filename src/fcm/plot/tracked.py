@@ -46,6 +46,7 @@ class DrawnTracking:
     tracks: tuple[DrawnTrack, ...]
     optimum: tuple[float, float] | None = None  # the number, and the peak
     length: str = ""
+    unit: str = ""  # of the number
 
 
 def read_tracked(path: Path) -> DrawnTracking | None:
@@ -79,6 +80,7 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             tuple(tracks),
             optimum,
             str(getattr(variables["tracked_amplitude"], "units", "")),
+            str(getattr(variables["tracked_number"], "units", "")),
         )
 
 
@@ -104,7 +106,7 @@ def _draw_folds(drawn: DrawnTracking) -> Figure:
             at = track.turn == 1.0
             axes.plot(track.number[at], track.frequency[at], "o", markersize=3.5, color=_MARK, zorder=3)
         axes.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Frequency of folds"))
-        _name_number(axes, drawn.key)
+        _name_number(axes, drawn)
         axes.set_title("shaded: several solutions", loc="right", fontsize=8)
         _say_unstable(axes, tracks)
     return figure
@@ -136,7 +138,7 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         if len(colours) > 1:
             upper.legend()
         _say_unstable(lower, wanted)
-        _name_number(lower, drawn.key)
+        _name_number(lower, drawn)
         _mark_optimum(upper, lower, drawn)
     return figure
 
@@ -162,9 +164,10 @@ def _say_unstable(axes: Axes, tracks: Sequence[DrawnTrack]) -> None:
         axes.set_title("; ".join(said), loc="left", fontsize=8)
 
 
-def _name_number(axes: Axes, key: str) -> None:
-    (symbol,) = symbols([key])
-    axes.set_xlabel(symbol if symbol == key else f"{symbol}  ({key})", parse_math=symbol != key)
+def _name_number(axes: Axes, drawn: DrawnTracking) -> None:
+    (symbol,), key = symbols([drawn.key], {drawn.key: drawn.unit}), drawn.key
+    known = symbols([key]) != [key]
+    axes.set_xlabel(f"{symbol}  ({key})" if known else symbol, parse_math=known)
     axes.minorticks_on()
 
 

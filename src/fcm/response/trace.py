@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Mark, Status
+from fcm.continuation import Mark
 from fcm.harmonic.believed import astray, disbelieved
-from fcm.harmonic.choice import Accurate, accurate, finer, given
-from fcm.harmonic.drift import REASONS, undetermined
+from fcm.harmonic.choice import Accurate, accurate, enlarged, finer, given
 from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded
@@ -22,17 +21,16 @@ from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
+from fcm.response.incomplete import FLOATING, incomplete
+from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
 from fcm.response.short_of import short_of
 from fcm.response.wanted import ONE_HARMONIC, Wanted
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.scene.model import FloatArray, Scene
-from fcm.units import in_unit
 
 METHODS = ("table", "closed-form")
-FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
-UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
 Rows = npt.NDArray[np.intp]
 
@@ -44,7 +42,7 @@ def traced_curve(
     from fcm.response.groups import lost_curve
 
     begin = time.perf_counter()
-    system = System(scene, wanted.harmonics or (1,), wanted.table, wanted.corrected)
+    system = System(leading(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
     system.work.look = look or system.work.look
     by_need = wanted.harmonics is None
     try:
@@ -60,7 +58,12 @@ def traced_curve(
     followed = _followed(found, wanted.accuracy if by_need else None)
     if by_need:
         followed = _with_jumps(followed, wanted.accuracy)
-    curve = _curve(followed)
+    if system.scene is scene:
+        curve = _curve(followed)
+    else:
+        followed = _with_all(followed, scene, wanted.accuracy if by_need else np.inf)
+        curve = _curve(followed)
+        curve.peaks = with_tops(curve.peaks, followed.found)
     if by_need and curve.complete:
         curve.short_of = short_of(followed.found, followed.lost, wanted.accuracy)
     curve.seconds = time.perf_counter() - begin
@@ -92,6 +95,20 @@ def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
     return followed
 
 
+def _with_all(followed: _Followed, scene: Scene, accuracy: float) -> _Followed:
+    """With all degrees of freedom of a scene, of those that lead; with more harmonics if one takes them."""
+    for _ in range(ROUNDS if followed.found.reached else 0):
+        every = of_all(followed.found, scene, accuracy)
+        if every.reached:
+            return replace(followed, found=every)
+        again = finer(followed.found, enlarged(every, accuracy), accuracy)
+        if again is None:
+            return replace(followed, found=every)
+        followed = _followed(again, accuracy)
+        del every  # which may be large
+    return replace(followed, found=of_all(followed.found, scene, accuracy))
+
+
 def _curve(followed: _Followed) -> Curve:
     """What was traced as a curve: branches one after the other, with a row of NaN between them."""
     found, parts = followed.found, followed.stable
@@ -101,7 +118,7 @@ def _curve(followed: _Followed) -> Curve:
     rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
     words, borne = cycles(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
-    reason, nowhere = _incomplete(found, points)
+    reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncations = [one.truncation for one in found.errors]
     far = disbelieved(points.z[:, -1], truncations, stable)
@@ -194,36 +211,6 @@ def _peaks(
         )
         for d, (dof, i) in enumerate(zip(dofs, highest, strict=True))
     }
-
-
-def _incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bool_]]:
-    """Why a curve is not complete, empty if it is; and which of its points are no steady states (point,)."""
-    system, branches = found.system, found.traced.branches
-    scene, unit = system.scene, system.scene.frequency_unit
-    reasons = undetermined(system, points.z, points.force)
-    nowhere = np.logical_or.reduce([np.zeros(points.path.size, dtype=bool), *reasons.values()])
-    for why, which in reasons.items():
-        if which.any():
-            omega = in_unit(points.z[which, -1], unit)
-            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {REASONS[why]}", nowhere
-    status = branches.status
-    if status is Status.COMPLETE:
-        return "", nowhere
-    broken = next((path for path in branches.paths if path.status is status), None)
-    why = _would_do(system, status)
-    if broken is None:
-        return f"{status.value}{why}", nowhere
-    end = float(in_unit(broken.parameter[-1], scene.frequency_unit))
-    return f"stopped at {end:.8g} {scene.frequency_unit}: {status.value}{why}", nowhere
-
-
-def _would_do(system: System, status: Status) -> str:
-    """What would help where a curve has stalled, if that is known."""
-    if status is not Status.STALLED:
-        return ""
-    if not system.linear.natural.all():
-        return FLOATING
-    return too_stiff(system) or ("" if system.linear.damping.any() else UNDAMPED)
 
 
 def pick(values: npt.NDArray[Any], rows: Rows) -> npt.NDArray[Any]:

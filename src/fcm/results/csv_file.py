@@ -14,7 +14,7 @@ from fcm.results.meanings import ORBIT_KINDS
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
 from fcm.rotation import unit_of
-from fcm.units import in_unit
+from fcm.units import headed, in_unit
 
 LAST_COLUMNS = ("stable", "table_error", "truncation_error")
 ORBIT_COLUMNS = ("closure_error", "sweep", "repeats")
@@ -36,7 +36,7 @@ def _columns(response: Response) -> list[str]:
     columns = [
         "curve",
         "branch",
-        *(response.parameters[0] if response.parameters else ()),
+        *(headed(key, response.units) for key in (response.parameters[0] if response.parameters else ())),
         f"frequency [{unit}]",
     ]
     columns += ["level"] if any(curve.level is not None for curve in response.curves) else []
@@ -71,10 +71,11 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
     """Write tracked curves as CSV, a row for each point; frequencies in the scene's unit."""
     tracking = response.tracking
     assert tracking is not None
-    keys = list(tracking.curves[0].parameters) if tracking.curves else []
+    swept = list(tracking.curves[0].parameters) if tracking.curves else []
+    keys = [headed(key, response.units) for key in (*swept, tracking.key)]
     units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
     amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
-    header = ["track", "what", *keys, tracking.key, f"frequency [{response.frequency_unit}]", *amplitudes]
+    header = ["track", "what", *keys, f"frequency [{response.frequency_unit}]", *amplitudes]
     with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow([*header, "corner", "turn", "trough"])

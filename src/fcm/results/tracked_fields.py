@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.results.field import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
-from fcm.units import in_unit
+from fcm.units import in_unit, unit_of_number
 
 KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"
 WHAT = "what of the response is tracked"
@@ -41,7 +41,7 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
     values = {name: _padded([getattr(curve, name) for curve in curves]) for name in MEANINGS}
     values["frequency"] = in_unit(values["frequency"], unit)
     more = {
-        "number": {"key": tracking.key},
+        "number": {"key": tracking.key} | _unit_of(tracking.key, response),
         "frequency": {"units": {"rad/s": "rad s-1", "Hz": "Hz"}[unit]},
     }
     what = np.array([curve.what for curve in curves], dtype=str)
@@ -56,14 +56,21 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
         meaning = meaning.format(key=tracking.key)
         out[f"tracked_{name}"] = Field(of, values[name], {"long_name": meaning, **more.get(name, {})})
     if tracking.what != "optimum":
-        out |= _errors(tracking)
+        out |= _errors(tracking, _unit_of(tracking.key, response))
     for key in curves[0].parameters:
         swept = np.array([curve.parameters[key] for curve in curves])
-        out[f"track_{key}"] = Field(("track",), swept, {"long_name": f"{key} of the curve"})
+        about = {"long_name": f"{key} of the curve"} | _unit_of(key, response)
+        out[f"track_{key}"] = Field(("track",), swept, about)
     return out
 
 
-def _errors(tracking: Tracking) -> dict[str, Field]:
+def _unit_of(key: str, response: Response) -> dict[str, str]:
+    """The attribute of a number's unit, where it is known."""
+    unit = unit_of_number(key, *response.units)
+    return {"units": unit} if unit else {}
+
+
+def _errors(tracking: Tracking, unit: dict[str, str]) -> dict[str, Field]:
     """What the harmonics left out would change, where that was looked at."""
     told = [np.full((3, curve.number.size), np.nan) for curve in tracking.curves]
     for out, curve in zip(told, tracking.curves, strict=True):
@@ -77,7 +84,7 @@ def _errors(tracking: Tracking) -> dict[str, Field]:
     about_known = "1 where the error was estimated, 0 where it was tried and cannot be told"
     return {
         "tracked_error": Field(dims, relative, {"long_name": about_relative, "units": "1"}),
-        "tracked_number_error": Field(dims, number, {"long_name": about_number}),
+        "tracked_number_error": Field(dims, number, {"long_name": about_number} | unit),
         "tracked_error_told": Field(dims, known, {"long_name": about_known}),
     }
 

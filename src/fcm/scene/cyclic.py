@@ -19,8 +19,8 @@ WHOLE_RING = "needs the whole ring: write all its sectors out as a scene without
 TABLES = {  # that have no meaning for one sector, and why
     "schedule": f"a simulation in time {WHOLE_RING}",
     "start": f"a simulation in time {WHOLE_RING}",
-    "base": "a base that moves shakes all sectors alike, which no engine order does but 0: give [[force]]",
 }
+SHAKES = "a base that moves shakes all sectors alike, along the axis; give [[force]]"
 
 
 class RingNames(Names):
@@ -63,7 +63,20 @@ def read_cyclic(top: Section) -> list[Part]:
     for table, why in TABLES.items():
         if table in top.data:
             top.wrong(table, f"cannot be beside [cyclic]: {why}")
-    return [{key: section.number(key, RULES[key]) for key in ("sectors", "engine_order")}]
+    found = {key: section.number(key, RULES[key]) for key in ("sectors", "engine_order")}
+    if "base" in top.data and (why := _no_base(top, found["engine_order"])):
+        top.wrong("base", f"cannot be beside [cyclic] {why}")
+    return [found]
+
+
+def _no_base(top: Section, order: float) -> str:
+    """Why the base of a ring cannot move; empty if it can."""
+    if "structure" not in top.data:
+        return "and [modal]: needs [structure]"
+    sweep = top.data.get("sweep")
+    tables = [sweep, *(sweep.get("paired") or ())] if isinstance(sweep, Mapping) else []
+    swept = any(isinstance(table, Mapping) and "cyclic.engine_order" in table for table in tables)
+    return f"with an engine_order other than 0: {SHAKES}" if swept or order != 0.0 else ""
 
 
 def ring_names(top: Section, own: Names | None) -> RingNames | None:

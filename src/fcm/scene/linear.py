@@ -86,11 +86,11 @@ def _of_ring(
     top: Section, parts: Parts, matrices: Matrices, output: list[str], ends: tuple[float, float], unit: str
 ) -> tuple[Parts, list[str]]:
     """As `with_modes`, with the modes of every nodal diameter."""
-    from fcm.scene.ring_reduction import modal_of_ring
+    from fcm.scene.ring_reduction import mass_of_all_alike, modal_of_ring
 
     dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
-    over_rows = distributions(parts, matrices.M)
+    over_rows = distributions(parts, mass_of_all_alike(matrices))
     pushed = np.concatenate((_columns(_directions(parts), len(dofs)), np.eye(len(dofs))[:, swept]), axis=1)
     distributed = _columns([*over_rows.values()], len(own))
     only = np.eye(len(own))[:, [own.place[name] for name in output]]

@@ -164,7 +164,7 @@ def _parts(
     parts["contact"] = read_contacts(top, modal["dofs"])
     parts["force"] = read_forces(top, modal["dofs"])
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
-    parts["base"] = read_base(top, modal["dofs"], "structure" in top.data)
+    parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)
     if cyclic:
         only_own(top, parts, modal["dofs"])
     output = read_output(response, own_names(modal["dofs"])) if response is not None else []

@@ -171,7 +171,11 @@ class Scene:
 
     def in_use(self) -> Scene:
         """The scene at those degrees of freedom only that are reported, or that something is attached to."""
-        used = np.isin(self.modal.dofs, self.reported)
+        return self.at_attached_and(np.isin(self.modal.dofs, self.reported))
+
+    def at_attached_and(self, chosen: npt.NDArray[np.bool_]) -> Scene:
+        """The scene at chosen degrees of freedom (dof,) and those that something is attached to."""
+        used = chosen.copy()
         different = {id(one): one for curve in self.each_curve() for one in curve.directions()}
         for direction in different.values():
             used |= direction != 0.0

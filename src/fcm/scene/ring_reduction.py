@@ -65,6 +65,11 @@ def modal_of_ring(
     return draft, [first, *at_many(matrices, outputs.shape[1], _aside(diameters)), *others]
 
 
+def mass_of_all_alike(matrices: Matrices) -> Any:
+    """The mass of a sector whose neighbours move as it does."""
+    return _at_diameter(matrices, 1.0).M
+
+
 def _aside(diameters: list[Diameter]) -> tuple[float, float]:
     """The greatest of all diameters."""
     own, damped = zip(*(one.found.aside for one in diameters), strict=True)

@@ -1,0 +1,63 @@
+"""Many outputs: a curve is followed by a few of them, and all have the peaks that they have alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from fcm.response import trace
+from fcm.scene import scene_from_dict
+
+COUNT = 60  # masses in a row, between two walls
+STIFFNESS = 4e4 * (2.0 * np.eye(COUNT) - np.eye(COUNT, k=1) - np.eye(COUNT, k=-1))
+NAMES = [f"m{i}" for i in range(COUNT)]
+ALONE = ["m3", "m30", "m44", "m58"]
+
+
+def masses(output, modes, n_0):
+    structure = {"dofs": NAMES, "mass": [1.0] * COUNT, "stiffness": STIFFNESS.tolist(), "damping": 0.01}
+    contact = {"name": "c", "tangential": "m20", "normal": "m21", "mu": 0.5, "k_u": 900.0, "k_v": 300.0}
+    return scene_from_dict(
+        {
+            # the flexibility of modes that are not kept would hang on the outputs
+            "structure": structure | {"modes": modes, "flexibility": False},
+            "contact": [contact | {"n_0": n_0}],
+            "force": [{"dof": "m7", "amplitude": 1.0}],
+            "response": {"frequency": [8.0, 34.0], "output": output},
+        }
+    )
+
+
+def test_peaks_among_many_are_those_alone_and_cost_few_points():
+    """Alone its peak is a point of the curve, found as it is followed; among many it is between points."""
+    (alone,), (among,) = (trace(masses(o, 6, 2.0), harmonics=3).curves for o in (ALONE, ["*"]))
+    for name in ALONE:
+        one, other = among.peaks[name], alone.peaks[name]
+        assert one.amplitude == pytest.approx(other.amplitude, rel=1e-9)
+        assert one.frequency == pytest.approx(other.frequency, rel=1e-6)
+        assert one.error == pytest.approx(
+            other.error, rel=0.1, abs=1e-5
+        )  # of which the typical one is a part
+        assert one.stable == other.stable
+    assert set(among.peaks) == set(NAMES) and np.any(alone.regime[:, 0] != "E")
+    assert among.frequency.size < 1.3 * alone.frequency.size
+
+
+def test_peaks_among_many_are_those_of_the_linear_structure():
+    """The contact sticks: the greatest answers of the matrices with its springs."""
+    (curve,) = trace(masses(["*"], COUNT, 50.0), harmonics=2).curves
+    natural, shapes = np.linalg.eigh(STIFFNESS)
+    damping = shapes @ np.diag(0.02 * np.sqrt(natural)) @ shapes.T
+    whole = STIFFNESS + np.diag(900.0 * (np.arange(COUNT) == 20) + 300.0 * (np.arange(COUNT) == 21))
+
+    def answer(omega, d):
+        matrix = whole - omega**2 * np.eye(COUNT) + 1j * omega * damping
+        return -abs(np.linalg.solve(matrix, np.eye(COUNT)[7])[d])
+
+    for d in (0, 13, 29, 41, 59):
+        peak = curve.peaks[f"m{d}"]
+        around = (0.99 * peak.frequency, 1.01 * peak.frequency)
+        top = minimize_scalar(answer, bounds=around, args=(d,), method="bounded", options={"xatol": 1e-8})
+        assert peak.amplitude == pytest.approx(-top.fun, rel=1e-9)
+        assert peak.frequency == pytest.approx(top.x, rel=1e-6)
