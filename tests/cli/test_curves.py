@@ -118,7 +118,9 @@ SWEEP = '[sweep]\n"contact.shroud.n_0" = [1, 5]\n"contact.shroud.k_u" = [1]\n"co
 
 def test_numbers_of_contacts_and_energies_have_units_in_files_and_pictures(fcm, tmp_path):
     (tmp_path / "s.toml").write_text(SCENE.replace("RANGE", "1.1") + SWEEP)
-    assert fcm("respond", "s.toml", "-o", "s.nc", "--harmonics", "1").code == 0
+    assert fcm("respond", "s.toml", "-o", "s.nc", "--csv", "s.csv", "--harmonics", "1").code == 0
+    header = (tmp_path / "s.csv").read_text().split(",")
+    assert header[2:5] == ["contact.shroud.n_0 [N]", "contact.shroud.k_u [N/mm]", "contact.shroud.mu"]
     with netCDF4.Dataset(tmp_path / "s.nc") as file:
         assert file["contact.shroud.n_0"].units == "N" and file["contact.shroud.k_u"].units == "N/mm"
         assert "units" not in file["contact.shroud.mu"].ncattrs()

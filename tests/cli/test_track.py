@@ -70,6 +70,17 @@ def test_tracked_folds_are_written_drawn_and_told(fcm, tmp_path):
     assert done.code == 2 and done.err.endswith("; try fcm plot peak\n")
 
 
+def test_the_tracked_number_has_a_unit_in_files_and_pictures(fcm, tmp_path):
+    text = (SCENES / "yang1998.toml").read_text("utf-8")
+    (tmp_path / "mm.toml").write_text(text + '\n[units]\nlength = "mm"\nforce = "N"\n', "utf-8")
+    args = ("respond", "mm.toml", *FOLDS, "4", "--to", "4.5", "-o", "folds.nc", "--csv", "folds.csv")
+    assert fcm(*args).code == 0
+    assert (tmp_path / "folds.csv").read_text("utf-8").split(",")[2] == "contact.shroud.n_0 [N]"
+    drawn = read_tracked(tmp_path / "folds.nc")
+    assert drawn is not None
+    assert draw_tracked(drawn).axes[0].get_xlabel() == "$n_{0}$ (N)  (contact.shroud.n_0)"
+
+
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):
     """Two of three cusps that lie close together move too far by more harmonics to be found again."""
     done = fcm("respond", "yang1998", *FOLDS, "4", "--to", "10", "-o", "folds.nc", "--json")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from fcm.response import trace
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
 
 COUNT = 60  # masses in a row, between two walls
@@ -31,7 +32,7 @@ def masses(output, modes, n_0):
 
 def test_peaks_among_many_are_those_alone_and_cost_few_points():
     """Alone its peak is a point of the curve, found as it is followed; among many it is between points."""
-    (alone,), (among,) = (trace(masses(o, 6, 2.0), harmonics=3).curves for o in (ALONE, ["*"]))
+    alone, among = (traced_curve(masses(o, 6, 2.0).in_use(), Wanted((1, 2, 3))) for o in (ALONE, ["*"]))
     for name in ALONE:
         one, other = among.peaks[name], alone.peaks[name]
         assert one.amplitude == pytest.approx(other.amplitude, rel=1e-9)
@@ -46,7 +47,7 @@ def test_peaks_among_many_are_those_alone_and_cost_few_points():
 
 def test_peaks_among_many_are_those_of_the_linear_structure():
     """The contact sticks: the greatest answers of the matrices with its springs."""
-    (curve,) = trace(masses(["*"], COUNT, 50.0), harmonics=2).curves
+    curve = traced_curve(masses(["*"], COUNT, 50.0), Wanted((1, 2)))
     natural, shapes = np.linalg.eigh(STIFFNESS)
     damping = shapes @ np.diag(0.02 * np.sqrt(natural)) @ shapes.T
     whole = STIFFNESS + np.diag(900.0 * (np.arange(COUNT) == 20) + 300.0 * (np.arange(COUNT) == 21))
