@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import fcm as package
+from fcm.plot.tracked import draw_tracked, read_tracked
 
 SCENES = Path(package.__file__).parent / "scenes"
 OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'

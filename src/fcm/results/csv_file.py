@@ -61,7 +61,7 @@ def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
         row = [c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
         row += [] if c.level is None else [repr(float(c.level[k]))]
         row += [] if c.mode is None else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
-        row += [repr(float(value)) for value in values[k]]
+        row += map(repr, values[k].tolist())
         row += [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
         row += [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
         yield row + ([] if orbits is None else _of_orbit(orbits, int(k)))

@@ -174,7 +174,8 @@ def damping_of(
         if effect > WORTH_SAYING:
             said.append(
                 "structure: damping between modes is left out; with it, the response without contacts "
-                f"would change by up to {100 * effect:.2g} % at resonances and the range's ends"
+                f"would change by up to {100 * effect:.2g} % at resonances and the range's ends; "
+                "between them this is not looked at"
             )
     return ratio, said
 

@@ -62,7 +62,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
     basis = np.zeros((system.rows, 0))
     outer = _without(system, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
-    static = static_receptance(system, kept, loads)
+    static = _static(system, kept, loads, _rest(system, kept, loads))
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
     far = FAR**2 * (highest or 1.0)
     newest = _of_energy_1(system, _orthogonal(system, kept, system.solve(outer)), INDEPENDENT * static)
@@ -70,7 +70,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
         basis = np.concatenate((basis, newest), axis=1)
         modes = _galerkin(system, basis, far)
         damping = omega * float((_damping_off(modes, outer, beyond, blocks > 1) / static).max())
-        bound = error_bound(system, kept, modes, loads, omega, beyond)
+        bound = _off(system, kept, modes, loads, omega, beyond, static)
         if modes.stiffness.max(initial=0.0) > 0.9 * far:
             bound += omega**2 / far
         found = Flexibility(modes, bound, damping)
@@ -85,15 +85,28 @@ def error_bound(
     system: System, kept: Modes, modes: Modes, loads: FloatArray, omega: float, beyond: float
 ) -> float:
     """Largest relative error of the receptance of any load by itself at omega; inf from `beyond` on."""
+    static = _static(system, kept, loads, _rest(system, kept, loads))
+    return _off(system, kept, modes, loads, omega, beyond, static)
+
+
+def _off(
+    system: System,
+    kept: Modes,
+    modes: Modes,
+    loads: FloatArray,
+    omega: float,
+    beyond: float,
+    static: FloatArray,
+) -> float:
+    """The same of loads whose static receptance (load,) is known."""
     if omega**2 >= beyond:
         return np.inf
     outer = _without(system, kept, loads)
     answer = modes.shapes * (1.0 / (modes.stiffness - omega**2)) @ (modes.shapes.conj().T @ outer)
     residual = outer - system.K @ answer + omega**2 * (system.M @ answer)
-    residual = _without(system, kept, residual)
-    error = np.einsum("ij,ij->j", residual.conj(), _orthogonal(system, kept, system.solve(residual)))
+    error = _rest(system, kept, residual)
     farther = (beyond - system.shift) / (beyond - omega**2) if np.isfinite(beyond) else 1.0
-    return float((np.abs(error) * farther / static_receptance(system, kept, loads)).max())
+    return float((np.abs(error) * farther / static).max())
 
 
 def bound_aside(
@@ -117,18 +130,23 @@ def bound_aside(
     own, share = 0.0, 0.0
     for first in range(0, others.shape[1], TOGETHER):
         some = others[:, first : first + TOGETHER]
-        own = max(own, error_bound(system, kept, found.modes, some, omega, beyond))
-        share = max(share, _share(system, kept, some))
-    share *= _share(system, kept, loads)
+        rest = _rest(system, kept, some)
+        static = _static(system, kept, some, rest)
+        own = max(own, _off(system, kept, found.modes, some, omega, beyond, static))
+        share = max(share, float((rest / static).max(initial=0.0)))
+    rest = _rest(system, kept, loads)
+    share *= float((rest / _static(system, kept, loads, rest)).max(initial=0.0))
     slow = omega / np.sqrt(beyond)
     return float(np.sqrt(own * found.bound)), float(2.0 * slow * np.sqrt(share) / (1.0 - slow**2) ** 2)
 
 
-def _share(system: System, kept: Modes, loads: FloatArray) -> float:
-    """The greatest part of a load's static receptance that the kept modes leave out."""
+def _rest(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
+    """The part of each load's static receptance that the kept modes leave out."""
     outer = _without(system, kept, loads)
-    rest = np.einsum("ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))).real
-    return float((rest / static_receptance(system, kept, loads)).max(initial=0.0))
+    rest: FloatArray = np.einsum(
+        "ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))
+    ).real
+    return rest
 
 
 def _damping_off(modes: Modes, outer: FloatArray, beyond: float, sixth: bool) -> FloatArray:
@@ -142,10 +160,8 @@ def _damping_off(modes: Modes, outer: FloatArray, beyond: float, sixth: bool) ->
     return off
 
 
-def static_receptance(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
-    """Displacement of each load along itself, at rest, without the rigid-body modes."""
-    outer = _without(system, kept, loads)
-    rest = np.einsum("ij,ij->j", outer.conj(), _orthogonal(system, kept, system.solve(outer))).real
+def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray) -> FloatArray:
+    """Displacement of each load along itself, at rest, without the rigid-body modes, from that part."""
     elastic = kept.stiffness > -system.shift
     on_modes = np.abs(kept.shapes[:, elastic].conj().T @ loads)
     total: FloatArray = rest + (on_modes**2 / kept.stiffness[elastic, None]).sum(axis=0)
