@@ -80,9 +80,9 @@ def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dic
         found = _outlined(_single(whole, look))
     except RestError:
         return {}
+    harmonics, paths = found.system.harmonics, found.traced.branches.paths
     return {
-        omega: [computed_state(scene, found.system.harmonics, z) for z in _crossings(found.traced.branches.paths, omega)]
-        for omega in inside
+        omega: [computed_state(scene, harmonics, z) for z in _crossings(paths, omega)] for omega in inside
     }
 
 
