@@ -77,8 +77,9 @@ def steady(system: System, state: State, look: Look = without_end) -> Steady | S
             ends.append(end)
             cycles.append(cycle)
         state = ends[-1]
+        near = np.inf if _linear(cycles) else NEAR
         for periods in _candidates(ends):
-            found = _repeating(system, state, periods)
+            found = _repeating(system, state, periods, near)
             if found is not None:
                 return found
         if count >= MANY:
@@ -96,11 +97,16 @@ def _candidates(ends: Sequence[State]) -> list[int]:
     return [1, *(k + 1 for k in range(1, apart.size) if apart[k] < min(NEAR, NEARER * apart[:k].min()))]
 
 
-def _repeating(system: System, state: State, periods: int) -> Steady | None:
+def _linear(cycles: Sequence[Cycle]) -> bool:
+    """Whether no contact changes its state: what is left of the start then decays, however slowly."""
+    return all(bool((np.ptp(np.asarray(cycle.segments.states), axis=0) == 0).all()) for cycle in cycles)
+
+
+def _repeating(system: System, state: State, periods: int, near: float) -> Steady | None:
     """The stable motion near a state that repeats after so many periods and not before."""
     x = np.concatenate((state.q, state.velocity, state.friction))
     shot = _closed(system, x, x, periods)
-    if shot is None or np.abs((shot.x - x) / shot.scale)[: 2 * system.modes].max() > NEAR:
+    if shot is None or np.abs((shot.x - x) / shot.scale)[: 2 * system.modes].max() > near:
         return None
     if periods > 1 and (before := _shorter(shot)) is not None:
         shot = _flipped(before, x, periods)
