@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic import foreseen
 from fcm.harmonic.choice import outlined
 from fcm.harmonic.further import padded
 from fcm.harmonic.system import System
@@ -53,15 +52,6 @@ def test_a_peak_that_more_harmonics_do_not_have_is_not_told():
     ahead = outlined(System(scene("gap5"))).ahead(1e-2)
     assert not ahead.told
     assert ahead.harmonics != (1,)
-
-
-def test_where_no_place_leads_to_more_harmonics_the_lowest_come_first(monkeypatch):
-    """From few to some; from those on what they would do without feedback is all there is to go by."""
-    monkeypatch.setattr(foreseen, "_ahead", lambda *a: None)
-    ahead = outlined(System(scene("yang1998", -5))).ahead(1e-3)
-    assert ahead.harmonics == (1, 2, 3) and not ahead.told
-    ahead = outlined(System(scene("yang1998", -5), (1, 2, 3))).ahead(1e-3)
-    assert 9 in ahead.harmonics and not ahead.told
 
 
 def test_harmonics_that_are_not_wanted_are_taken_away():

@@ -67,8 +67,7 @@ class Foreseen:
     """change: by how much a peak or fold is changed, relative, by many harmonics, as far as that is told.
 
     told: whether it is of all peaks. harmonics: those of the balance and those that bring what is told to the
-    accuracy, or nearer to it; where not all is told, also those that would do most without feedback, and
-    where nothing is, the lowest, from which more is told for less.
+    accuracy, or nearer to it; where not all is told, also those that would do most without feedback.
     """
 
     change: float
@@ -88,8 +87,6 @@ def foreseen(
     if found is None and len(paths) > 1:  # what is lower may lead further; of one path all was looked at
         found = _ahead(system, list(_places(paths, amplitudes, height, 0.0)), height, accuracy)
         found = None if found is None else replace(found, told=False)
-    if found is None and len(system.harmonics) < LOW:  # what they would do here is no guide: from there it is
-        return Foreseen(0.0, False, _joined(system.harmonics, range(1, LOW + 1)))
     found = found or Foreseen(0.0, False, system.harmonics)
     if found.told:
         return found
