@@ -65,9 +65,9 @@ def test_a_solution_that_only_the_level_of_some_harmonics_leads_to_is_found_with
 def test_where_the_level_turns_near_one_or_of_a_few_harmonics_it_is_followed_again():
     scene, omega = isola_stuck(), 1.5
     before = solutions(System(scene, up_to(7)), omega)
-    many = System(scene, up_to(13))
-    assert carried(many, replace(before, turns=(1.2,))) is not None
-    assert carried(many, replace(before, turns=(1.15,))) is None
-    assert carried(many, replace(before, turns=(0.87,))) is None
+    many, turn = System(scene, up_to(13)), before.turns[0]
+    assert carried(many, replace(before, turns=(turn._replace(level=1.2),))) is not None
+    assert carried(many, replace(before, turns=(turn._replace(level=1.15),))) is None
+    assert carried(many, replace(before, turns=(turn._replace(level=0.87),))) is None
     assert carried(many, replace(before, complete=False)) is None
     assert carried(many, solutions(System(scene, up_to(5)), omega)) is None

@@ -62,7 +62,8 @@ def carried(system: System, before: Found) -> Found | None:
         if there is None or any(_same(there, other) for other in known):
             return None
         known.append(there)
-    return replace(before, harmonics=system.harmonics, solutions=tuple(known))
+    turns = tuple(turn.padded(before.harmonics, system.harmonics) for turn in before.turns)
+    return replace(before, harmonics=system.harmonics, solutions=tuple(known), turns=turns)
 
 
 def _with_led(system: System, found: Found, before: Found) -> Found:

@@ -38,7 +38,7 @@ def turns_near(found: Found) -> bool:
     error falls faster than their number rises.
     """
     near = 1.0 + 1.0 / max(lowest_of(found.harmonics) - 1, 1)
-    return any(1.0 / near < level < near for level in found.turns)
+    return any(1.0 / near < turn.level < near for turn in found.turns)
 
 
 def lowest_of(harmonics: Sequence[int]) -> int:

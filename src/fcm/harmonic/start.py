@@ -19,6 +19,7 @@ from fcm.harmonic.common_levels import in_common, passings
 from fcm.harmonic.cost import paid, seconds_of
 from fcm.harmonic.linear_contacts import GREATEST, highest, least, linear_responses
 from fcm.harmonic.system import System
+from fcm.harmonic.turned import Turn, turns_of
 from fcm.scene.model import FloatArray
 
 WEAK = (1e-3, 1e-6, 1e-9)  # levels at which contacts are nearly linear
@@ -38,7 +39,7 @@ BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure
 class Found:
     """Solutions at one frequency with some harmonics, z (unknown + 1,), and whether their level was followed
     to its end, or back to its beginning; how far it is to be followed with more harmonics, infinite if that
-    is not told; and the levels at which it turned.
+    is not told; and where it turned.
     """
 
     omega: float
@@ -46,7 +47,7 @@ class Found:
     solutions: tuple[FloatArray, ...]
     complete: bool
     reach: float
-    turns: tuple[float, ...] = ()
+    turns: tuple[Turn, ...] = ()
 
 
 def solutions(system: System, omega: float, reach: float | None = None) -> Found:
@@ -83,7 +84,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
     found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    reach, turns = _reach(path.status, path.parameter), _turns(path.parameter)
+    reach, turns = _reach(path.status, path.parameter), turns_of(path, omega)
     return Found(omega, system.harmonics, found, complete, reach, turns)
 
 
@@ -102,8 +103,8 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
     found = None if path is None else passings(system, path, omega)
     if path is None or found is None:
         return None
-    levels = system.unit * path.parameter
-    return Found(omega, system.harmonics, tuple(found), True, _reach(path.status, levels), _turns(levels))
+    reach, turns = _reach(path.status, system.unit * path.parameter), turns_of(path, omega, system.unit)
+    return Found(omega, system.harmonics, tuple(found), True, reach, turns)
 
 
 def _whole(system: System, omega: float) -> Path:
@@ -143,12 +144,6 @@ def _reach(status: Status, levels: FloatArray) -> float:
     near = np.flatnonzero(levels < NEAR)
     most = float(levels[: near[-1] + 1].max()) if near.size else NEAR
     return FURTHER * max(most, NEAR)  # however far apart the points are
-
-
-def _turns(levels: FloatArray) -> tuple[float, ...]:
-    """Levels about which a curve folds."""
-    rises = levels[1:] > levels[:-1]
-    return tuple(levels[1:-1][rises[:-1] != rises[1:]].tolist())
 
 
 def level_curve(

@@ -19,6 +19,7 @@ from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, resonances
 from fcm.harmonic.system import System
+from fcm.harmonic.turned import passed_beside
 from fcm.scene.model import FloatArray
 
 
@@ -38,12 +39,14 @@ def traced(
 ) -> Traced:
     """Trace the branches through all solutions at the ends of the range and at the resonances inside it.
 
+    And through those beside where the level of the forces turned short of 1 there.
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
     elsewhere, whose branches are traced too if they are within the range.
     """
     span = system.scene.frequency_range
     found = found_at(system, (*span, *resonances(system)), fewer)
-    inside = [z for z in near if span[0] <= z[-1] <= span[1]]
+    beside = passed_beside(system, [turn for one in found for turn in one.turns])
+    inside = [z for z in (*near, *beside) if span[0] <= z[-1] <= span[1]]
     starts = [*(z for one in found for z in one.solutions), *inside]
     branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))
     return Traced(_steady(system, branches), found)

@@ -1,0 +1,65 @@
+"""Where the level of the forces turns short of 1, and the solutions that come of that at other frequencies.
+
+The level of the forces at which its curve turns is another at each frequency. Where it comes to be 1 a window
+of several solutions begins or ends: a fold of the response, and maybe of a closed branch that lies between
+the frequencies at which the level was followed, and that none of them tells of but by a turn near 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation import Path
+from fcm.harmonic.further import padded
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+SHORT = 2.0  # times 1, and that part of it: between these a turn may come to 1 within a range
+FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
+
+
+class Turn(NamedTuple):
+    """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's direction there
+    (unknown + 1,), in which that does not change; short if it turns before it passes the level 1."""
+
+    level: float
+    z: FloatArray
+    direction: FloatArray
+    short: bool
+
+    def padded(self, harmonics: Sequence[int], more: Sequence[int]) -> Turn:
+        """That of a balance with some harmonics as one of more."""
+        z, direction = (padded(one, harmonics, more) for one in (self.z, self.direction))
+        return self._replace(z=z, direction=direction)
+
+
+def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
+    """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
+    levels = unit * path.parameter
+    rises = levels[1:] > levels[:-1]
+    found = []
+    for i in np.flatnonzero(rises[:-1] != rises[1:]) + 1:
+        z, direction = np.append(unit * path.z[i, :-1], omega), np.append(path.direction[i, :-1], 0.0)
+        found.append(Turn(float(levels[i]), z, direction, bool((levels[i] < 1.0) == rises[i - 1])))
+    return tuple(found)
+
+
+def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]:
+    """Solutions (unknown + 1,) at the level 1 beside turns short of it, at whatever frequencies they are.
+
+    At a turn the balance F(x, omega, level) = 0 is singular in the displacements x alone. With the part of x
+    along the curve held, the frequency takes its place among the unknowns, and is found for the level 1.
+    """
+    for turn in turns:
+        if not turn.short or not 1.0 / SHORT < turn.level < SHORT:
+            continue
+        balance, newton = system.afresh(), system.front.newton
+        balance.measure(turn.z)
+        newton.z[:], newton.scale[:] = turn.z, balance.scale
+        along = turn.direction / np.asarray(balance.scale)
+        newton.row[:] = along / np.linalg.norm(along)
+        if newton.correct(1.0) and newton.moved < FAR:
+            yield np.array(newton.z)

@@ -1,0 +1,25 @@
+"""Branches that the level of the forces tells of by a turn short of 1 alone."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.choice import accurate
+from fcm.harmonic.system import System
+from fcm.scene import load_scene
+
+from .test_beside import amplitudes_at
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3])
+def test_a_closed_branch_between_the_frequencies_of_the_levels_is_found(accuracy):
+    """At 1.05324 rad/s a march of the contact law, by the method of Runge and Kutta, settles at
+    (0.4170, 0.1473) from 6 of 14 random states. Nothing of one harmonic tells of this branch, and where the
+    level of more is followed it turns at 0.9 to 0.996.
+    """
+    scene = load_scene(Path(__file__).parent / "scenes/loose_isola.toml").each_curve()[0]
+    found = accurate(System(replace(scene, frequency_range=(0.977, 1.15)), (1,)), accuracy)
+    there = amplitudes_at(found, 1.05324)
+    assert min(np.abs(one[[0, 3]] / (0.4170, 0.1473) - 1.0).max() for one in there) < 2e-2
