@@ -13,11 +13,14 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation import Path
+from fcm.continuation.newton import Newton
 from fcm.harmonic.further import padded
+from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 SHORT = 2.0  # times 1, and that part of it: between these a turn may come to 1 within a range
+ASIDE = 0.02  # of its size: from a solution beside a fold to those on either side of that
 FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
 
@@ -48,11 +51,13 @@ def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
 
 
 def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]:
-    """Solutions (unknown + 1,) at the level 1 beside turns short of it, at whatever frequencies they are.
+    """Stable solutions (unknown + 1,) at the level 1 beside turns short of it, at whatever frequencies.
 
     At a turn the balance F(x, omega, level) = 0 is singular in the displacements x alone. With the part of x
-    along the curve held, the frequency takes its place among the unknowns, and is found for the level 1.
+    along the curve held, the frequency takes its place among the unknowns, and is found for the level 1. That
+    is beside a fold, of which one side at most is stable.
     """
+    of = None
     for turn in turns:
         if not turn.short or not 1.0 / SHORT < turn.level < SHORT:
             continue
@@ -62,4 +67,16 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
         along = turn.direction / np.asarray(balance.scale)
         newton.row[:] = along / np.linalg.norm(along)
         if newton.correct(1.0) and newton.moved < FAR:
-            yield np.array(newton.z)
+            of = of or multipliers_of(system, system.scene.frequency_range[1])
+            yield from (z for z in _beside(newton) if of.verdict(z).stable == 1.0)
+
+
+def _beside(newton: Newton) -> list[FloatArray]:
+    """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
+    middle, along = np.array(newton.z), np.array(newton.tangent)
+    found = [middle]
+    for way in (-ASIDE, ASIDE):
+        newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
+        if newton.correct(ASIDE):
+            found.append(np.array(newton.z))
+    return found
