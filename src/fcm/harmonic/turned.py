@@ -20,7 +20,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 SHORT = 2.0  # times 1, and that part of it: between these a turn may come to 1 within a range
-ASIDE = 0.02  # of its size: from a solution beside a fold to those on either side of that
+ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on either side of that
 FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
 
@@ -75,8 +75,8 @@ def _beside(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]
-    for way in (-ASIDE, ASIDE):
+    for way in (sign * aside for aside in ASIDE for sign in (-1.0, 1.0)):
         newton.z[:], newton.row[:] = middle + way * along * np.asarray(newton.scale), along
-        if newton.correct(ASIDE):
+        if newton.correct(abs(way)):
             found.append(np.array(newton.z))
     return found
