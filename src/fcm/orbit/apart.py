@@ -11,7 +11,7 @@ from fcm.continuation import Path
 from fcm.continuation.branches import SAME
 from fcm.continuation.newton import Newton
 from fcm.motion.state import State
-from fcm.orbit.harmonic import MANY, computed_state
+from fcm.orbit.harmonic import FEW, MANY, computed_state
 from fcm.orbit.held import held
 from fcm.orbit.periodic import Look
 from fcm.orbit.problem import OrbitProblem
@@ -48,24 +48,48 @@ def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArra
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
 
 
-def states_along(scene: Scene, apart: bool, look: Look) -> Iterator[tuple[float, list[Place]]]:
-    """The height of each end and top of each branch of the balance, and guesses beside it, the nearest first.
-
-    The balance has as many harmonics as it takes; where branches of few are known to be apart, also `SOME`,
-    as others may lead to no closed branch. Of many contacts one harmonic, and only then.
-    """
+def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, Iterator[Place]]]:
+    """The height of each end and top of a balance's branches, and guesses beside it, the nearest first."""
     from fcm.harmonic.beside import around, tops
 
+    for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
+        beside = [(top, around(even, top)) for top, even in tops(path, shown.amplitude)]
+        for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
+            guesses = (path.z[i] for i in points)
+            yield float(shown.amplitude[top].max()), _places(scene, found.system.harmonics, guesses)
+
+
+def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArray]) -> Iterator[Place]:
+    """Guesses from points of a balance."""
+    for z in points:
+        yield float(z[-1]), computed_state(scene, harmonics, z)
+
+
+def first_balances(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
+    """The responses of the balance whose ends and tops may lead to other branches.
+
+    That of one harmonic, and where branches of few are known to be apart, also that of `SOME`, as others may
+    lead to no closed branch; of many contacts that of one, and only where branches are apart.
+    """
+    from fcm.harmonic.choice import outlined
+
     whole = scene.whole()
-    if not (whole.modal.frequency.all() and whole.contacts):
+    many = len(whole.contacts) >= MANY
+    if not (whole.modal.frequency.all() and whole.contacts) or (many and not apart):
         return
-    for found in _balances(whole, apart, look):
-        for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-            beside = [(top, list(around(even, top))) for top, even in tops(path, shown.amplitude)]
-            for top, points in [(0, [0]), (-1, [-1]), *beside]:
-                guesses = [computed_state(scene, found.system.harmonics, path.z[i]) for i in points]
-                places = list(zip(path.parameter[points].tolist(), guesses, strict=True))
-                yield float(shown.amplitude[top].max()), places
+    yield outlined(_single(whole, look))
+    if apart and not many:
+        yield outlined(_single(whole, look).with_harmonics(SOME))
+
+
+def further_balances(scene: Scene, look: Look) -> Iterator[Outline]:
+    """Those where one harmonic is not enough: of `FEW`, and of as many as it takes; none of many contacts."""
+    from fcm.harmonic.choice import accurate, outlined
+
+    whole = scene.whole()
+    if whole.modal.frequency.all() and len(whole.contacts) < MANY:
+        yield outlined(_single(whole, look).with_harmonics(FEW))
+        yield accurate(_single(whole, look), ACCURACY)
 
 
 def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dict[float, list[State]]:
@@ -94,16 +118,6 @@ def _crossings(paths: Sequence[Path], omega: float) -> Iterator[FloatArray]:
         for k in np.flatnonzero(ahead * (omega - after[:, -1]) <= 0.0):
             share = ahead[k] / rise[k] if rise[k] else 0.0
             yield np.append((before[k] + share * (after[k] - before[k]))[:-1], omega)
-
-
-def _balances(whole: Scene, apart: bool, look: Look) -> Iterator[Outline]:
-    """The responses of the balance that are looked at."""
-    from fcm.harmonic.choice import accurate
-
-    if len(whole.contacts) < MANY:
-        yield accurate(_single(whole, look), ACCURACY)
-    if apart:
-        yield _outlined(_single(whole, look))
 
 
 def _single(whole: Scene, look: Look) -> System:

@@ -9,9 +9,9 @@ from functools import partial
 import numpy as np
 
 from fcm.continuation import Mark, Path, Status, all_branches, follow
-from fcm.continuation.branches import Follow
+from fcm.continuation.branches import Branches, Follow
 from fcm.motion.errors import SimulationError
-from fcm.orbit.apart import passes
+from fcm.orbit.apart import first_balances, further_balances, passes
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
@@ -96,15 +96,41 @@ def explore(
     """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
     scene = problem.scene
     found, missed, sought, apart = starts(problem, look)
-    branches = partial(all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step)
-    paths = branches(found, along=along).paths
-    if not sought:  # what is passed already is known without being followed again
-        for z in along_balance(problem, apart, look):
-            if not known(paths, [z], problem):
-                more = branches([z], along=along, known=paths).paths[len(paths) :]
-                paths += tuple(path for path in more if not known(paths, spread(path), problem))
+    branches = partial(
+        all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step, along=along
+    )
+    paths = branches(found).paths
+    if not sought:
+        paths = _with_others(problem, paths, apart, branches, look)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join(missed[end] for end in ends)
+
+
+def _with_others(
+    problem: OrbitProblem,
+    paths: tuple[Path, ...],
+    apart: bool,
+    branches: Callable[..., Branches],
+    look: Look,
+) -> tuple[Path, ...]:
+    """Paths, and those of other branches that the balance leads to.
+
+    One harmonic is enough where each of its ends and tops leads to a motion as high, on a path that is there.
+    apart as of `first_balances`.
+    """
+    scene = problem.scene
+    for balances in (first_balances(scene, apart, look), further_balances(scene, look)):
+        before, high = len(paths), True
+        for balance in balances:
+            points, as_high = along_balance(problem, balance, look)
+            high = high and as_high
+            for z in points:  # what is passed already is known without being followed again
+                if not known(paths, [z], problem):
+                    more = branches([z], known=paths).paths[len(paths) :]
+                    paths += tuple(path for path in more if not known(paths, spread(path), problem))
+        if high and len(paths) == before:
+            break
+    return paths
 
 
 def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:

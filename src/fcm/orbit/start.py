@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from typing import NamedTuple
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,8 +26,11 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.undetermined import not_determined, rests_elsewhere
 from fcm.scene.model import FloatArray, Scene
 
+if TYPE_CHECKING:
+    from fcm.harmonic.choice import Outline
+
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed,
-AS_HIGH = 0.95  # of the top's height: or the first that is so high
+AS_HIGH = 0.9  # of the top's height: or the first that is so high, as the balance of one harmonic may be off
 PLACES = 24  # between which the range is looked at with more harmonics, where nothing else was found
 FEWER = 12  # between which it is looked at with more damping, where nothing was found so either
 ONE, MORE = (1,), tuple(range(1, 8))  # harmonics that are looked for, and then corrected
@@ -39,7 +43,7 @@ class Starts(NamedTuple):
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
     sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
-    apart: bool  # whether the balance has more solutions than there are points: see `along_balance`
+    apart: bool  # whether the balance has more solutions than there are points: see `first_balances`
 
 
 def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
@@ -77,25 +81,27 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
     return Starts(found or _anywhere(problem, look), at_ends, not found, apart)
 
 
-def along_balance(problem: OrbitProblem, apart: bool, look: Look = without_end) -> list[FloatArray]:
-    """Points beside the ends and tops of the balance's branches.
+def along_balance(
+    problem: OrbitProblem, found: Outline, look: Look = without_end
+) -> tuple[list[FloatArray], bool]:
+    """Points beside the ends and tops of a balance's branches, and whether each is as high as there.
 
     The few harmonics that `starts` has, at its frequencies, need not lead there: some branches are closed, or
     are so for the exact motion alone.
-
-    apart: whether a branch on which the balance leads away from an end of the range may be closed.
     look is called now and then.
     """
-    found = list[FloatArray]()
-    for height, places in states_along(problem.scene, apart, look):
-        there = list[tuple[float, FloatArray]]()
-        for place in places[:TRIED]:
+    points, alike = list[FloatArray](), True
+    for height, places in states_along(problem.scene, found):
+        there, high = list[tuple[float, FloatArray]](), False
+        for place in islice(places, TRIED):
             there += [(_height(problem, z), z) for z in _points(problem, place, look)]
-            if there and there[-1][0] > AS_HIGH * height:
+            high = bool(there) and there[-1][0] > AS_HIGH * height
+            if high:
                 break
         if there:  # some may lead to a lower branch
-            _add(problem, found, max(there, key=lambda one: one[0])[1])
-    return found
+            _add(problem, points, max(there, key=lambda one: one[0])[1])
+        alike = alike and high
+    return points, alike
 
 
 def _height(problem: OrbitProblem, z: FloatArray) -> float:
