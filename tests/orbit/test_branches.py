@@ -96,18 +96,23 @@ def test_a_closed_branch_is_found_that_the_balance_has_at_the_end_of_the_range()
     assert max(one[0] for one in there) == pytest.approx(0.4170, rel=1e-2)
 
 
-def test_a_closed_branch_that_neither_the_ends_nor_the_resonances_of_the_range_lead_to_is_found():
-    """The motion of a simulation from a state near it stays on it."""
-    scene, omega = fcm.load_scene(Path(__file__).parent / "scenes/closed_inside.toml"), 1.275
-    near = State(np.array([5.6, -0.4, -0.7]), np.array([-37.8, 5.4, -6.7]), np.zeros(2))
-    amplitude = simulate(scene, omega, 200, near).measures(last=1)[0].amplitude
-    assert amplitude[0] > 40.0
+def test_closed_branches_that_neither_the_ends_nor_the_resonances_of_the_range_lead_to_are_found():
+    """The motions of simulations from states near two of them stay on them."""
+    scene = fcm.load_scene(SCENES / "closed_inside.toml")
     curve = curve_of(scene)
-    off = curve.frequency - omega
-    across = np.flatnonzero((off[:-1] * off[1:] <= 0.0) & (curve.amplitude[:-1, 0] > 40.0))
-    share = (off[across] / (off[across] - off[across + 1]))[:, None]
-    there = (1.0 - share) * curve.amplitude[across] + share * curve.amplitude[across + 1]
-    assert curve.complete and np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
+    assert curve.complete
+    for omega, q, velocity in (
+        (1.275, [5.6, -0.4, -0.7], [-37.8, 5.4, -6.7]),
+        (1.2726, [4.3, 0.5, 0.8], [-39.1, 5.2, -4.7]),
+    ):
+        near = State(np.array(q), np.array(velocity), np.zeros(2))
+        amplitude = simulate(scene, omega, 200, near).measures(last=1)[0].amplitude
+        assert amplitude[0] > 40.0
+        off = curve.frequency - omega
+        across = np.flatnonzero((off[:-1] * off[1:] <= 0.0) & (curve.amplitude[:-1, 0] > 40.0))
+        share = (off[across] / (off[across] - off[across + 1]))[:, None]
+        there = (1.0 - share) * curve.amplitude[across] + share * curve.amplitude[across + 1]
+        assert np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
 
 
 def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_not():
