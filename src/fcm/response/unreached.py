@@ -74,32 +74,37 @@ def _beside(
     """
     found, damped = list[Sample](), bool((problem.scene.modal.damping > 0.0).all())
     for guess in (*guesses, None):
-        several = any(one.repeats != 1 for one in (*known, *found))
+        there = [*known, *found]
+        simulate = damped and all(one.repeats == 1 for one in there)
         try:
-            one = _led_to(problem, omega, guess, damped and not several, look)
+            one = _led_to(problem, omega, guess, simulate, there, look)
         except SimulationError:  # it cannot be computed, or is not determined
             continue
-        if one is not None and not any(_same(one, other) for other in (*known, *found)):
+        if one is not None and not any(_same(one, other) for other in there):
             found.append(one)
     return found
 
 
 def _led_to(
-    problem: OrbitProblem, omega: float, guess: State | None, simulate: bool, look: Look
+    problem: OrbitProblem,
+    omega: float,
+    guess: State | None,
+    simulate: bool,
+    known: Sequence[Sample],
+    look: Look,
 ) -> Sample | None:
-    """The stable motion that a guess, or rest, leads to, if it does."""
+    """The stable motion that a guess, or rest, leads to, if it does and that is not known."""
     if guess is None:
-        return _simulated(problem, omega, unloaded(problem.scene), look) if simulate else None
+        return _simulated(problem, omega, unloaded(problem.scene), known, look) if simulate else None
     orbit = shoot(System(problem.scene, omega), guess, look)
-    found = _stable(problem, orbit, look)
-    if found is None and simulate and (orbit is None or _left_by_turns(orbit)):
-        return _simulated(problem, omega, guess, look)
-    return found
+    if simulate and (orbit is None or (not orbit.stable and _left_by_turns(orbit))):
+        return _simulated(problem, omega, guess, known, look)
+    return _stable(problem, orbit, known, look)
 
 
-def _stable(problem: OrbitProblem, orbit: Orbit | None, look: Look) -> Sample | None:
-    """The point of a motion that is stable."""
-    if orbit is None or not orbit.stable:
+def _stable(problem: OrbitProblem, orbit: Orbit | None, known: Sequence[Sample], look: Look) -> Sample | None:
+    """The point of a motion that is stable and not known."""
+    if orbit is None or not orbit.stable or any(_as_large(orbit, one, SAME) for one in known):
         return None
     z = first_point(problem, orbit, look)
     sample = sampled(problem, z, np.zeros(z.size))
@@ -112,22 +117,30 @@ def _left_by_turns(orbit: Orbit) -> bool:
     return greatest.real < 0.0 or greatest.imag != 0.0
 
 
-def _simulated(problem: OrbitProblem, omega: float, guess: State, look: Look) -> Sample | None:
-    """The steady motion that one from a guess comes to."""
+def _simulated(
+    problem: OrbitProblem, omega: float, guess: State, known: Sequence[Sample], look: Look
+) -> Sample | None:
+    """The steady motion that one from a guess comes to; if it repeats after each period, one not known."""
     system = System(problem.scene, omega)
     found = steady(system, guess, look)
     if not isinstance(found, Steady):
         return None
-    return settled(omega, found) if found.periods != 1 else _stable(problem, shoot(system, found.state), look)
+    if found.periods != 1:
+        return settled(omega, found)
+    return _stable(problem, shoot(system, found.state, look), known, look)
 
 
 def _same(one: Sample, other: Sample) -> bool:
     """Whether two motions are one; of those that do not repeat, whether they are as large."""
+    return _as_large(one, other, NEAR if 0 in (one.repeats, other.repeats) else SAME)
+
+
+def _as_large(one: Sample | Orbit, other: Sample, near: float) -> bool:
+    """Whether the greatest and least displacements of two motions are the same."""
     apart = np.abs(_reach(one) - _reach(other)).max(initial=0.0)
-    near = NEAR if 0 in (one.repeats, other.repeats) else SAME
     return bool(apart <= near * np.abs(_reach(one)).max(initial=0.0))
 
 
-def _reach(one: Sample) -> FloatArray:
+def _reach(one: Sample | Orbit) -> FloatArray:
     """The greatest and least displacements of a motion: (2, dof)."""
     return np.stack((one.measure.greatest, one.measure.least))
