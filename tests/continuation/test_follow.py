@@ -568,6 +568,28 @@ def test_smooth_folds_and_peaks_of_a_soft_problem(max_step):
     assert len(seen) < 3 * len(path.z) + 15
 
 
+def step_back(slope, height, width):
+    """p = 1 + slope x - height tanh((x - 3) / width): nearly a line, but for two folds around x = 3."""
+
+    def f(x, p):
+        back = np.tanh((x - 3.0) / width)
+        rise = slope - height / width * (1.0 - back * back)
+        return 1.0 + slope * x - height * back - p, rise, -1.0
+
+    return Labelled(f, lambda x: 0.0)
+
+
+@pytest.mark.parametrize("max_step", STEPS)
+def test_two_folds_that_a_step_hardly_misses_the_curve_by_are_found(max_step):
+    """Either side of them the curve rises as slowly, so that both ends of a step across them look alike."""
+    slope, height, width = 4e-3, 2e-4, 0.01
+    path = follow(step_back(slope, height, width), start(1.0, 1.0042), (1.0042, 1.02), True, max_step)
+    turn = np.sqrt(1.0 - slope * width / height)  # tanh where p neither rises nor falls
+    up = height * turn - slope * width * np.arctanh(turn)
+    assert path.status is Status.COMPLETE
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([1.012 + up, 1.012 - up], abs=1e-9)
+
+
 def test_a_curve_goes_on_from_any_stage_to_the_same_points():
     stages = []
     whole = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, watch=stages.append)

@@ -21,12 +21,12 @@ from fcm.continuation.stage import Stage, put_back, state_of
 if cython.compiled:
     from cython.cimports.fcm.continuation.ahead import ahead
     from cython.cimports.fcm.continuation.leaving import before_corner
-    from cython.cimports.fcm.continuation.margins import crosses, detour, dip
+    from cython.cimports.fcm.continuation.margins import crosses, detour, dip, turning
     from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
 else:
     from fcm.continuation.ahead import ahead
     from fcm.continuation.leaving import before_corner
-    from fcm.continuation.margins import crosses, detour, dip
+    from fcm.continuation.margins import crosses, detour, dip, turning
     from fcm.continuation.step_rule import clear, extent, good, next_step
 
 FIRST = cython.declare(cython.double, 1e-3)  # the first step
@@ -188,6 +188,10 @@ class Follower:
     def good(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""
         return bool(good(self.front))
+
+    def turning(self) -> float:
+        """Length at which the step passes by two folds that its ends tell of; 0 if they do not."""
+        return float(turning(self.front) * self.front.step)
 
     @cython.ccall
     def smooth(self) -> object:

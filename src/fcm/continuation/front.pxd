@@ -3,7 +3,7 @@ from fcm.continuation.prediction cimport Prediction
 from fcm.continuation.step cimport Step
 
 cdef class Front(Step):
-    cdef public double missed
+    cdef public double missed, strayed
     cdef public int which
     cdef public Prediction prediction
     cdef double past

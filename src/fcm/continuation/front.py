@@ -6,7 +6,7 @@ The next place is predicted, then corrected; see `step` for the places between.
 from __future__ import annotations
 
 import cython
-from cython.cimports.libc.math import sqrt
+from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation import sharp
 from fcm.continuation.place import Place
@@ -33,7 +33,7 @@ class Front(Step):
     def __init__(self, problem: Problem) -> None:
         Step.__init__(self, problem)
         self.prediction = Prediction(problem.unknowns + 1)
-        self.missed = 0.0
+        self.missed, self.strayed = 0.0, 0.0
         self.which = -1  # the margin of which a change of sign was found last ahead of here
         self.past = 0.0  # up to here the margins beyond a corner are taken as known
 
@@ -60,8 +60,12 @@ class Front(Step):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def go(self, step: cython.double) -> cython.bint:
-        """Find the place there at a step; missed and cosine say how well it was predicted."""
+        """Find the place there at a step; missed and cosine say how well it was predicted.
+
+        strayed is the part of missed, of the length of the step, that the parameter has.
+        """
         i: cython.Py_ssize_t
+        n: cython.Py_ssize_t = self.problem.unknowns
         missed: cython.double = 0.0
         self.prediction.put(self.here, self.newton.scale, step, self.guess)
         self.newton.z[:] = self.guess
@@ -71,8 +75,10 @@ class Front(Step):
         for i in range(self.guess.shape[0]):
             missed += ((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
         # shorter steps would miss the curve by as much where rounding made the miss
-        missed = max(sqrt(missed) - ROUNDINGS * self.newton.unsure, 0.0)
-        self.step, self.missed = step, missed / step
+        rounding: cython.double = ROUNDINGS * self.newton.unsure
+        strayed: cython.double = fabs(self.newton.z[n] - self.guess[n]) / self.newton.scale[n]
+        self.step, self.missed = step, max(sqrt(missed) - rounding, 0.0) / step
+        self.strayed = max(strayed - rounding, 0.0) / step
         self.cosine = along(self.here.tangent, self.newton.tangent)
         self.record(self.there, True, True)
         self.there.incline(self.problem, self.newton.scale, self.guess)

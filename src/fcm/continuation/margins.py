@@ -53,20 +53,12 @@ def detour(front: Front, greatest: cython.double[::1]) -> cython.double:
     both ends tell; of outputs those near their greatest.
     """
     k: cython.Py_ssize_t
-    n: cython.Py_ssize_t = front.problem.unknowns
-    at: cython.double
     size: cython.double
     step: cython.double = front.step
-    unit: cython.double = step * front.newton.scale[n]
     along: cython.double = step / front.spread()
     if step <= BLURRED:
         return 0.0
-    at = opposite(
-        front.there.z[n] - front.here.z[n],
-        front.here.tangent[n] * unit,
-        front.there.tangent[n] * unit / front.spread(),
-        0.0,
-    )
+    at: cython.double = turning(front)
     for k in range(front.problem.outputs):
         size = max(front.here.output[k], front.there.output[k])
         if at == 0.0 and size >= NEARLY_GREATEST * greatest[k]:
@@ -77,6 +69,20 @@ def detour(front: Front, greatest: cython.double[::1]) -> cython.double:
                 RISE * size * step,
             )
     return at * step
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def turning(front: Front) -> cython.double:
+    """The part of the step where the parameter may go the other way than here and there; 0 if nowhere."""
+    n: cython.Py_ssize_t = front.problem.unknowns
+    unit: cython.double = front.step * front.newton.scale[n]
+    return opposite(
+        front.there.z[n] - front.here.z[n],
+        front.here.tangent[n] * unit,
+        front.there.tangent[n] * unit / front.spread(),
+        0.0,
+    )
 
 
 @cython.cfunc

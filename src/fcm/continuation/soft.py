@@ -22,6 +22,7 @@ from fcm.continuation.trail import Trail
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
 ERROR = 5e-4  # distance of the curve from where it is predicted, in its own size, that a step aims at
 MOST = 4.0  # of that, with which a step is good
+STRAYED = 0.5  # of the parameter's change, by which a step may miss it: more may be the way past two folds
 GENTLY = 0.5  # cosine of the turn of a step
 ASTRAY = 0.5  # of its length, by which a step may miss the curve
 SHORTER, REFUSED, LONGER = 0.3, (0.1, 0.5), 3.0  # of a step to the next, to the one in its place: limits
@@ -45,6 +46,9 @@ class Follower(Protocol):
 
     def good(self) -> bool:
         """Whether the curve was where it was predicted, and went on as it did."""
+
+    def turning(self) -> float:
+        """Length at which the step passes by two folds; 0 if it does not."""
 
     def smooth(self) -> object:
         """Go on to the place there; a status where the curve ends."""
@@ -84,7 +88,11 @@ class Soft:
         step = asked = max(step, AFTER)  # what led to a corner may have been shorter
         while step > SHORTEST:
             if front.go(step) and self.good(follower):
-                return self.smooth(follower, WARY if step < asked else LONGER)
+                at = follower.turning() if step > SHARP else 0.0
+                if at == 0.0:
+                    return self.smooth(follower, WARY if step < asked else LONGER)
+                step = at
+                continue
             if step > SHARP:
                 step = max(SHARP, step * within(growth(front.newton.moved, front.prediction.cubic), *REFUSED))
                 front.prediction.cubic = False
@@ -106,13 +114,22 @@ class Soft:
         if front.step <= SHARP:
             return follower.good() and (same or front.cosine > STRAIGHT)
         near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
-        return not self.turned_twice() and (follower.good() or (same and near and front.cosine > GENTLY))
+        return (
+            not self.turned_twice()
+            and not self.strayed()
+            and (follower.good() or (same and near and front.cosine > GENTLY))
+        )
 
     def turned_twice(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
         here, there = self.front.here, self.front.there
         went = there.z[-1] - here.z[-1]
         return bool(went * here.tangent[-1] < 0.0 and went * there.tangent[-1] < 0.0)
+
+    def strayed(self) -> bool:
+        """Whether the parameter was missed by much of what it changes along the step."""
+        rise = max(abs(self.front.here.tangent[-1]), abs(self.front.there.tangent[-1]))
+        return self.front.strayed > STRAYED * rise
 
     def smooth(self, follower: Follower, longer: float) -> object:
         """Go on to the place there; the next step may be so many times as long."""
