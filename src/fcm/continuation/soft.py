@@ -129,7 +129,7 @@ class Soft:
     def strayed(self) -> bool:
         """Whether the parameter was missed by much of what it changes along the step."""
         rise = max(abs(self.front.here.tangent[-1]), abs(self.front.there.tangent[-1]))
-        return self.front.strayed > STRAYED * rise
+        return bool(self.front.strayed > STRAYED * rise)
 
     def smooth(self, follower: Follower, longer: float) -> object:
         """Go on to the place there; the next step may be so many times as long."""
