@@ -19,7 +19,8 @@ except ImportError:  # run as a program
 
 from fcm.continuation import Mark, follow
 from fcm.harmonic.choice import estimated
-from fcm.harmonic.error import RIVAL, reported
+from fcm.harmonic.crest import RIVAL
+from fcm.harmonic.error import reported
 from fcm.harmonic.system import System
 
 CASES = (

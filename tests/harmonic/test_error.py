@@ -11,7 +11,8 @@ from fcm.continuation import Mark
 from fcm.harmonic.believed import astray
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
-from fcm.harmonic.error import _may_exceed, errors_along
+from fcm.harmonic.crest import _may_exceed
+from fcm.harmonic.error import errors_along
 from fcm.harmonic.stability import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
@@ -141,7 +142,7 @@ def test_a_peak_is_corrected_until_it_settles():
     found, truth = estimated(system, 0.0), Truth(system)
     (path,), (shown,) = found.traced.branches.paths, found.shown
     top = int(shown.amplitude[:, 0].argmax())
-    settled = Corrector(system).settled(path.z[top], path.direction[top], shown.amplitude[top])
+    settled = Corrector(system).settled(path.z[top], path.direction[top], shown.amplitude[top])[1:]
     many = truth.amplitude(truth.beside(path.z[top], path.direction[top]))
     change = np.abs(many - shown.amplitude[top])
     assert (np.abs(settled - many) < 0.02 * change.max()).all()

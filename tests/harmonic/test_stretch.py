@@ -45,7 +45,7 @@ def test_all_stretches_of_a_curve_share_its_effort(monkeypatch):
         found.append((first, taken, own(curve, *ends)))
         return first
 
-    monkeypatch.setattr("fcm.harmonic.error.heights", twice)
+    monkeypatch.setattr("fcm.harmonic.crest.heights", twice)
     errors("beam")
     ((first, taken, again),) = found
     assert first is not None and 0.0 < taken < corrected.EFFORT

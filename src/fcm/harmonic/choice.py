@@ -10,7 +10,8 @@ import numpy as np
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
 from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_of
-from fcm.harmonic.error import RIVAL, Errors, Reported, errors_along, reported
+from fcm.harmonic.crest import RIVAL
+from fcm.harmonic.error import Errors, Reported, errors_along, reported
 from fcm.harmonic.foreseen import LOW, NOTHING, UNKNOWN, Foreseen, foreseen, needed
 from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.start import Found, few_of

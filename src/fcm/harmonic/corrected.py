@@ -107,14 +107,23 @@ class Corrected:
         d, amplitude = np.arange(len(places)), found.copy()
         for group in _within(np.unique(places), ALONE if self.corrector.ranking.cheap else TOGETHER):
             i = int(group[len(group) // 2])
-            if self.linear[i] or not np.abs(self.change[i, 1:]).max() > UNSETTLED:
+            change = self.settled_at(i)
+            if change is None:
                 continue
             there, now = (places >= group[0]) & (places <= group[-1]), self.amplitude[i]
-            factor = self.corrector.settled(self.path.z[i], self.path.direction[i], now)
-            factor /= np.where(now > 0.0, now, 1.0)
-            there &= np.isfinite(factor)
+            factor = (now + self.unit[i] * change[1:]) / np.where(now > 0.0, now, 1.0)
             amplitude[there] = (self.amplitude[places, d] * factor)[there]
         return amplitude
+
+    def settled_at(self, place: int) -> FloatArray | None:
+        """Relative displacement (1 + dof,) of a point, settled; None where it is small, or led nowhere."""
+        if self.linear[place] or not np.abs(self.change[place, 1:]).max() > UNSETTLED:
+            return None
+        z, now = self.path.z[place], self.amplitude[place]
+        found = self.corrector.settled(z, self.path.direction[place], now)
+        if not np.isfinite(found).all():
+            return None
+        return np.append(found[0] / z[-1] - 1.0, (found[1:] - now) / self.unit[place])
 
     def shares(self, places: Indices, size: FloatArray) -> FloatArray:
         """Greatest share (harmonic,), at some points, of sizes (dof,)."""

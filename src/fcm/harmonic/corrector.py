@@ -186,10 +186,11 @@ class Corrector:
         return self.second[harmonics]
 
     def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
-        """Amplitudes (dof,) of a point displaced again and again, each time with the harmonics that would do
-        most, until that changes them no more. NaN where that leads nowhere.
+        """Frequency and amplitudes (1 + dof,) of a point displaced again and again, each time with the
+        harmonics that would do most, until that changes the amplitudes (dof,) no more. NaN where that leads
+        nowhere.
         """
-        harmonics, now = self.system.harmonics, amplitude
+        harmonics, now, frequency = self.system.harmonics, amplitude, z[-1]
         for _ in range(ROUNDS):
             corrector = self.of(harmonics)
             corrector.further.at(z, now)
@@ -198,12 +199,12 @@ class Corrector:
                 break
             lifted = corrector.lifted(more)
             if not lifted.beside(z, direction):
-                return np.full(len(now), np.nan)
+                return np.full(1 + len(now), np.nan)
             z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
-            before, now, harmonics = now, np.array(lifted.found[1:]), more
+            before, now, harmonics, frequency = now, np.array(lifted.found[1:]), more, z[-1]
             if (np.abs(now - before) <= SETTLED * np.abs(now - amplitude)).all():
                 break
-        return now
+        return np.append(frequency, now)
 
 
 class _Kept(threading.local):

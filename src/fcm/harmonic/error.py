@@ -14,13 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.believed import runs
 from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.crest import crests, settling_at_ends
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
 from fcm.harmonic.shifted import Beside
-from fcm.harmonic.stretch import heights
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -28,10 +27,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 CHANCE = 0.1  # of the typical error of the degrees of freedom: less is a chance, at a change of sign
 CHANCE_AT_PEAKS = 0.05  # the same of peaks, which are displaced until they settle
-RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
-LEAP = 4.0  # times what it changes along itself, and is displaced at its ends: a stretch rises by no more
-GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
-FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
 
 
 @dataclass(frozen=True)
@@ -117,8 +112,10 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
-    height = np.where(inside, _heights(corrected, shown, change[:, 1:], tops), at_ends)
-    error[tops[inside], d[inside]] = _of_peaks(corrected, tops, height)[inside]
+    at_ends += settling_at_ends(corrected, shown.growth, tops)
+    height = np.where(inside, crests(corrected, shown.growth, change[:, 1:], tops), at_ends)
+    settles = inside | ~corrected.linear[tops]
+    error[tops[settles], d[settles]] = _of_peaks(corrected, tops, height)[settles]
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
     share = corrected.shares(special, shown.amplitude.max(axis=0))[:HIGHEST]
@@ -187,66 +184,3 @@ def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
     step[~(step > 0.0)] = 1.0
     pieces = (values[1:] - values[:-1]) / step[:, None]
     return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))
-
-
-def _heights(corrected: Corrected, shown: Reported, change: FloatArray, tops: Indices) -> FloatArray:
-    """Greatest amplitudes of the corrected curve (dof,).
-
-    Unknown where the corrected curve is not known at the highest point, or along a stretch that is nearly as
-    high and may become the highest.
-    """
-    amplitude = corrected.amplitude
-    d = np.arange(len(tops))
-    now = amplitude[tops, d]
-    found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
-    value = np.where(found, amplitude + corrected.unit * change, 0.0)
-    places = value.argmax(axis=0)
-    greatest = corrected.settled(places, value[places, d])
-    for top in np.unique(tops[(corrected.path.mark[tops] & Mark.CORNER) > 0]).tolist():
-        if _gap(corrected, shown, top):
-            beyond = heights(corrected, top - 1, top + 1)
-            greatest = (
-                greatest if beyond is None else np.maximum(greatest, np.where(tops == top, beyond, 0.0))
-            )
-    unknown = np.zeros(len(tops), dtype=np.bool_)
-    for first, end in runs(np.isnan(change[:, 0])):
-        may = _may_exceed(corrected, change, first, end, now) if end - first > FEW else d < 0
-        rivals = may | ((first <= tops) & (tops < end))
-        if rivals.any():
-            followed = heights(corrected, first - 1, end)
-            if followed is None:
-                unknown |= rivals
-            else:
-                greatest = np.maximum(greatest, followed)
-    known: FloatArray = np.where(unknown, np.nan, greatest)
-    return known
-
-
-def _may_exceed(
-    corrected: Corrected, change: FloatArray, first: int, end: int, now: FloatArray
-) -> npt.NDArray[np.bool_]:
-    """Whether the corrected curve (dof,) may be higher than now along a stretch without displacements."""
-    inside, ends = corrected.amplitude[first:end], [i for i in (first - 1, end) if 0 <= i < len(change)]
-    highest = inside.max(axis=0)
-    may: npt.NDArray[np.bool_] = highest > RIVAL * now
-    if ends:
-        moved = (np.abs(change[ends]) * corrected.unit[ends]).max(axis=0)
-        may &= highest + LEAP * (np.ptp(inside, axis=0) + moved) > now
-    return may
-
-
-def _gap(corrected: Corrected, shown: Reported, top: int) -> bool:
-    """Whether a corner moves so far along the curve that no point of the corrected one is near its top.
-
-    Of the two pieces of the corrected curve beside it one then goes on beyond what is displaced to it.
-    """
-    path, beside = corrected.path, np.array([top - 1, top + 1])
-    if top == 0 or top == len(path.z) - 1:
-        return False
-    corrected.find(beside)
-    moved = path.parameter[beside] * corrected.change[beside, 0]
-    slope = np.abs(shown.growth[beside] / path.direction[beside, -1][:, None]).min(axis=0)
-    higher = np.abs(moved[1] - moved[0]) * slope
-    changed = np.abs(corrected.change[beside, 1:]).max(axis=0) * corrected.unit[top]
-    top_of = shown.amplitude[top] >= shown.amplitude.max(axis=0)
-    return bool((higher > GAP * changed)[top_of].any())

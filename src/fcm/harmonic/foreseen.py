@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrector import ENOUGH
-from fcm.harmonic.error import RIVAL
+from fcm.harmonic.crest import RIVAL
 from fcm.harmonic.further import HIGHEST, Further, padded
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.ranking import Ranking

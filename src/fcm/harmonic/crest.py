@@ -1,0 +1,123 @@
+"""The greatest amplitudes of a corrected curve, and where they cannot be told."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Mark
+from fcm.harmonic.believed import runs
+from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.stretch import heights
+from fcm.scene.model import FloatArray
+
+RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
+LEAP = 4.0  # times what it changes along itself, and is displaced at its ends: a stretch rises by no more
+GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
+FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
+BETWEEN = np.arange(1, 8)[:, None] / 8.0  # parts of the way from a point to the next
+
+
+def settling_at_ends(corrected: Corrected, growth: FloatArray, tops: Indices) -> FloatArray:
+    """By how much (dof,) the corrected amplitudes at the ends of a path, if tops are there, still change at
+    the frequencies of the tops until they settle; growth (point, dof) of the amplitudes along the path.
+    """
+    path, more = corrected.path, np.zeros(len(tops))
+    for end in {0, len(path.z) - 1}.intersection(tops.tolist()):
+        settled, rate = corrected.settled_at(end), path.direction[end, -1]
+        if settled is None or rate == 0.0:
+            continue
+        off = settled - corrected.change[end]
+        along = growth[end] / rate * path.parameter[end]  # change of the amplitudes over that of frequency
+        at = corrected.unit[end] * off[1:] - along * off[0]
+        more = np.where((tops == end) & np.isfinite(at), at, more)
+    return more
+
+
+def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: Indices) -> FloatArray:
+    """Greatest amplitudes of the corrected curve (dof,).
+
+    That is of a curve with growth (point, dof) of the amplitudes along it, which change (point, dof), and are
+    greatest at the tops. Unknown where the corrected curve is not known at the highest point, or along a
+    stretch that is nearly as high and may become the highest.
+    """
+    amplitude = corrected.amplitude
+    d = np.arange(len(tops))
+    now = amplitude[tops, d]
+    found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
+    value = np.where(found, amplitude + corrected.unit * change, 0.0)
+    places = value.argmax(axis=0)
+    greatest = corrected.settled(places, value[places, d])
+    greatest += _rise_beside(corrected, growth, change, places)
+    for top in np.unique(tops[(corrected.path.mark[tops] & Mark.CORNER) > 0]).tolist():
+        if _gap(corrected, growth, top):
+            beyond = heights(corrected, top - 1, top + 1)
+            greatest = (
+                greatest if beyond is None else np.maximum(greatest, np.where(tops == top, beyond, 0.0))
+            )
+    unknown = np.zeros(len(tops), dtype=np.bool_)
+    for first, end in runs(np.isnan(change[:, 0])):
+        may = _may_exceed(corrected, change, first, end, now) if end - first > FEW else d < 0
+        rivals = may | ((first <= tops) & (tops < end))
+        if rivals.any():
+            followed = heights(corrected, first - 1, end)
+            if followed is None:
+                unknown |= rivals
+            else:
+                greatest = np.maximum(greatest, followed)
+    known: FloatArray = np.where(unknown, np.nan, greatest)
+    return known
+
+
+def _rise_beside(corrected: Corrected, growth: FloatArray, change: FloatArray, places: Indices) -> FloatArray:
+    """By how much (dof,) the corrected curve is higher between its highest points, the places, and the next.
+
+    Of the amplitudes that is the cubic with their growth, of the changes a straight line. Nothing is told of
+    what lies between a point and a corner.
+    """
+    amplitude, place, d = corrected.amplitude, corrected.place, np.arange(len(places))
+    corner, last = (corrected.path.mark & Mark.CORNER) > 0, len(place) - 1
+    moved = corrected.unit * change
+    rise = np.zeros(len(places))
+    for first in (places - 1, places):
+        k = np.clip(first, 0, last - 1)
+        known = np.isfinite(moved[k, d] + moved[k + 1, d]) & ~corner[k] & ~corner[k + 1] & (k == first)
+        length, x, y = place[k + 1] - place[k], BETWEEN, 1.0 - BETWEEN
+        between = (
+            (amplitude[k, d] * (1.0 + 2.0 * x) + growth[k, d] * length * x) * y * y
+            + (amplitude[k + 1, d] * (1.0 + 2.0 * y) - growth[k + 1, d] * length * y) * x * x
+            + (moved[k, d] * y + moved[k + 1, d] * x)
+        )
+        higher = between.max(axis=0) - amplitude[places, d] - moved[places, d]
+        rise = np.where(known, np.maximum(rise, higher), rise)
+    return rise
+
+
+def _may_exceed(
+    corrected: Corrected, change: FloatArray, first: int, end: int, now: FloatArray
+) -> npt.NDArray[np.bool_]:
+    """Whether the corrected curve (dof,) may be higher than now along a stretch without displacements."""
+    inside, ends = corrected.amplitude[first:end], [i for i in (first - 1, end) if 0 <= i < len(change)]
+    highest = inside.max(axis=0)
+    may: npt.NDArray[np.bool_] = highest > RIVAL * now
+    if ends:
+        moved = (np.abs(change[ends]) * corrected.unit[ends]).max(axis=0)
+        may &= highest + LEAP * (np.ptp(inside, axis=0) + moved) > now
+    return may
+
+
+def _gap(corrected: Corrected, growth: FloatArray, top: int) -> bool:
+    """Whether a corner moves so far along the curve that no point of the corrected one is near its top.
+
+    Of the two pieces of the corrected curve beside it one then goes on beyond what is displaced to it.
+    """
+    path, beside = corrected.path, np.array([top - 1, top + 1])
+    if top == 0 or top == len(path.z) - 1:
+        return False
+    corrected.find(beside)
+    moved = path.parameter[beside] * corrected.change[beside, 0]
+    slope = np.abs(growth[beside] / path.direction[beside, -1][:, None]).min(axis=0)
+    higher = np.abs(moved[1] - moved[0]) * slope
+    changed = np.abs(corrected.change[beside, 1:]).max(axis=0) * corrected.unit[top]
+    top_of = corrected.amplitude[top] >= corrected.amplitude.max(axis=0)
+    return bool((higher > GAP * changed)[top_of].any())

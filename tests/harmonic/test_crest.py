@@ -1,0 +1,97 @@
+"""Estimated errors of peaks at the ends of a range, and between points, beside the exact motion."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.choice import estimated
+from fcm.harmonic.system import System
+from fcm.response.exact import trace_exact
+from fcm.scene import scene_from_dict
+
+
+def scene(frequency, damping, shapes, contact, forces, span):
+    """Three degrees of freedom a, b, c with one contact."""
+    modal = {"dofs": ["a", "b", "c"], "frequency": frequency, "damping": damping, "shapes": shapes}
+    force = [
+        {"dof": dict(zip("abc", weights, strict=True)), "amplitude": 1.0, "phase": phase}
+        for weights, phase in forces
+    ]
+    response = {"frequency": list(span)}
+    return scene_from_dict({"modal": modal, "contact": [contact], "force": force, "response": response})
+
+
+def low():
+    """A range so far below three resonances that harmonics from the 8th to the 80th meet one."""
+    return scene(
+        [1.0, 1.776, 3.834],
+        [0.01741, 0.01628, 0.01961],
+        [[-0.5628, -0.2075, -0.3431], [-0.4098, -0.3704, 2.937], [-1.686, 0.3817, -0.08885]],
+        {
+            "name": "c",
+            "tangential": "c",
+            "normal": "b",
+            "mu": 0.219,
+            "k_u": 1.849,
+            "k_v": 0.8065,
+            "n_0": 0.262,
+        },
+        [((1.46, 0.1332, -0.3911), 1.617), ((1.369, -0.7113, 0.202), 0.5709)],
+        (0.048, 0.05),
+    )
+
+
+def narrow():
+    """A range beside a resonance of little damping."""
+    return scene(
+        [1.0, 1.834, 2.602],
+        [0.006609, 0.02798, 0.005027],
+        [[2.211, -1.275, 0.5169], [0.754, -0.2241, -0.2659], [0.7315, 0.1731, 0.08737]],
+        {
+            "name": "c",
+            "tangential": "b",
+            "normal": "c",
+            "mu": 0.1624,
+            "k_u": 0.2616,
+            "k_v": 0.5791,
+            "n_0": 0.5805,
+        },
+        [((0.8708, -0.5754, 0.104), 4.566), ((0.5589, -0.671, -0.05054), 0.192)],
+        (1.05, 1.0525),
+    )
+
+
+def flat():
+    """Two flat peaks within the range."""
+    return scene(
+        [1.0, 2.519, 3.049],
+        [0.02786, 0.005388, 0.01384],
+        [[-1.119, -0.593, -1.466], [-0.7452, -1.369, 0.4976], [1.39, 0.1588, -0.5995]],
+        {
+            "name": "c",
+            "tangential": "b",
+            "normal": "c",
+            "mu": 0.3793,
+            "k_u": 26.58,
+            "k_v": 0.1412,
+            "n_0": 7.96,
+        },
+        [((0.782, 0.484, 0.758), 2.317), ((1.26, 0.9255, -0.4484), 5.078)],
+        (0.6, 1.6),
+    )
+
+
+@pytest.mark.parametrize(
+    ("one", "harmonics", "dofs"),
+    [(low(), (1, 2, 3, 4, 5, 6, 7), "ab"), (narrow(), (1,), "abc"), (flat(), (1, 2, 3, 5, 7, 9), "abc")],
+    ids=["low", "narrow", "flat"],
+)
+def test_errors_of_peaks_are_those_of_the_exact_motion_at_ends_and_between_points(one, harmonics, dofs):
+    """Within a factor of two."""
+    found, (exact,) = estimated(System(one, harmonics), 0.0), trace_exact(replace(one, harmonics=None)).curves
+    now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
+    for dof in dofs:
+        d = "abc".index(dof)
+        true = abs(exact.peaks[dof].amplitude / now[d] - 1.0)
+        assert true > 1e-4 and 0.5 * true < found.peak[d] < 2.0 * true
