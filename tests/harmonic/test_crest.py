@@ -42,6 +42,26 @@ def low():
     )
 
 
+def lowest():
+    """A range so far below the resonances that the first is met by the hundredth harmonic."""
+    return scene(
+        [1.0, 1.868, 2.797],
+        [0.006464, 0.02571, 0.005684],
+        [[-1.036, -0.3082, 0.02818], [2.258, 0.2541, -0.4687], [-0.588, 1.147, -0.7564]],
+        {
+            "name": "c",
+            "tangential": "a",
+            "normal": "c",
+            "mu": 0.7548,
+            "k_u": 2.22,
+            "k_v": 0.5676,
+            "n_0": 0.1882,
+        },
+        [((-0.2886, 0.5268, 0.7573), 3.247), ((-0.6357, 0.5194, 0.5703), 4.575)],
+        (0.0098, 0.01),
+    )
+
+
 def narrow():
     """A range beside a resonance of little damping."""
     return scene(
@@ -95,3 +115,13 @@ def test_errors_of_peaks_are_those_of_the_exact_motion_at_ends_and_between_point
         d = "abc".index(dof)
         true = abs(exact.peaks[dof].amplitude / now[d] - 1.0)
         assert true > 1e-4 and 0.5 * true < found.peak[d] < 2.0 * true
+
+
+def test_no_error_of_a_peak_is_low_where_modes_are_met_by_harmonics_beyond_all_that_are_looked_at():
+    """By more than three; what those do without feedback is more than they do."""
+    one, harmonics = lowest(), (1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 13, 14)
+    found, (exact,) = estimated(System(one, harmonics), 0.0), trace_exact(one).curves
+    now = np.max([shown.amplitude.max(axis=0) for shown in found.shown], axis=0)
+    true = np.array([abs(exact.peaks[dof].amplitude / now["abc".index(dof)] - 1.0) for dof in "abc"])
+    assert (true > 4e-4).all()
+    assert (found.peak > true / 3.0).all() and (found.peak < 10.0 * true).all()

@@ -19,6 +19,7 @@ from fcm.harmonic.crest import crests, settling_at_ends
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
+from fcm.harmonic.ripple import ripple
 from fcm.harmonic.shifted import Beside
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -53,7 +54,8 @@ class Errors:
 
     amplitude (point, dof): by how much the corrected curve differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
-    peak (dof,): of the height of the greatest amplitude.
+    peak (dof,): of the height of the greatest amplitude; at least what the harmonics beyond all that are
+    looked at do to it.
     height (dof,): the greatest amplitude of the corrected curve, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
     share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
@@ -116,6 +118,9 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     height = np.where(inside, crests(corrected, shown.growth, change[:, 1:], tops), at_ends)
     settles = inside | ~corrected.linear[tops]
     error[tops[settles], d[settles]] = _of_peaks(corrected, tops, height)[settles]
+    for top in np.unique(tops[settles]).tolist():
+        beyond = np.abs(ripple(system, path.z[top], shown.X[top])) / unit[top]
+        error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     size = shown.amplitude.max(axis=1)
     share = corrected.shares(special, shown.amplitude.max(axis=0))[:HIGHEST]
