@@ -48,7 +48,7 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
     value = np.where(found, amplitude + corrected.unit * change, 0.0)
     places = value.argmax(axis=0)
     greatest = corrected.settled(places, value[places, d])
-    greatest += _rise_beside(corrected, growth, change, places)
+    greatest += rise_beside(corrected, growth, corrected.unit * change, places)
     for top in np.unique(tops[(corrected.path.mark[tops] & Mark.CORNER) > 0]).tolist():
         if _gap(corrected, growth, top):
             beyond = heights(corrected, top - 1, top + 1)
@@ -69,15 +69,15 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
     return known
 
 
-def _rise_beside(corrected: Corrected, growth: FloatArray, change: FloatArray, places: Indices) -> FloatArray:
-    """By how much (dof,) the corrected curve is higher between its highest points, the places, and the next.
+def rise_beside(corrected: Corrected, growth: FloatArray, moved: FloatArray, places: Indices) -> FloatArray:
+    """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
+    and the next; places: the indices of the highest.
 
-    Of the amplitudes that is the cubic with their growth, of the changes a straight line. Nothing is told of
-    what lies between a point and a corner.
+    Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
+    is told of what lies between a point and a corner.
     """
     amplitude, place, d = corrected.amplitude, corrected.place, np.arange(len(places))
     corner, last = (corrected.path.mark & Mark.CORNER) > 0, len(place) - 1
-    moved = corrected.unit * change
     rise = np.zeros(len(places))
     for first in (places - 1, places):
         k = np.clip(first, 0, last - 1)

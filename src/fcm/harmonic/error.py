@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
 from fcm.harmonic.corrected import Corrected, Indices
-from fcm.harmonic.crest import crests, settling_at_ends
+from fcm.harmonic.crest import crests, rise_beside, settling_at_ends
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
@@ -116,8 +116,10 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
     at_ends += settling_at_ends(corrected, shown.growth, tops)
     height = np.where(inside, crests(corrected, shown.growth, change[:, 1:], tops), at_ends)
+    own = rise_beside(corrected, shown.growth, np.zeros_like(unit), tops)  # no error
+    now = shown.amplitude[tops, d] + np.where(inside, own, 0.0)
     settles = inside | ~corrected.linear[tops]
-    error[tops[settles], d[settles]] = _of_peaks(corrected, tops, height)[settles]
+    error[tops[settles], d[settles]] = _of_peaks(np.abs(height - now) / unit[tops, d])[settles]
     for top in np.unique(tops[settles]).tolist():
         beyond = np.abs(ripple(system, path.z[top], shown.X[top])) / unit[top]
         error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
@@ -148,10 +150,8 @@ def _of_points(corrected: Corrected, shown: Reported, change: FloatArray, shift:
     return covered
 
 
-def _of_peaks(corrected: Corrected, tops: Indices, height: FloatArray) -> FloatArray:
-    """Errors (dof,) of the greatest amplitudes, whose corrected heights are given, in the same units."""
-    d = np.arange(len(tops))
-    error = np.abs(height - corrected.amplitude[tops, d]) / corrected.unit[tops, d]
+def _of_peaks(error: FloatArray) -> FloatArray:
+    """Errors (dof,) of the greatest amplitudes by their changes, of which one may be small by chance."""
     told = error[np.isfinite(error)]
     peaks: FloatArray = np.maximum(error, CHANCE_AT_PEAKS * _medians(told[None])[0] if told.size else 0.0)
     return peaks
