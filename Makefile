@@ -256,6 +256,9 @@ $(OTHERS)/tmdsimpy/installed:  # a repository that no package index has, at one 
 	git -C $(@D)/source checkout --quiet HEAD -- tmdsimpy LICENSE.txt
 	@touch $@
 
-$(VENV)/installed-dev: $(VENV)/installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+$(VENV)/installed-dev: $(VENV)/installed  # what developers need alone: '.[dev]' would compile all kernels again
+	@mkdir -p build
+	$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project'] \
+		['optional-dependencies']['dev'], sep='\n')" > build/dev.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement build/dev.txt
 	@touch $@
