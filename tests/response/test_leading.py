@@ -37,9 +37,8 @@ def test_peaks_among_many_are_those_alone_and_cost_few_points():
         one, other = among.peaks[name], alone.peaks[name]
         assert one.amplitude == pytest.approx(other.amplitude, rel=1e-9)
         assert one.frequency == pytest.approx(other.frequency, rel=1e-6)
-        assert one.error == pytest.approx(
-            other.error, rel=0.1, abs=1e-5
-        )  # of which the typical one is a part
+        # a part of it is the typical error of the degrees of freedom, which are others
+        assert one.error == pytest.approx(other.error, rel=0.1, abs=1e-5)
         assert one.stable == other.stable
     assert set(among.peaks) == set(NAMES) and np.any(alone.regime[:, 0] != "E")
     assert among.frequency.size < 1.3 * alone.frequency.size

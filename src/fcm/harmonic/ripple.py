@@ -27,8 +27,8 @@ NO_GRADIENT = np.empty((0, 0, 0))
 def ripple(system: System, z: FloatArray, X: ComplexArray) -> FloatArray:
     """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what is beyond the `highest`.
 
-    X (harmonic, dof) are the displacements of the harmonics of the balance. Zero where no mode is met there;
-    of a ring, or of so many modes that it would be dear, nothing is looked at.
+    X (harmonic, dof) are the displacements of the harmonics of the balance. Zero where no mode is met there.
+    Of a ring nothing is looked at, and of many modes and degrees of freedom only as far as `EFFORT` allows.
     """
     last = _reach(system, z[-1])
     others = tuple(range(highest(system) + 1, last + 1))

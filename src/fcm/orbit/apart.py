@@ -79,7 +79,7 @@ def first_balances(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
         return
     yield outlined(_single(whole, look))
     if apart and not many:
-        yield outlined(_single(whole, look).with_harmonics(SOME))
+        yield _outlined(_single(whole, look))
 
 
 def further_balances(scene: Scene, look: Look) -> Iterator[Outline]:
