@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fcm.harmonic.mode import half_peak_to_peak
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude
 from fcm.scene import load_scene
@@ -67,3 +68,10 @@ def test_an_extreme_is_followed_where_it_is_no_more_the_greatest(balance):
                 values.append(one.value)
             assert slope == pytest.approx((values[0] - values[1]) / 2e-6, rel=1e-5, abs=1e-6)
     assert min(counts.values()) > 0
+
+
+def test_no_extreme_of_a_nonlinear_mode_is_greater_than_its_amplitude():
+    parts = np.random.default_rng(5).normal(size=(2, 2000, len(HARMONICS), 1))
+    X = parts[0] + 1j * parts[1]
+    x = np.einsum("th,phd->tpd", WAVES, X).real
+    assert half_peak_to_peak(X, HARMONICS) == pytest.approx(0.5 * np.ptp(x, axis=0), rel=1e-6)

@@ -171,18 +171,32 @@ def half_peak_to_peak(X: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray
     if harmonics == (1,):
         return np.abs(X[:, 0])
     h = np.array(harmonics)
-    theta = 2.0 * np.pi * np.arange(SAMPLES * h[-1]) / (SAMPLES * h[-1])
-    x = np.einsum("ht,phd->tpd", np.exp(1j * np.outer(h, theta)), X).real
-    return 0.5 * (_extreme(X, h, theta[x.argmax(axis=0)]) - _extreme(X, h, theta[x.argmin(axis=0)]))
+    return 0.5 * (_greatest(X, h) + _greatest(-X, h))
 
 
-def _extreme(X: ComplexArray, h: npt.NDArray[np.intp], theta: FloatArray) -> FloatArray:
-    """The displacement (point, dof) at the extreme next to angles (point, dof), by Newton's method."""
-    start, step = theta, 2.0 * np.pi / (SAMPLES * h[-1])
+def _greatest(X: ComplexArray, h: npt.NDArray[np.intp]) -> FloatArray:
+    """The greatest displacement (point, dof): of all extremes next to samples that may be as high.
+
+    Between samples it rises by the curvature times the square of half their distance over 2, at most.
+    """
+    step = 2.0 * np.pi / (SAMPLES * h[-1])
+    waves = np.exp(1j * np.outer(h, step * np.arange(SAMPLES * h[-1])))
+    x = np.einsum("ht,phd->tpd", waves, X).real
+    between = np.einsum("h,phd->pd", 0.125 * (h * step) ** 2, np.abs(X))
+    beside = np.maximum(np.roll(x, 1, axis=0), np.roll(x, -1, axis=0))
+    k, p, d = np.nonzero((x >= beside) & (x + between >= x.max(axis=0)))
+    found: FloatArray = x.max(axis=0)
+    np.maximum.at(found, (p, d), _extreme(X[p, :, d], h, step * k, step))
+    return found
+
+
+def _extreme(X: ComplexArray, h: npt.NDArray[np.intp], start: FloatArray, step: float) -> FloatArray:
+    """The displacements (n,) of motions X (n, harmonic) at extremes next to angles, by Newton's method."""
+    theta = start
     for _ in range(REFINED):
-        turns = X * np.exp(1j * h[:, None] * theta[:, None])
-        slope, bend = (np.sum((1j * h[:, None]) ** k * turns, axis=1).real for k in (1, 2))
+        turns = X * np.exp(1j * h * theta[:, None])
+        slope, bend = (np.sum((1j * h) ** k * turns, axis=1).real for k in (1, 2))
         theta = theta - slope / np.where(bend != 0.0, bend, 1.0)
         theta = np.where(np.abs(theta - start) < step, theta, start)
-    found: FloatArray = np.sum(X * np.exp(1j * h[:, None] * theta[:, None]), axis=1).real
+    found: FloatArray = np.sum(X * np.exp(1j * h * theta[:, None]), axis=1).real
     return found
