@@ -6,7 +6,7 @@ import contextlib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fcm.scene import Scene, SceneError, load_scene, scene_from_dict
@@ -195,6 +195,7 @@ LISTED = ("contact", "force", "load")
 
 
 @settings(max_examples=400, deadline=None)
+@example([(("structure", "mass"), [0, 0, 0, 2.9e-270])])
 @given(st.lists(st.tuples(st.sampled_from(OF_MATRICES), TREES), max_size=4))
 def test_a_valid_scene_of_matrices_with_values_replaced(changes):
     data = {

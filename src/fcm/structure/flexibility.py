@@ -69,7 +69,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
     for blocks in range(1, MOST_BLOCKS + 1):
         basis = np.concatenate((basis, newest), axis=1)
         modes = _galerkin(system, basis, far)
-        damping = omega * float((_damping_off(modes, outer, beyond, blocks > 1) / static).max())
+        damping = omega * float(_damping_off(modes, outer, beyond, blocks > 1, static).max())
         bound = _off(system, kept, modes, loads, omega, beyond, static)
         if modes.stiffness.max(initial=0.0) > 0.9 * far:
             bound += omega**2 / far
@@ -149,15 +149,26 @@ def _rest(system: System, kept: Modes, loads: FloatArray) -> FloatArray:
     return rest
 
 
-def _damping_off(modes: Modes, outer: FloatArray, beyond: float, sixth: bool) -> FloatArray:
-    """How far m_3 of each load may be off; sixth is whether m_6 is known."""
+def _damping_off(
+    modes: Modes, outer: FloatArray, beyond: float, sixth: bool, static: FloatArray
+) -> FloatArray:
+    """How far m_3 of each load may be off, over its static receptance; sixth is whether m_6 is known.
+
+    In units of the greatest part of each load and of the lowest mode: the powers of extreme ones overflow.
+    """
+    if not modes.count:
+        return np.zeros(outer.shape[1])
     size = np.abs(modes.shapes.conj().T @ outer) ** 2
-    m_2, m_3, m_4, m_6 = ((size / modes.stiffness[:, None] ** (0.5 * s)).sum(axis=0) for s in (2, 3, 4, 6))
+    most = size.max(axis=0)
+    size /= np.where(most > 0.0, most, 1.0)
+    lowest = modes.stiffness.min()
+    slow = np.sqrt(lowest / modes.stiffness)[:, None]
+    m_2, m_3, m_4, m_6 = ((size * slow**s).sum(axis=0) for s in (2, 3, 4, 6))
     if not sixth:
-        m_6 = m_4 / beyond
+        m_6 = m_4 * (lowest / beyond)
     least = np.divide(m_4**1.5, np.sqrt(m_6), out=np.zeros_like(m_4), where=m_6 > 0.0)
     off: FloatArray = np.maximum(np.sqrt(m_2 * m_4) - m_3, m_3 - least)
-    return off
+    return off * (most / lowest / static) / np.sqrt(lowest)
 
 
 def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray) -> FloatArray:
