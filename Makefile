@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help design kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
+.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -178,6 +178,9 @@ $(OTHERS)/pyharm.json: $(OTHERS)/pyharm/installed $(OTHERS)/problems.json $(wild
 $(OTHERS)/tmdsimpy.json: $(OTHERS)/tmdsimpy/installed $(OTHERS)/problems.json $(wildcard tests/benchmarks/others/*.py)
 	$(OTHERS)/tmdsimpy/bin/python tests/benchmarks/others/with_tmdsimpy.py $(OTHERS)/problems.json $@ $(LIMIT) \
 		$(OTHERS)/tmdsimpy/source
+
+fuzz: $(VENV)/installed-dev  ## fifty times as many scenes of nonsense as the tests have, other ones each time; half an hour
+	FCM_TEST_SCALE=50 $(BIN)/python -m pytest -n 2 tests/scene/test_fuzz.py
 
 kills: $(VENV)/installed-dev  ## sweeps killed at fifty random instants: nothing lost, nothing left behind
 	FCM_KILLS=50 $(BIN)/python -m pytest tests/faults/test_kill.py

@@ -5,10 +5,16 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from .program import Program, called
+from .scale import SCALE
 
 ROOT = Path(__file__).parents[1]
+
+# The same examples every time, and new ones where more of them are asked for.
+settings.register_profile("fcm", derandomize=SCALE <= 1.0)
+settings.load_profile("fcm")
 
 
 def kernels() -> list[str]:

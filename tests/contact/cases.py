@@ -1,17 +1,17 @@
 """Where to look: random points, and the boundary cases on which grids put their nodes.
 
 Every function takes a random generator and a number of points and returns n0_bar, b_bar, phi.
-The samples are small enough for every run; FCM_TEST_SCALE=20 in the environment looks twenty times as hard.
+The samples are small enough for every run; see `tests.scale`.
 """
 
-import os
 from itertools import product
 
 import numpy as np
 
 from fcm.contact.loop import sequences
 
-SCALE = float(os.environ.get("FCM_TEST_SCALE", "1"))
+from ..scale import SCALE
+
 FIGURE_7 = ["SEP", "SEN", "SP", "SN", "SNEP", "SPEN", "SEPEN", "SENEP", "SPENEP", "SNEPEN"]
 SEQUENCES = ["E", "EPEN", "S", "SE", *FIGURE_7]
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from fcm import periodic_forces
 
+from ..scale import SCALE
 from . import periodic_march
-from .cases import SCALE
 
 
 @dataclass(frozen=True)

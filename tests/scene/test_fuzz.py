@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from fcm.scene import Scene, SceneError, load_scene, scene_from_dict
 
+from ..scale import SCALE
+
 TEXT = (Path(__file__).parents[2] / "src/fcm/scenes/two-contacts.toml").read_text()
 SWEPT = (
     TEXT + '[sweep]\n"contact.shroud.n_0" = [1, 2]\n"modal.damping" = { normal = [0.1, 0.01], count = 3 }\n'
@@ -78,13 +80,13 @@ def load_bytes(content: bytes) -> None:
         assert isinstance(load_scene(path), Scene)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=int(200 * SCALE), deadline=None)
 @given(st.binary(max_size=300))
 def test_any_bytes(content):
     load_bytes(content)
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=int(400 * SCALE), deadline=None)
 @given(
     st.lists(st.tuples(st.integers(0, len(SWEPT)), st.integers(0, 12), st.sampled_from(WORDS)), max_size=4)
 )
@@ -95,7 +97,7 @@ def test_a_valid_file_with_pieces_replaced(changes):
     load_bytes(text.encode())
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=int(300 * SCALE), deadline=None)
 @given(st.data())
 def test_a_valid_file_with_lines_dropped_and_repeated(data):
     lines = SWEPT.splitlines()
@@ -118,7 +120,7 @@ TREES = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=int(150 * SCALE), deadline=None)
 @given(st.dictionaries(st.sampled_from(KEYS[:8]), TREES, max_size=8))
 def test_any_tree_of_known_keys(data):
     with contextlib.suppress(SceneError):
@@ -141,7 +143,7 @@ PATHS += [
 ]
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=int(400 * SCALE), deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(PATHS), TREES), max_size=4))
 def test_a_valid_scene_with_values_replaced(changes):
     data = {
@@ -194,7 +196,7 @@ OF_MATRICES += [
 LISTED = ("contact", "force", "load")
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=int(400 * SCALE), deadline=None)
 @example([(("structure", "mass"), [0, 0, 0, 2.9e-270])])
 @given(st.lists(st.tuples(st.sampled_from(OF_MATRICES), TREES), max_size=4))
 def test_a_valid_scene_of_matrices_with_values_replaced(changes):

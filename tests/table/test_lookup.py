@@ -1,7 +1,5 @@
 """Look-up: shapes, special arguments, symmetry, continuity, derivatives of the interpolant."""
 
-import os
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,10 +11,9 @@ from fcm.table.error import sample
 from fcm.table.seam import seam
 
 from ..program import python
+from ..scale import SCALE
 
-COUNT = int(
-    20_000 * float(os.environ.get("FCM_TEST_SCALE", "1"))
-)  # points of a test; see tests/contact/cases
+COUNT = int(20_000 * SCALE)  # points of a test; see `tests.scale`
 
 
 def points(count=COUNT, seed=11):
