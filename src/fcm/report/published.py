@@ -21,21 +21,24 @@ from fcm.report.rows import Row
 from fcm.response.sweep import trace
 from fcm.results.result import Curve
 from fcm.scene.load import load_scene
+from fcm.structure.diameters import nodal_diameters
 
 TMDSIMPY = "tmdsimpy, 2dof_eldry_fric"  # github.com/tmd-lab/tmdsimpy, 1024 samples a cycle
 NLVIB = "NLvib, beam with friction"
+PYHARM = "pyHarm, lumped bladed disk"  # its sixth tutorial, after Laxalde and others (2007)
 DEN_HARTOG = "Den Hartog (1931)"
 ONE = {25: 10.499584, 50: 17.202195, 80: 32.168471, 100: 45.539025, 200: 124.093857, 300: 206.469541}
+DISK = {0: 88.26374399, 1: 169.3441295, 2: 189.3018526}  # Hz, the first of a nodal diameter
 LIFTING = {1: 40.019506, 3: 38.8184, 8: 38.83219}  # by the number of harmonics
 SAMPLED = 5e-6  # relative, what 1024 samples a cycle may be off: (2 pi / 1024)^2 / 8
 FINE = 0.01  # longest step, where the greatest fundamental is taken from a parabola between points
 STIFF = (1e4, 1e6)  # contact stiffnesses, from which the rigid limit is extrapolated by their root
 COLUMNS = ("source", "quantity", "published", "obtained")
 ABOUT = (
-    "Bundled scenes dry-friction, dry-friction-lift-off, beam and den-hartog; tests/published asserts the "
-    "same and more. The peaks of tmdsimpy, of the fundamental, are sampled at 1024 times a cycle, which may "
-    "be off by 5e-6; damping and frequencies of the sliding beam are read to 1 %; the rigid limit is known "
-    "in closed form.",
+    "Bundled scenes dry-friction, dry-friction-lift-off, beam, bladed-disk and den-hartog; tests/published "
+    "asserts the same and more. The peaks of tmdsimpy, of the fundamental, are sampled at 1024 times a "
+    "cycle, which may be off by 5e-6; damping and frequencies of the sliding beam are read to 1 %; the "
+    "rigid limit is known in closed form.",
 )
 
 
@@ -85,6 +88,14 @@ def beam() -> Iterator[tuple[str, Row]]:
         yield _row(NLVIB, f"damping ratio at {omega} rad/s", damping, found, 0.01)
 
 
+def bladed_disk() -> Iterator[tuple[str, Row]]:
+    """The first frequency of each nodal diameter of a disk of 24 sectors."""
+    diameters = nodal_diameters(load_scene("bladed-disk"))
+    for number, stated in DISK.items():
+        found = float(diameters[number].opened[0] / (2.0 * np.pi))
+        yield _row(PYHARM, f"first frequency of diameter {number} [Hz]", stated, found, 5e-10)
+
+
 def den_hartog() -> Iterator[tuple[str, Row]]:
     """A mass on rigid Coulomb friction of half the force, without stops: x = sqrt(Q^2 - (F U)^2)."""
     for r in (0.6, 0.7, 0.8):
@@ -108,7 +119,9 @@ def _exact_amplitude(k_u: float, r: float) -> float:
 def published(messages: Messages, output: Path) -> None:
     """Compute the numbers and write them beside the published ones as JSON to OUTPUT."""
     begin = time.perf_counter()
-    found = [(source, *row) for case in (dry_friction, beam, den_hartog) for source, row in case()]
+    found = [
+        (source, *row) for case in (dry_friction, beam, bladed_disk, den_hartog) for source, row in case()
+    ]
     with replacing(output) as partial:
         partial.write_text(json.dumps(found, indent=1), encoding="utf-8")
     agree = sum(bool(row[-1]) for row in found)

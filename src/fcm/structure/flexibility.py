@@ -167,8 +167,9 @@ def _damping_off(
     if not sixth:
         m_6 = m_4 * (lowest / beyond)
     least = np.divide(m_4**1.5, np.sqrt(m_6), out=np.zeros_like(m_4), where=m_6 > 0.0)
-    off: FloatArray = np.maximum(np.sqrt(m_2 * m_4) - m_3, m_3 - least)
-    return off * (most / lowest / static) / np.sqrt(lowest)
+    off: FloatArray = np.maximum(np.sqrt(m_2 * m_4) - m_3, m_3 - least) * (most / lowest / static)
+    off /= np.sqrt(lowest)
+    return off
 
 
 def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray) -> FloatArray:
