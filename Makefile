@@ -123,7 +123,7 @@ $(PAPER)/figure15.png: $(PAPER)/figure15.nc $(HISTORIES)
 	$(call fcm,plot history $< -o $@)
 
 test: check  ## format, lint, types, then all tests
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 check: $(VENV)/installed-dev  ## format, lint and types only
 	$(BIN)/ruff format --check src tests

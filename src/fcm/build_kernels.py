@@ -18,6 +18,7 @@ from pathlib import Path
 from Cython.Build import cythonize
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
+from setuptools.errors import CompileError
 
 DIRECTIVES = {
     "language_level": 3,
@@ -45,9 +46,12 @@ class Kernels(build_ext):
         self.parallel = os.cpu_count()
 
     def build_extensions(self) -> None:
+        optional = self.editable_mode or not self.inplace
         for kernel in self.extensions:
-            kernel.optional = self.editable_mode or not self.inplace
+            kernel.optional = optional
             self._discard_if_old(kernel)
+        if optional and not self._compiles():
+            return
         translated = cythonize(  # type: ignore[no-untyped-call]
             self.extensions,
             nthreads=self.parallel,
@@ -62,6 +66,16 @@ class Kernels(build_ext):
         if self.inplace or self.editable_mode:
             # as pip does for what it copies: where Python may not write bytecode, a start takes 0.1 s longer
             compile_dir("src/fcm", quiet=1)
+
+    def _compiles(self) -> bool:
+        """Whether C is compiled here, with Python's headers; where not, kernels need not be translated."""
+        arrays = self.extensions[-1]
+        try:
+            self.compiler.compile(arrays.sources, self.build_temp, arrays.define_macros, self.include_dirs)
+        except CompileError as reason:
+            self.warn(f"the kernels of fcm are not compiled: {reason}")
+            return False
+        return True
 
     def _discard_if_old(self, kernel: Extension) -> None:
         """What is out of date goes first: should it not be made anew, the source must take its place."""
