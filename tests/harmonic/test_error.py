@@ -51,6 +51,14 @@ def test_points_beside_the_exact_motion(preload, harmonics):
     assert ratio.min() > 1.0 / 3.0
 
 
+def test_points_at_which_harmonics_left_out_meet_a_mode_beside_the_exact_motion():
+    """The mode at 10 rad/s and the tenth to fourteenth: the error swings from a point to the next."""
+    pairs, _, _, exact = points(System(scene("yang1998", 0), (1, 2, 3)), 1000)
+    pairs = pairs[pairs.max(axis=1) > 1e-3]
+    assert min(len(pairs), exact) > 100
+    assert (pairs[:, 0] / pairs[:, 1]).min() > 1.0 / 3.0
+
+
 @pytest.mark.parametrize("preload", [20, 10, 5, 2, 0, -5, -20])
 def test_peaks_beside_those_of_many_harmonics(preload):
     system = System(scene("yang1998", preload))
