@@ -1,8 +1,9 @@
 r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
 
-At both ends of the range, and at the resonances inside it that the structure has with its contacts all stuck
-and all open, the level is followed from nearly nothing until it is well beyond every level at which a contact
-can change what it does. Every passing of the level 1 is a solution.
+At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck and
+all open, and in the middle of the widest interval between these, the level is followed from nearly nothing
+until it is well beyond every level at which a contact can change what it does. Every passing of the level 1
+is a solution.
 """
 
 from __future__ import annotations
@@ -211,6 +212,14 @@ def _from_linear(system: System, omega: float) -> Iterator[FloatArray]:
         newton.z[:], newton.row[:] = z, row
         if newton.correct(1.0):
             yield np.array(newton.z)
+
+
+def looked_at(system: System) -> tuple[float, ...]:
+    """The frequencies at which the level is followed."""
+    span, inside = system.scene.frequency_range, resonances(system)
+    known = np.array([span[0], *inside, span[1]])
+    widest = int(np.diff(known).argmax())
+    return *span, *inside, float(known[widest : widest + 2].mean())
 
 
 def resonances(system: System) -> list[float]:

@@ -17,7 +17,7 @@ from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
-from fcm.harmonic.start import Found, resonances
+from fcm.harmonic.start import Found, looked_at
 from fcm.harmonic.system import System
 from fcm.harmonic.turned import passed_beside
 from fcm.scene.model import FloatArray
@@ -37,14 +37,14 @@ def traced(
     fewer: tuple[Found, ...] = (),
     near: Sequence[FloatArray] = (),
 ) -> Traced:
-    """Trace the branches through all solutions at the ends of the range and at the resonances inside it.
+    """Trace the branches through all solutions at the frequencies at which the level is followed.
 
     And through those beside where the level of the forces turned short of 1 there.
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
     elsewhere, whose branches are traced too if they are within the range.
     """
     span = system.scene.frequency_range
-    found = found_at(system, (*span, *resonances(system)), fewer)
+    found = found_at(system, looked_at(system), fewer)
     beside = passed_beside(system, [turn for one in found for turn in one.turns])
     inside = [z for z in (*near, *beside) if span[0] <= z[-1] <= span[1]]
     starts = [*(z for one in found for z in one.solutions), *inside]
