@@ -7,8 +7,12 @@ import pytest
 
 from fcm.harmonic.choice import estimated
 from fcm.harmonic.system import System
+from fcm.orbit.problem import OrbitProblem
 from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
+
+from ..response.random_peaks import height
+from .scenes import up_to
 
 
 def scene(frequency, damping, shapes, contact, forces, span):
@@ -125,3 +129,21 @@ def test_no_error_of_a_peak_is_low_where_modes_are_met_by_harmonics_beyond_all_t
     true = np.array([abs(exact.peaks[dof].amplitude / now["abc".index(dof)] - 1.0) for dof in "abc"])
     assert (true > 4e-4).all()
     assert (found.peak > true / 3.0).all() and (found.peak < 10.0 * true).all()
+
+
+def test_where_two_peaks_are_one_point_the_corrected_curve_may_be_higher_beyond():
+    """Of one mode all degrees of freedom are highest at once, and the exact peak is some points away."""
+    contact = [
+        {"name": "a", "tangential": "u", "normal": "v"}
+        | {"mu": 0.0184, "k_u": 0.189, "k_v": 28.9, "n_0": -10.5},
+        {"name": "b", "tangential": "v", "normal": "u"}
+        | {"mu": 0.0119, "k_u": 5.84, "k_v": 4.61, "n_0": -0.157},
+    ]
+    modal = {"dofs": ["u", "v"], "frequency": [1.0], "damping": [0.0082], "shapes": [[-0.281, -1.418]]}
+    response, force = {"frequency": [0.615, 0.894]}, [{"dof": "v", "amplitude": 1.0}]
+    one = scene_from_dict({"modal": modal, "contact": contact, "force": force, "response": response})
+    found = estimated(System(one, (*up_to(13), 17, 19, 20)), 0.0)
+    (shown,) = found.shown
+    exact = height(found, OrbitProblem(one), [], 0, 1)
+    true = abs(shown.amplitude[:, 1].max() / exact - 1.0)
+    assert true > 1e-3 and true / 2.0 < found.peak[1] < 2.0 * true

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Mark
 from fcm.harmonic.believed import runs
-from fcm.harmonic.corrected import Corrected, Indices
+from fcm.harmonic.corrected import TOGETHER, Corrected, Indices
 from fcm.harmonic.stretch import heights
 from fcm.scene.model import FloatArray
 
@@ -44,10 +44,9 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
     amplitude = corrected.amplitude
     d = np.arange(len(tops))
     now = amplitude[tops, d]
-    found = corrected.known[:, None] & np.isfinite(change)  # interpolated, one may be higher than any is
-    value = np.where(found, amplitude + corrected.unit * change, 0.0)
-    places = value.argmax(axis=0)
-    greatest = corrected.settled(places, value[places, d])
+    change, places = _highest(corrected, change)
+    value = amplitude[places, d] + corrected.unit[places, d] * change[places, d]
+    greatest = corrected.settled(places, value)
     greatest += rise_beside(corrected, growth, corrected.unit * change, places)
     for top in np.unique(tops[(corrected.path.mark[tops] & Mark.CORNER) > 0]).tolist():
         if _gap(corrected, growth, top):
@@ -69,6 +68,24 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
     return known
 
 
+def _highest(corrected: Corrected, change: FloatArray) -> tuple[FloatArray, Indices]:
+    """Changes (point, dof) and where (dof,) with them a corrected curve is highest of the points where it is
+    found: also at those near the highest that are expected to be higher, as an interpolated one may be."""
+    change, count, near = change.copy(), len(change), np.arange(-TOGETHER, TOGETHER + 1)[:, None]
+    while True:
+        expected = corrected.amplitude + corrected.unit * change
+        found = corrected.known[:, None] & np.isfinite(change)
+        value = np.where(found, expected, 0.0)
+        places = value.argmax(axis=0)
+        d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
+        higher = ~corrected.known[around] & (expected[around, d] > value[places, d])
+        if not higher.any():
+            return change, places
+        new = np.unique(around[higher])
+        corrected.find(new, True)
+        change[new] = corrected.change[new, 1:]
+
+
 def rise_beside(corrected: Corrected, growth: FloatArray, moved: FloatArray, places: Indices) -> FloatArray:
     """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
     and the next; places: the indices of the highest.
@@ -79,7 +96,8 @@ def rise_beside(corrected: Corrected, growth: FloatArray, moved: FloatArray, pla
     amplitude, place, d = corrected.amplitude, corrected.place, np.arange(len(places))
     corner, last = (corrected.path.mark & Mark.CORNER) > 0, len(place) - 1
     rise = np.zeros(len(places))
-    for first in (places - 1, places):
+    before, at = (np.searchsorted(place, place[places], side) - 1 for side in ("left", "right"))
+    for first in (before, at):  # points may coincide
         k = np.clip(first, 0, last - 1)
         known = np.isfinite(moved[k, d] + moved[k + 1, d]) & ~corner[k] & ~corner[k + 1] & (k == first)
         length, x, y = place[k + 1] - place[k], BETWEEN, 1.0 - BETWEEN
