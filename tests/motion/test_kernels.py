@@ -13,7 +13,9 @@ from fcm.motion import simulate
 from fcm.motion.combination import made
 from fcm.motion.cycle import Cycle
 from fcm.motion.first_descent import first_descent_of
-from fcm.motion.measure import extremes, measure
+from fcm.motion.measure import extremes_by, measure
+from fcm.motion.rows import Rows
+from fcm.motion.scan import Scan
 from fcm.motion.system import System
 from fcm.scene import Contact, Force, Modal, Scene
 
@@ -160,7 +162,8 @@ def test_the_least_of_a_row_is_where_it_is_said_to_be():
     assert isinstance(cycle, Cycle) and cycle.states == ("E",)
     row = np.zeros((1, cycle.system.size - 2))
     row[0, cycle.system.f] = -1.0
-    (found,), (highest,) = extremes(cycle.system, cycle.segments, row)
+    scan = Scan(cycle.system.flows, Rows(row))
+    (found,), (highest,) = extremes_by(scan, cycle.system, cycle.segments)
     step = cycle.duration / cycle.segments.length[0]
     assert found.segment == 0 and len(cycle.segments) == 1
     at = found.position * step

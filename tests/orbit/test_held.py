@@ -115,7 +115,7 @@ def test_what_a_contact_keeps_is_that_of_its_motion(scene, lightened):
     force, load, gap = cycle.values(rows, np.linspace(0.0, cycle.duration, 4001)).T
     limit = 0.3 * (30.0 + load)
     expected = [(limit - np.abs(force)).min() / limit.max(), (300.0 - gap).min() / (300.0 - gap).max()]
-    assert held.rooms(first.system, first.segments) == pytest.approx(expected, rel=1e-5)
+    assert first.kept == pytest.approx(expected, rel=1e-5)
 
 
 def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monkeypatch):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fcm.scene.model import Contact, FloatArray, Scene
+from fcm.scene.model import Contact, FloatArray, Held, Scene
 
 if TYPE_CHECKING:
     from fcm.motion.system import System
@@ -72,6 +72,28 @@ def held_as_springs(scene: Scene) -> tuple[FloatArray, FloatArray, FloatArray]:
             stretch, stiffness = [*stretch, along], [*stiffness, contact.k_u]
     shapes = np.array(stretch).reshape(len(stretch), -1 if stretch else modal.mass.size)
     return shapes, shapes * np.array(stiffness)[:, None] / modal.mass, steady
+
+
+def held_limits(system: System) -> FloatArray:
+    """Of each contact that is held its limit, or gap, and what is left of it either way.
+
+    Rows of the state vector without the forces' angle, (3 held, d - 2).
+    """
+    rows = [_limits_of(system, one) for one in system.scene.held]
+    return np.array(rows).reshape(3 * len(rows), system.size - 2)
+
+
+def _limits_of(system: System, one: Held) -> list[FloatArray]:
+    """The three rows of a contact."""
+    contact, shapes = one.contact, system.scene.modal.shapes
+    load, force = np.zeros((2, system.size - 2))
+    load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
+    if one.open:
+        return [-load] * 3
+    if not has_friction(contact):
+        return [load] * 3
+    force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
+    return [contact.mu * load, contact.mu * load - force, contact.mu * load + force]
 
 
 def has_friction(contact: Contact) -> bool:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.motion.cycle import Cycle
-from fcm.motion.rows import Rows
 from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.system import System
@@ -67,13 +66,8 @@ class Extreme(NamedTuple):
 Extremes = tuple[list[Extreme], list[Extreme]]  # the least and the greatest of several rows
 
 
-def extremes(system: System, segments: Segments, rows: FloatArray) -> Extremes:
-    """The least and the greatest of each of rows @ y, y without the forces' angle: rows (row, d - 2)."""
-    return extremes_by(Scan(system.flows, Rows(rows)), system, segments)
-
-
 def extremes_by(scan: Scan, system: System, segments: Segments) -> Extremes:
-    """The same of the rows of a scan."""
+    """The least and the greatest of the rows of a scan, of the state vector without the forces' angle."""
     system.run(scan, segments)
     values = [*np.asarray(scan.least).tolist(), *np.asarray(scan.greatest).tolist()]
     places = np.asarray(scan.place).tolist()

@@ -17,7 +17,7 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
-from fcm.motion.matrices import has_friction, held_as_springs, matrices_of
+from fcm.motion.matrices import has_friction, held_as_springs, held_limits, matrices_of
 from fcm.motion.rows import Rows
 from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
@@ -64,7 +64,7 @@ class System:
         self.limit_rows = self._limit_rows()
         kernels = _kernels_of(scene, self._kernels)
         self.flows, self._march, self._derivative, self._along = kernels[:4]
-        self.displaced, self.limits, self.integrals = kernels[4:]
+        self.displaced, self.limits, self.integrals, self.kept = kernels[4:]
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -128,7 +128,8 @@ class System:
         displacements = np.zeros((self.scene.modal.shapes.shape[1], wide))
         displacements[:, self.q] = self.scene.modal.shapes.T
         moves, limits = Scan(flows, Rows(displacements)), Scan(flows, Rows(self.limit_rows))
-        return flows, March(flows), Derivative(flows), Directional(flows), moves, limits, Integrals(flows)
+        kept, along = Scan(flows, Rows(held_limits(self))), Directional(flows)
+        return flows, March(flows), Derivative(flows), along, moves, limits, Integrals(flows), kept
 
     def _limit_rows(self) -> FloatArray:
         """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
@@ -140,7 +141,7 @@ class System:
         return rows.reshape(2 * c, self.size - 2)
 
 
-_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Integrals]
+_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Integrals, Scan]
 
 
 class _Latest(local):

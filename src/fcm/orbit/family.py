@@ -16,7 +16,6 @@ from itertools import pairwise, product
 import numpy as np
 
 from fcm.motion.errors import SimulationError
-from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.periodic import Look, converged, within_unit_circle, without_end
@@ -94,7 +93,7 @@ def family(
         return None
     shots, complete = _members(begun, look)
     shown = [shot for shot in shots if _stable(shot)] if _stable(begun) else shots
-    amplitude = np.array([measure(shot.cycle).amplitude for shot in shown])
+    amplitude = np.array([shot.amplitude for shot in shown])
     friction = np.array([residual_of(shot)[contacts] for shot in shots if contacts == stuck_in(shot)])
     return Family(
         tuple(contacts), np.stack((friction.min(axis=0), friction.max(axis=0)), axis=1),
@@ -144,7 +143,7 @@ class _Seen:
 
 def _finer(line: list[Shot], look: Look) -> list[Shot]:
     """More motions beside those, within a line, at which an amplitude is greatest or least."""
-    amplitude = np.array([measure(shot.cycle).amplitude for shot in line])
+    amplitude = np.array([shot.amplitude for shot in line])
     added = list[Shot]()
     for sense in (1.0, -1.0):
         tops = np.argmax(sense * amplitude, axis=0).tolist()
@@ -184,7 +183,7 @@ def _about(near: list[Shot], sense: float, dof: int, look: Look) -> list[Shot]:
             break
         added += [one, other]
         five = [near[0], one, near[1], other, near[2]]
-        top = max((1, 2, 3), key=lambda i: sense * float(measure(five[i].cycle).amplitude[dof]))
+        top = max((1, 2, 3), key=lambda i: sense * float(five[i].amplitude[dof]))
         near = five[top - 1 : top + 2]
     return added
 

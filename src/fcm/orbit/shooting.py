@@ -124,6 +124,20 @@ class Shot:
         """The least and the greatest displacement of each degree of freedom."""
         return displaced(self.system, self.segments)
 
+    @property
+    def amplitude(self) -> FloatArray:
+        """Half the peak-to-peak of each degree of freedom: (dof,)."""
+        half: FloatArray = 0.5 * (self.extremes.greatest - self.extremes.least)
+        return half
+
+    @cached_property
+    def kept(self) -> FloatArray:
+        """What each contact that is held keeps of its limit, or of its gap: (held,); negative, nothing."""
+        self.system.run(self.system.kept, self.segments)
+        least, greatest = np.asarray(self.system.kept.least), np.asarray(self.system.kept.greatest)[::3]
+        share: FloatArray = least.reshape(-1, 3).min(axis=1) / np.where(greatest > 0.0, greatest, 1.0)
+        return share
+
     @cached_property
     def others(self) -> npt.NDArray[np.complex128]:
         """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays.

@@ -11,7 +11,6 @@ import numpy as np
 
 from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
-from fcm.motion.measure import measure
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.apart import Place, states_along
@@ -107,7 +106,7 @@ def along_balance(
 def _height(problem: OrbitProblem, z: FloatArray) -> float:
     """The greatest amplitude of any degree of freedom."""
     shot = problem.shot(z)
-    return 0.0 if shot is None else float(measure(shot.cycle).amplitude.max())
+    return 0.0 if shot is None else float(shot.amplitude.max())
 
 
 def _points(problem: OrbitProblem, place: Place, look: Look) -> Iterator[FloatArray]:

@@ -18,11 +18,9 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.system import System as Balanced
 from fcm.harmonic.trace import traced
 from fcm.motion.matrices import has_friction
-from fcm.motion.measure import extremes
-from fcm.motion.segments import Segments
 from fcm.motion.state import State
-from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
+from fcm.orbit.shooting import Shot
 from fcm.reduction.sentences import named
 from fcm.results.result import Curve
 from fcm.scene.model import Contact, Held, Scene
@@ -91,29 +89,6 @@ def _too_stiff(scene: Scene, contact: Contact) -> bool:
     return added > STIFF * float(modal.frequency.max()) ** 2
 
 
-def rooms(system: System, segments: Segments) -> FloatArray:
-    """What each contact that is held keeps of its limit, or of its gap, over a motion; negative: nothing."""
-    rows = [_rows(system, one) for one in system.scene.held]
-    least, greatest = extremes(system, segments, np.array(rows).reshape(3 * len(rows), -1))
-    room = np.array([one.value for one in least]).reshape(-1, 3).min(axis=1)
-    size = np.array([one.value for one in greatest[::3]])
-    share: FloatArray = room / np.where(size > 0.0, size, 1.0)
-    return share
-
-
-def _rows(system: System, one: Held) -> list[FloatArray]:
-    """The limit, or gap, of a contact, and what is left of it either way: rows of the state vector."""
-    contact, shapes = one.contact, system.scene.modal.shapes
-    load, force = np.zeros((2, system.size - 2))
-    load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
-    if one.open:
-        return [-load] * 3
-    if not has_friction(contact):
-        return [load] * 3
-    force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
-    return [contact.mu * load, contact.mu * load - force, contact.mu * load + force]
-
-
 class NotKeptError(Exception):
     """Contacts that are held, their `places`, would not have kept their state in a motion.
 
@@ -125,9 +100,9 @@ class NotKeptError(Exception):
         self.places, self.reason = places, reason
 
 
-def check(system: System, segments: Segments) -> None:
+def check(shot: Shot) -> None:
     """`NotKeptError` if a contact that is held would not have kept its state over a motion."""
-    pairs = zip(system.scene.held, rooms(system, segments).tolist(), strict=True)
+    pairs = zip(shot.system.scene.held, shot.kept.tolist(), strict=True)
     lost = tuple(one.place for one, room in pairs if room <= 0.0)
     if lost:
         raise NotKeptError(lost)

@@ -181,7 +181,7 @@ def _watched(problem: OrbitProblem, z: FloatArray) -> None:
     """`NotKeptError` if a contact that is held would not have kept its state in the motion at z."""
     shot = problem.shot(z)
     if shot is not None:
-        check(shot.system, shot.segments)
+        check(shot)
 
 
 def _cut_off(stop: BaseException, limit: float | None) -> str:

@@ -13,7 +13,7 @@ from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
-from fcm.reduction.held import NotKeptError, lost_by, rooms, whole_state, whole_states
+from fcm.reduction.held import NotKeptError, lost_by, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.not_unique import NotUnique, not_unique
@@ -75,7 +75,7 @@ def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
     shots = [shot for shot in (problem.shot(point.z) for point in points) if shot is not None]
     if not shots:
         return kept
-    least = np.min([rooms(shot.system, shot.segments) for shot in shots], axis=0, initial=1.0)
+    least = np.min([shot.kept for shot in shots], axis=0, initial=1.0)
     for one, room in zip(scene.held, least, strict=True):
         kept[one.place, int(one.open)] = room
     return kept
