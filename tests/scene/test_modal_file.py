@@ -284,3 +284,19 @@ def test_lengths_are_said_beside_other_faults(tmp_path):
         scene_of(tmp_path, "m.npz")
     for key in ("mass", "damping", "shapes"):
         assert f"its {key} is of 2 modes, its frequency of 3" in str(caught.value)
+
+
+def test_names_of_bytes_and_numbers_of_another_byte_order(tmp_path):
+    """As h5py and Fortran programs hand them to numpy."""
+    modes = {key: one if key == "dofs" else one.astype(">f8") for key, one in MODES.items()}
+    save_npz(tmp_path / "m.npz", modes | {"dofs": MODES["dofs"].astype("S")})
+    modal = scene_of(tmp_path, "m.npz").modal
+    assert modal.dofs == ("u", "v", "w.x")
+    assert np.array_equal(modal.shapes, MODES["shapes"])
+
+
+@pytest.mark.parametrize("name", ["modes", "model"])
+def test_a_struct_is_named_as_one(tmp_path, name):
+    savemat(tmp_path / "m.mat", {name: MODES})
+    with pytest.raises(SceneError, match=f'm.mat" cannot be read: "{name}" is a struct: save its'):
+        scene_of(tmp_path, "m.mat")

@@ -21,7 +21,7 @@ import fcm
 from fcm.scene.archive import Arrays
 from fcm.scene.errors import quoted
 from fcm.scene.files import DataFileError, Files, megabytes
-from fcm.scene.mat_tags import check_tags
+from fcm.scene.mat_tags import check_tags, of_struct
 
 SPARE = 500_000_000  # bytes of memory for a reader itself
 COPIES = 3  # of the arrays, while they are read, converted and written
@@ -85,10 +85,14 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
             wanted = [name for name, _, kind in whosmat(path) if kind in numbers or "int" in kind]
             check_tags(content, wanted, largest)
         found = loadmat(path, variable_names=list(wanted))
-        names = np.array([name for name, *_ in whosmat(path)], dtype=str)
+        all_of_it = whosmat(path)
     except NotImplementedError:
         raise DataFileError(f"{quoted(path.name)} is of MATLAB's version 7.3; save it with -v7") from None
-    return {name: found[name] for name in wanted if name in found} | {NAMES: names}
+    arrays = {name: found[name] for name in wanted if name in found}
+    structs = [name for name, _, kind in all_of_it if kind == "struct"]
+    if structs and not arrays:
+        raise ValueError(of_struct(structs[0]))
+    return arrays | {NAMES: np.array([name for name, *_ in all_of_it], dtype=str)}
 
 
 def _mtx(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:

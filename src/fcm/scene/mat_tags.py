@@ -16,7 +16,7 @@ from typing import NamedTuple
 NUMBERS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}  # bytes of each by its type
 CHARACTERS = {1: 1, 2: 1, 3: 2, 4: 2, 16: 1, 17: 2, 18: 4}
 INT8, INT32, UINT32, MATRIX, COMPRESSED = 1, 5, 6, 14, 15  # types
-CELL, CHAR, SPARSE, FULL = 1, 4, 5, range(6, 16)  # classes
+CELL, STRUCT, CHAR, SPARSE, FULL = 1, 2, 4, 5, range(6, 16)  # classes
 COMPLEX = 8  # flag
 HEAD, TAG, SMALL = 128, 8, 4  # bytes
 
@@ -69,12 +69,20 @@ def _check_matrix(one: Element, order: str, wanted: Collection[str] | None) -> N
     if wanted is not None and bytes(name.content).decode("latin-1") not in wanted:
         return
     (word,) = struct.unpack_from(f"{order}I", flags.content)
+    if word & 0xFF == STRUCT:
+        raise ValueError(of_struct(bytes(name.content).decode("latin-1")))
     count = prod(struct.unpack(f"{order}{len(size.content) // 4}i", size.content))
     if not _fits(word & 0xFF, bool(word >> 8 & COMPLEX), count, parts):
         raise ValueError("it is damaged: an array is no numbers or names, or not as many as it says")
     for part in parts:
         if part.kind == MATRIX:
             _check_matrix(part, order, None)
+
+
+def of_struct(name: str) -> str:
+    """What is wrong with a struct, of which nothing is read."""
+    shown = f'"{name}"' if name else "a part of an array"
+    return f"{shown} is a struct: save its fields as variables of their own, in MATLAB by save -struct"
 
 
 def _fits(kind: int, is_complex: bool, count: int, parts: list[Element]) -> bool:

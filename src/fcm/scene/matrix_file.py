@@ -116,7 +116,10 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
     if found.dtype.kind not in "biufc":
         raise DataFileError(f"{quoted(path)} holds a matrix of {found.dtype}, not of numbers")
     files.check_size(Path(path), 8 * max(found.shape))  # a sparse array has a number for each row or column
-    matrix = scipy.sparse.csc_array(found)
+    wide = (
+        np.complex128 if found.dtype.kind == "c" else np.float64
+    )  # of half precision, or another byte order
+    matrix = scipy.sparse.csc_array(found.astype(wide))
     if matrix.dtype.kind == "c":
         if count := int(np.count_nonzero(matrix.data.imag)):
             raise DataFileError(
@@ -124,7 +127,7 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
                 "damping within a stiffness belongs in structure.damping"
             )
         matrix = matrix.real
-    return matrix.astype(np.float64)
+    return matrix
 
 
 _READERS = {".npz": _from_npz} | dict.fromkeys(ENDINGS[1:], _from_others)

@@ -124,7 +124,8 @@ def _lengths(found: dict[str, Any]) -> list[str]:
 def _plain(key: str, value: Any, kinds: str, faults: list[str]) -> Any:
     """An array of numbers as it is; a single number as a float; names as a list of strings."""
     if key == "dofs":
-        return [str(name) for name in np.ravel(np.asarray(value))]
+        names = np.ravel(np.asarray(value))
+        return [str(name) for name in (np.char.decode(names, "utf-8") if names.dtype.kind == "S" else names)]
     array = np.asarray(value)
     if array.dtype.kind not in kinds:
         faults.append(f"{key} must hold real numbers, is {kind(value)} of {array.dtype}")
