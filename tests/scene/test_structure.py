@@ -85,6 +85,23 @@ def test_every_kind_of_file(tmp_path, write, ending):
     assert modal.dofs == ("1x", "2x", "3x") and modal.added == 0
 
 
+@pytest.mark.parametrize("kind", [">f8", "f2", "i2", "g"])
+@pytest.mark.parametrize("name", ["K.npz", "K.mat"])
+def test_numbers_of_every_kind(tmp_path, kind, name):
+    """Of another byte order, of half precision, whole, of more digits than float64 has."""
+    if name == "K.npz":
+        np.savez(tmp_path / name, K.astype(kind))
+    else:
+        scipy.io.savemat(tmp_path / name, {"K": K.astype("f8" if kind in ("f2", "g") else kind)})
+    assert read(tmp_path, stiffness=name).modal.frequency == pytest.approx(EXACT, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["m.mat", "m.mat:K", "m.mat:model"])
+def test_a_struct_of_matrices_is_named_as_one(tmp_path, name):
+    scipy.io.savemat(tmp_path / "m.mat", {"model": {"K": K}})
+    assert 'm.mat" cannot be read: "model" is a struct: save its fields' in refused(tmp_path, stiffness=name)
+
+
 def test_written_in_the_scene():
     modal = read(mass=[1, 2, 0.5], damping=0.0).modal
     assert modal.frequency == pytest.approx(EXACT, rel=1e-12)
@@ -108,10 +125,10 @@ def test_one_matrix_of_several_in_a_file(tmp_path):
 
 
 def test_a_file_without_the_matrix_says_what_it_holds(tmp_path):
-    scipy.io.savemat(tmp_path / "model.mat", {"model": {"K": K}})
+    scipy.io.savemat(tmp_path / "model.mat", {"text": "K"})
     scipy.io.savemat(tmp_path / "both.mat", {"K": K, "M": M})
     said = refused(tmp_path, stiffness="model.mat", mass="both.mat:Q")
-    assert 'structure.stiffness: "model.mat" holds no matrix; it holds "model"' in said
+    assert 'model.mat" holds no matrix; it holds "text"' in said
     assert 'structure.mass: "both.mat" holds no matrix "Q"; it holds "K", "M"' in said
 
 
@@ -389,6 +406,17 @@ def test_rigid_bodies_of_an_eigensolver(lowest, rigid):
     assert (scene.modal.frequency == 0.0).sum() == rigid + lowest.count(0.0)
     assert len(scene.notes) == (rigid > 0)
     assert not rigid or ": taken as 0" in scene.notes[0]
+
+
+def test_rigid_bodies_of_two_bodies_that_contacts_hold_together():
+    """Six of each, whose frequencies are rounding: as far from each other as from the others, or not."""
+    lowest = [2e-8, 3e-8, 1e-7, 4e-5, *np.linspace(1e-4, 2e-3, 8)]
+    modal = {"dofs": ["u"], "frequency": [*lowest, 52.0], "damping": 0.01, "shapes": [[1.0]] * 13}
+    contact = {"name": "a", "tangential": "u", "normal": "u", "mu": 0.3, "k_u": 1.0, "k_v": 1.0, "n_0": 1.0}
+    one = {"modal": modal, "frequency_unit": "Hz", "response": {"frequency": [10, 100]}, "contact": [contact]}
+    scene = scene_from_dict(one | {"force": [{"dof": "u", "amplitude": 1.0}]})
+    assert (scene.modal.frequency == 0.0).tolist() == [True] * 12 + [False]
+    assert scene.notes == ("modal: 12 modes of 2e-08 to 0.002 Hz are rigid-body modes: taken as 0",)
 
 
 def test_a_low_mode_within_reach_of_the_range_is_a_mode():

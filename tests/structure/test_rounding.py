@@ -132,6 +132,36 @@ def test_rigid_bodies_of_matrices_written_with_few_digits(digits):
             assert abs(frequency[6] / exact - 1.0) <= max(2.0 * found.rounding, 1e-12)
 
 
+@pytest.mark.parametrize("digits", [17, 12, 9, "single"])
+def test_rigid_bodies_of_several_bodies(digits):
+    """Six of each; contacts alone may hold them together."""
+    bodies = [frame(np.random.default_rng(seed)) for seed in range(3)]
+    K, M = (scipy.linalg.block_diag(*matrices) for matrices in zip(*bodies, strict=True))
+    rounded = scipy.sparse.csc_array(written(K, digits))
+    found = reduced(rounded, scipy.sparse.csc_array(M), np.eye(len(K))[:, :1], 100.0, 24, True)
+    exact = scipy.linalg.eigh(K, M, eigvals_only=True)[18:24]
+    assert found.rigid == 18
+    assert np.sqrt(found.modes.stiffness[18:24] / exact) == pytest.approx(
+        1.0, abs=2.0 * found.rounding + 1e-12
+    )
+
+
+def test_a_load_that_moves_rigid_bodies_alone_has_a_bound_that_is_true():
+    """A weight has no static answer of a free structure: its displacements are those of its acceleration."""
+    K, M, names = beams.beam(60, clamped=False)
+    upwards = np.array([name.endswith("w") for name in names], dtype=float)
+    loads = np.stack((M @ upwards, np.eye(len(names))[0]), axis=1)
+    omega = 12.0  # below the first bending mode
+    found = reduced(K, M, loads, omega, None, True)
+    assert found.rigid == 2 and found.bound < 1e-6
+    modes = found.modes
+    assert modes.count <= found.kept + 4  # for the load on the end, none for rounding
+    pushed = modes.shapes.T @ loads
+    answer = pushed.T @ (pushed / (modes.stiffness - omega**2)[:, None])
+    exact = -1.0 / omega**2  # of the mass 1
+    assert np.abs(answer[0] / exact - 1.0).max() <= 2.0 * found.bound
+
+
 def uneven_beam(rng, elements=100):
     """A beam that nothing holds, its elements of different lengths, widths and densities."""
     K, M = np.zeros((2, 2 * elements + 2, 2 * elements + 2))

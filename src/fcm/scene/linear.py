@@ -17,7 +17,7 @@ from fcm.scene.model import FloatArray
 from fcm.scene.names import Names, RowNames
 from fcm.scene.ring import NEXT
 from fcm.scene.section import Part, Parts, Section, described
-from fcm.structure.rigid_body import rigid_by_gap
+from fcm.structure.rigid_body import MOST, rigid_by_gap
 
 if TYPE_CHECKING:
     from fcm.scene.structure_table import Matrices
@@ -113,7 +113,8 @@ def with_base(parts: Parts) -> Parts:
 def without_rounding(parts: Parts, ends: tuple[float, float], unit: str) -> tuple[Parts, list[str]]:
     """The parts with frequencies that are the rounding of rigid-body modes set to 0."""
     frequency = parts["modal"]["frequency"]
-    count = rigid_by_gap(frequency)
+    bodies = len(parts["contact"]) + 1  # that are held together by contacts alone
+    count = rigid_by_gap(frequency, most=MOST * bodies)
     if not count or np.isnan(ends[0]):
         return parts, []
     lowest = np.sort(frequency[frequency > 0.0])[:count]

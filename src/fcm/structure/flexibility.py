@@ -62,10 +62,12 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
     basis = np.zeros((system.rows, 0))
     outer = _without(system, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
-    static = _static(system, kept, loads, _rest(system, kept, loads))
+    rest = _rest(system, kept, loads)
+    static = _static(system, kept, loads, rest, omega)
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
     far = FAR**2 * (highest or 1.0)
-    newest = _of_energy_1(system, _orthogonal(system, kept, system.solve(outer)), INDEPENDENT * static)
+    least = np.maximum(INDEPENDENT * _static(system, kept, loads, rest, np.inf), INDEPENDENT**2 * static)
+    newest = _of_energy_1(system, _orthogonal(system, kept, system.solve(outer)), least)
     for blocks in range(1, MOST_BLOCKS + 1):
         basis = np.concatenate((basis, newest), axis=1)
         modes = _galerkin(system, basis, far)
@@ -81,14 +83,6 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
     return found
 
 
-def error_bound(
-    system: System, kept: Modes, modes: Modes, loads: FloatArray, omega: float, beyond: float
-) -> float:
-    """Largest relative error of the receptance of any load by itself at omega; inf from `beyond` on."""
-    static = _static(system, kept, loads, _rest(system, kept, loads))
-    return _off(system, kept, modes, loads, omega, beyond, static)
-
-
 def _off(
     system: System,
     kept: Modes,
@@ -98,7 +92,7 @@ def _off(
     beyond: float,
     static: FloatArray,
 ) -> float:
-    """The same of loads whose static receptance (load,) is known."""
+    """Largest error of the receptance of any load by itself at omega, over `static`; inf from `beyond` on."""
     if omega**2 >= beyond:
         return np.inf
     outer = _without(system, kept, loads)
@@ -131,11 +125,11 @@ def bound_aside(
     for first in range(0, others.shape[1], TOGETHER):
         some = others[:, first : first + TOGETHER]
         rest = _rest(system, kept, some)
-        static = _static(system, kept, some, rest)
+        static = _static(system, kept, some, rest, omega)
         own = max(own, _off(system, kept, found.modes, some, omega, beyond, static))
         share = max(share, float((rest / static).max(initial=0.0)))
     rest = _rest(system, kept, loads)
-    share *= float((rest / _static(system, kept, loads, rest)).max(initial=0.0))
+    share *= float((rest / _static(system, kept, loads, rest, omega)).max(initial=0.0))
     slow = omega / np.sqrt(beyond)
     return float(np.sqrt(own * found.bound)), float(2.0 * slow * np.sqrt(share) / (1.0 - slow**2) ** 2)
 
@@ -172,11 +166,16 @@ def _damping_off(
     return off
 
 
-def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray) -> FloatArray:
-    """Displacement of each load along itself, at rest, without the rigid-body modes, from that part."""
-    elastic = kept.stiffness > -system.shift
-    on_modes = np.abs(kept.shapes[:, elastic].conj().T @ loads)
-    total: FloatArray = rest + (on_modes**2 / kept.stiffness[elastic, None]).sum(axis=0)
+def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float) -> FloatArray:
+    """Displacement of each load along itself at rest, from that part; of rigid-body modes at omega, if not 0.
+
+    What pushes rigid-body modes has no static answer; up to omega theirs is at least that.
+    """
+    rigid = kept.stiffness <= -system.shift
+    on_modes = np.abs(kept.shapes.conj().T @ loads) ** 2
+    total: FloatArray = rest + (on_modes[~rigid] / kept.stiffness[~rigid, None]).sum(axis=0)
+    if omega:
+        total = total + on_modes[rigid].sum(axis=0) / omega**2
     return np.where(total > 0.0, total, 1.0)
 
 

@@ -20,15 +20,31 @@ WORTH_SAYING = 0.03  # of the first elastic frequency: so near to it a soft mode
 AT_REST = 1e-3  # the share of the elastic forces of a row: a soft mode of stiff parts has some of its own
 
 
-def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW) -> int:
-    """How many of the lowest modes are rigid-body modes, of those with a frequency above 0.
+def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW, most: int = MOST) -> int:
+    """How many of the lowest modes are rigid-body modes, of those with a frequency above 0: at most `most`.
 
-    >>> rigid_by_gap(np.array([2e-4, 1e-3, 2e-3, 52.0, 80.0])), rigid_by_gap(np.array([0.5, 52.0, 80.0]))
+    Their own frequencies are rounding, and may be as far from each other.
+
+    >>> rigid_by_gap(np.array([2e-8, 1e-3, 2e-3, 52.0, 80.0])), rigid_by_gap(np.array([0.5, 52.0, 80.0]))
     (3, 0)
     """
     ordered = np.sort(frequency[frequency > 0.0])
     gaps = np.flatnonzero(ordered[:-1] <= below * ordered[1:])
-    return int(gaps[0]) + 1 if gaps.size and gaps[0] < MOST else 0
+    gaps = gaps[gaps < most]
+    return int(gaps[-1]) + 1 if gaps.size else 0
+
+
+def most_rigid(K: Matrix) -> int:
+    """How many rigid-body modes there may be: six of each body, fewer of one with fewer rows.
+
+    >>> import scipy.sparse
+    >>> most_rigid(scipy.sparse.block_diag([np.ones((2, 2)), np.ones((9, 9))]))
+    8
+    """
+    from scipy.sparse.csgraph import connected_components  # modes from a file do without scipy
+
+    _, body = connected_components(abs(K), directed=False)
+    return int(np.minimum(np.bincount(body), MOST).sum())
 
 
 def rigid_by_energy(K: Matrix, modes: Modes) -> int:
@@ -40,17 +56,18 @@ def rigid_by_energy(K: Matrix, modes: Modes) -> int:
     none = left <= CANCELLED
     frequency = np.sqrt(np.maximum(modes.stiffness, 0.0))
     negative, number = int((modes.stiffness <= 0.0).sum()), np.arange(left.size)
-    for most, below in NEARLY.items():
-        none |= (left <= most) & (number < negative + rigid_by_gap(frequency, below))
-    none |= number < _uncertain(K, modes, frequency)
+    many = most_rigid(K)
+    for share, below in NEARLY.items():
+        none |= (left <= share) & (number < negative + rigid_by_gap(frequency, below, many))
+    none |= number < _uncertain(K, modes, frequency, many)
     return int((none & (of_rows.max(axis=0, initial=0.0) <= AT_REST)).sum())
 
 
-def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray) -> int:
+def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:
     """How many of the lowest modes may have no stiffness, by the digits of K, far below the next that has."""
     may = modes.stiffness <= DEVIATIONS * energy_uncertain(K, modes.shapes)
     count = may.size if may.all() else int(may.argmin())
-    apart = 0 < count < may.size and count <= MOST and frequency[count - 1] <= BELOW * frequency[count]
+    apart = 0 < count < may.size and count <= most and frequency[count - 1] <= BELOW * frequency[count]
     return count if apart else 0
 
 

@@ -35,6 +35,7 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
     """How far the answer to a load along itself is off, relative to the static one, up to omega.
 
     At rest, near it, between resonances and at omega; at a resonance by as much more as that is higher.
+    The answer of rigid-body modes, which have no static one, is that at omega.
     """
     elastic = modes.stiffness > 0.0
     if not (elastic.any() and loads.size):
@@ -44,6 +45,8 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
     off = off + _energy_and_error(K, M, modes, loads, float(some.stiffness[0]))[1]
     between = [_energy_and_error(K, M, modes, loads, -(w**2))[1] for w in _between(some, omega)]
     off = SPARE * np.max([off, *between], axis=0)
+    if omega:
+        static = static + (np.abs(modes.shapes[:, ~elastic].conj().T @ loads) ** 2).sum(axis=0) / omega**2
     return float(np.divide(off, static, out=np.zeros_like(off), where=static > 0.0).max())
 
 
