@@ -61,7 +61,9 @@ def with_modes(
     over_rows = distributions(parts, matrices.M)
     pushed = _columns([*_directions(parts), *over_rows.values()], len(dofs))
     loads = np.concatenate((pushed, np.eye(len(dofs))[:, swept]), axis=1)
-    draft, shapes, notes = modal_of_matrices(top, matrices, loads, np.eye(len(dofs))[:, only], ends)
+    draft, shapes, notes = modal_of_matrices(
+        top, matrices, loads, _springs(parts, loads.shape[1]), np.eye(len(dofs))[:, only], ends
+    )
     if draft is None:
         return parts, notes
     draft |= {"dofs": dofs, "frequency": draft["frequency"] / UNITS[unit], "shapes": shapes.T}
@@ -74,12 +76,12 @@ def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: t
     from fcm.scene.reduction import modal_of_matrices
     from fcm.scene.ring_reduction import modal_of_ring
 
-    rows, ends = len(matrices.dofs), (ends[0], ends[1]) if np.isfinite(ends).all() else (0.0, 0.0)
+    rows = len(matrices.dofs)
+    none, ends = np.zeros((rows, 0)), (ends[0], ends[1]) if np.isfinite(ends).all() else (0.0, 0.0)
     if not cyclic:
-        modal_of_matrices(top, matrices, np.zeros((rows, 0)), np.zeros((rows, 0)), ends)
+        modal_of_matrices(top, matrices, none, np.zeros(0), none, ends)
     elif np.isfinite(sectors := cyclic[0]["sectors"]):
-        none = np.zeros((rows, 0))
-        modal_of_ring(top, matrices, int(sectors), np.zeros((2 * rows, 0)), none, none, ends)
+        modal_of_ring(top, matrices, int(sectors), np.zeros((2 * rows, 0)), np.zeros(0), none, none, ends)
 
 
 def _of_ring(
@@ -95,7 +97,9 @@ def _of_ring(
     distributed = _columns([*over_rows.values()], len(own))
     only = np.eye(len(own))[:, [own.place[name] for name in output]]
     sectors = int(parts["cyclic"][0]["sectors"])
-    draft, notes = modal_of_ring(top, matrices, sectors, pushed, distributed, only, ends)
+    draft, notes = modal_of_ring(
+        top, matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed, only, ends
+    )
     if draft is None:
         return parts, notes
     of_next = np.zeros_like(draft["shapes"])  # what they are follows from the sector's own
@@ -184,6 +188,12 @@ def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Par
 def _directions(parts: Mapping[str, Any]) -> list[FloatArray]:
     found = (draft[key] for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys)
     return [direction for direction in found if direction is not None]
+
+
+def _springs(parts: Mapping[str, Any], loads: int) -> FloatArray:
+    """Stiffness of the contacts along their directions, which are the first of all loads; 0 along others."""
+    own = [draft[key] for draft in parts["contact"] for key in ("k_u", "k_v")]
+    return np.array([*own, *np.zeros(loads - len(own))])
 
 
 def _columns(directions: list[FloatArray], rows: int) -> FloatArray:

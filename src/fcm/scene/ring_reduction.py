@@ -30,23 +30,26 @@ def modal_of_ring(
     matrices: Matrices,
     sectors: int,
     pushed: FloatArray,
+    springs: FloatArray,
     distributed: FloatArray,
     outputs: FloatArray,
     ends: tuple[float, float],
 ) -> tuple[dict[str, Any] | None, list[str]]:
     """Modal table (frequencies in rad/s, shapes at all rows), and what is to be said.
 
-    pushed (rows of two sectors, load) are the directions of contacts and forces, distributed and outputs
-    (row, load) loads on the sector alone and what is only reported; `ends` is the range of frequencies.
+    pushed (rows of two sectors, load) are the directions of contacts and forces, springs (load,) the
+    stiffness of contacts along theirs, distributed and outputs (row, load) loads on the sector alone and what
+    is only reported; `ends` is the range of frequencies.
     """
     rows = len(pushed) // 2
+    springs = np.append(springs, np.zeros(distributed.shape[1]))
     diameters = []
     for number in range(sectors // 2 + 1):
         turn = np.exp(2j * np.pi * number / sectors)
         loads = np.concatenate((pushed[:rows] + pushed[rows:] * np.conj(turn), distributed), axis=1)
         at = _plain(_at_diameter(matrices, turn), loads, number in (0, sectors / 2))
         try:
-            diameters.append(_modes(*at, number, outputs, ends))
+            diameters.append(_modes(*at, springs, number, outputs, ends))
         except StructureError as error:
             top.wrong("structure", f"{error} (at nodal diameter {number})")
             return None, []
@@ -93,12 +96,17 @@ def _plain(matrices: Matrices, loads: ComplexArray, standing: bool) -> tuple[Mat
 
 
 def _modes(
-    matrices: Matrices, loads: Any, number: int, outputs: FloatArray, ends: tuple[float, float]
+    matrices: Matrices,
+    loads: Any,
+    springs: FloatArray,
+    number: int,
+    outputs: FloatArray,
+    ends: tuple[float, float],
 ) -> Diameter:
     directions, others = split(loads, outputs)
     top = ends[1] if np.isfinite(ends[1]) else 0.0
     found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility, others)
-    ratio, said = damping_of(matrices, found, loads, outputs, ends)
+    ratio, said = damping_of(matrices, found, loads, springs, outputs, ends)
     return Diameter(number, found, ratio, said)
 
 

@@ -6,7 +6,10 @@ import numpy as np
 
 from fcm.structure.eigen import FloatArray, Matrix, Modes, StructureError
 
-MOST_FREQUENCIES = 60  # at which two responses are compared
+MOST_RESONANCES = 60  # at which two responses are compared, and beside them
+BETWEEN = 4  # places up to each next one: an effect between two of them is then seen to a fifth
+WORK = 3e8  # complex multiplications of all places, some tenths of a second: with many modes there are fewer
+FINER = 12  # further places beside the greatest
 ROUNDING = 1e-9  # of the greatest coefficient: less negative than that is none
 
 
@@ -41,26 +44,51 @@ def check_dissipates(coefficients: FloatArray) -> None:
 
 
 def coupling_effect(
-    modal: FloatArray, stiffness: FloatArray, pushes: FloatArray, seen: FloatArray, low: float, high: float
+    modal: FloatArray,
+    stiffness: FloatArray,
+    pushes: FloatArray,
+    seen: FloatArray,
+    springs: FloatArray,
+    low: float,
+    high: float,
 ) -> float:
     """Greatest change of the linear response by the damping between modes, relative.
 
     The response of `seen` (mode, displacement) to each of `pushes` (mode, load), of modes of mass 1 with the
-    damping matrix `modal`, at the natural frequencies from low to high and at its ends.
+    damping matrix `modal`, from low to high, with springs (load,) along the loads: the contacts' when they
+    are stuck. It is sampled at resonances, beside them and between, and once more where it is greatest.
     """
-    natural = np.sqrt(stiffness)
-    inside = natural[(natural > low) & (natural < high)][:MOST_FREQUENCIES]
-    worst = 0.0
-    for omega in (low, *inside.tolist(), high):
-        undamped = np.diag(stiffness - omega**2).astype(np.complex128)
-        of_each = np.diagonal(undamped) + 1j * omega * np.diagonal(modal)
-        if not of_each.all():
-            continue  # at the resonance of an undamped mode: no force gives a response
+    matrix = np.diag(stiffness) + (pushes * springs) @ pushes.conj().T
+
+    def change(omega: float) -> float:
+        undamped = matrix - omega**2 * np.eye(len(matrix))
+        own = np.diag(np.diagonal(modal))
         try:
-            whole = seen.conj().T @ np.linalg.solve(undamped + 1j * omega * modal, pushes)
+            whole, alone = (
+                seen.conj().T @ np.linalg.solve(undamped + 1j * omega * damper, pushes)
+                for damper in (modal, own)
+            )
         except np.linalg.LinAlgError:
-            continue
-        alone = seen.conj().T @ (pushes / of_each[:, None])
-        size = np.abs(whole).max(initial=0.0)
-        worst = max(worst, float(np.abs(whole - alone).max() / size) if size else 0.0)
-    return worst
+            return 0.0  # at the resonance of an undamped mode: no force gives a response
+        size = float(np.abs(whole).max(initial=0.0))
+        return float(np.abs(whole - alone).max() / size) if 0.0 < size < np.inf else 0.0
+
+    places = _places(matrix, modal, low, high)
+    found = [change(omega) for omega in places.tolist()]
+    at = int(np.argmax(found))
+    before, after = places[max(at - 1, 0)], places[min(at + 1, places.size - 1)]
+    return max(found[at], *map(change, np.linspace(before, after, FINER).tolist()))
+
+
+def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> FloatArray:
+    """Frequencies from low to high: resonances, where half of their power is left, and between these."""
+    value, turn = np.linalg.eigh(matrix)
+    natural = np.sqrt(np.maximum(value, 0.0))
+    width = 0.5 * np.einsum("ij,ij->j", turn.conj(), damper @ turn).real
+    inside = np.flatnonzero((natural > low) & (natural < high))[:MOST_RESONANCES]
+    own, beside = natural[inside], width[inside]
+    ends = np.unique(np.clip([low, high, *own, *(own - beside), *(own + beside)], low, high))
+    gaps = ends.size - 1
+    each = int(np.clip(WORK / (max(gaps, 1) * len(matrix) ** 3), 1, BETWEEN))
+    places: FloatArray = np.interp(np.arange(gaps * each + 1) / each, np.arange(ends.size), ends)
+    return places

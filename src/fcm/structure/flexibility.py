@@ -161,9 +161,9 @@ def _damping_off(
     if not sixth:
         m_6 = m_4 * (lowest / beyond)
     least = np.divide(m_4**1.5, np.sqrt(m_6), out=np.zeros_like(m_4), where=m_6 > 0.0)
-    off: FloatArray = np.maximum(np.sqrt(m_2 * m_4) - m_3, m_3 - least) * (most / lowest / static)
-    off /= np.sqrt(lowest)
-    return off
+    off = np.maximum(np.sqrt(m_2 * m_4) - m_3, m_3 - least)
+    relative: FloatArray = off * (most / lowest / static) / np.sqrt(lowest)
+    return relative
 
 
 def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, omega: float) -> FloatArray:
@@ -175,7 +175,7 @@ def _static(system: System, kept: Modes, loads: FloatArray, rest: FloatArray, om
     on_modes = np.abs(kept.shapes.conj().T @ loads) ** 2
     total: FloatArray = rest + (on_modes[~rigid] / kept.stiffness[~rigid, None]).sum(axis=0)
     if omega:
-        total = total + on_modes[rigid].sum(axis=0) / omega**2
+        total += on_modes[rigid].sum(axis=0) / omega**2
     return np.where(total > 0.0, total, 1.0)
 
 
