@@ -73,16 +73,37 @@ def test_branches_are_not_joined(path):
         data["regime"][0, 1] = np.array([""], object)
     response = read_response(path)
     assert response.curves[0].regimes == {"E"}
-    line, *others = draw_response(response).axes[0].lines
+    line, *others = [line for line in draw_response(response).axes[0].lines if line.get_marker() != "."]
     np.testing.assert_array_equal(line.get_xdata(), [1.0, NAN, 1.5])
     np.testing.assert_array_equal(line.get_ydata(), [7.0, NAN, 9.0])
     assert len(others) == 1
 
 
-def test_stability_that_is_nowhere_known_is_none(path):
+def test_curves_of_which_stability_is_nowhere_told_are_dotted(path):
+    """A solid line is a claim that they are stable."""
     with netCDF4.Dataset(path, "a") as data:
         data["stable"][:] = NAN
-    assert [curve.stable for curve in read_response(path).curves] == [None, None]
+    figure = draw_response(read_response(path))
+    solid, dotted = figure.axes[0].lines[::2], figure.axes[0].lines[1::2]
+    assert not any(np.isfinite(line.get_ydata()).any() for line in solid)
+    assert [line.get_xdata().tolist() for line in dotted] == [[1.0, 2.0, 1.5], [1.0, 3.0]]
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["whether it is stable is not told"]
+
+
+def test_points_alone_are_seen(path):
+    """A file of peaks alone has no two points side by side; lines draw nothing of them."""
+    with netCDF4.Dataset(path, "a") as data:
+        data["frequency"][0], data["frequency"][1] = [1.0, NAN, 1.2], [1.5, NAN, NAN]
+        data["stable"][0] = [1.0, NAN, 0.0]
+    (axes,) = draw_response(read_response(path)).axes
+    dots = {
+        (x, y): line.get_markerfacecolor() == line.get_color()
+        for line in axes.lines
+        if line.get_marker() == "."
+        for x, y in zip(line.get_xdata(), line.get_ydata(), strict=True)
+        if np.isfinite(y)
+    }
+    assert dots == {(1.0, 7.0): True, (1.2, 9.0): False, (1.5, 1.0): True}
 
 
 def test_a_file_without_stability_and_regimes_is_read(path):

@@ -34,7 +34,7 @@ class DrawnCurve:
     frequency: FloatArray  # (point,) in the file's unit, or the level of the forces
     amplitude: FloatArray  # (point, dof)
     stable: BoolArray | None = None  # (point,) where that is not told, too
-    untold: BoolArray | None = None  # (point,) where it is not, though elsewhere it is
+    untold: BoolArray | None = None  # (point,) where it is not
     regimes: frozenset[str] = field(default=frozenset())  # all that occur, of every contact
     table_error: FloatArray | None = None  # (point,) relative, before the correction
     truncation_error: FloatArray | None = None  # (point,) relative
@@ -150,14 +150,13 @@ def _curve(
     """Take the padding away; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
-    judged = stable is not None and bool(np.isfinite(stable[there]).any())
     untold = None if stable is None else np.isfinite(frequency[there]) & np.isnan(stable[there])
     return DrawnCurve(
         parameters,
         frequency[there],
         amplitude[there],
-        stable[there] != 0 if stable is not None and judged else None,
-        untold if judged else None,
+        None if stable is None else stable[there] != 0,
+        untold,
         frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
         *(None if error is None else error[there] for error in errors),
     )

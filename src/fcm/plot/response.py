@@ -40,6 +40,7 @@ _FADED = f"may err by more than {100 * _DOUBTFUL:g} %"  # what is said of it,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
+_HOLLOW = "one point, not stable or not told"  # what is a hollow dot
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 
 
@@ -114,15 +115,15 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
     """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
     unstable, a dotted one where that is not told.
 
-    Faded is what may err by more than a fifth.
+    Faded is what may err by more than a fifth. A point without neighbours, as one of peaks alone, is a dot,
+    hollow unless it is stable.
     """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
     told, dashed = _split(amplitude, unstable)
     solid, dotted = _split(told, np.zeros_like(unstable) if curve.untold is None else curve.untold)
     trusted, faded = _split(solid, doubtful(curve))
-    alone = "." if len(amplitude) == 1 else ""
-    (line,) = axes.plot(curve.frequency, trusted, linewidth=width, marker=alone)
+    (line,) = axes.plot(curve.frequency, trusted, linewidth=width)
     others = [(faded, _LINE, _ALPHA)]
     for values, style in ((dashed, _DASHES), (dotted, _DOTS)):
         sure, unsure = _split(values, doubtful(curve))
@@ -133,6 +134,21 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
                 curve.frequency, values, color=line.get_color(), linewidth=width, linestyle=style,
                 alpha=alpha, label=_UNNAMED,
             )  # fmt: skip
+    alone = _alone(curve, column)
+    for values, face in ((solid, line.get_color()), (np.where(np.isnan(solid), amplitude, np.nan), "none")):
+        if np.isfinite(values[alone]).any():
+            axes.plot(
+                curve.frequency[alone], values[alone], ".", color=line.get_color(), markerfacecolor=face,
+                label=_UNNAMED,
+            )  # fmt: skip
+
+
+def _alone(curve: DrawnCurve, column: int) -> BoolArray:
+    """Points that no line leads to."""
+    there = np.isfinite(curve.frequency) & np.isfinite(curve.amplitude[:, column])
+    around = np.concatenate(([False], there, [False]))
+    alone: BoolArray = there & ~around[:-2] & ~around[2:]
+    return alone
 
 
 def _notes(curves: list[DrawnCurve], colour: str, width: float) -> dict[str, Line2D]:
