@@ -113,3 +113,40 @@ def test_it_is_refused_where_it_means_nothing(others):
     run = called("respond", "yang1998-n5", "--method", "exact", "--periods", 2, *others)
     assert run.code == 2 and "--periods needs --method exact, and whole curves" in run.err
     assert called("respond", "yang1998-n5", "--periods", 2).code == 2
+
+
+def marched(n_0, omega, cycles, steps=600):
+    """Half the peak-to-peak u of each cycle of the paper's oscillator from rest: its law in small steps."""
+    shapes, natural = np.array([[0.707, 0.707], [1.0, -0.5]]), np.array([1.0, 10.0])
+    q, rate, friction, (u, v) = np.zeros(2), np.zeros(2), 0.0, (0.0, 0.0)
+    dt, found = 2.0 * np.pi / omega / steps, []
+    for cycle in range(cycles):
+        us = []
+        for step in range(steps):
+            force = np.sin(omega * dt * (cycle * steps + step))
+            load = max(n_0 + v, 0.0)
+            pushed = shapes @ (force - friction, force - (load - max(n_0, 0.0)))
+            rate = rate + dt * (pushed - 0.02 * natural * rate - natural**2 * q)
+            q = q + dt * rate
+            before, (u, v) = u, shapes.T @ q
+            limit = 0.4 * max(n_0 + v, 0.0)
+            friction = min(max(friction + u - before, -limit), limit)
+            us.append(u)
+        found.append(np.ptp(us) / 2.0)
+    return found
+
+
+def test_they_are_found_where_they_are_far_from_the_motions_that_they_leave():
+    """A contact without preload: beside the flip at which they begin they are twice as great already."""
+    scene = fcm.load_scene("yang1998-n5")
+    contact = replace(scene.contacts[0], n_0=0.0)
+    scene = replace(scene, contacts=(contact,), frequency_range=(0.7, 0.8))
+    (curve,) = trace_exact(scene, periods=2).curves
+    assert curve.complete and not curve.orbits.doubles
+    twice = np.flatnonzero(curve.orbits.repeats == 2)
+    twice = twice[np.argsort(curve.frequency[twice])]
+    assert curve.frequency[twice[0]] < 0.73 and curve.frequency[twice[-1]] > 0.762
+    last = marched(0.0, 0.745, 150)[-2:]
+    for part, extreme in ((curve.orbits.cycle_least, min), (curve.orbits.cycle_greatest, max)):
+        between = np.interp(0.745, curve.frequency[twice], part[twice, 0])
+        assert between == pytest.approx(extreme(last), rel=0.01)

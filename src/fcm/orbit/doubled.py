@@ -15,11 +15,13 @@ from fcm.continuation import Mark, Path
 from fcm.continuation.branches import Follow, contains, through
 from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
+from fcm.motion.state import State
 from fcm.orbit.held import held
 from fcm.orbit.periodic import Look, converged, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
 from fcm.orbit.shooting import Shot
+from fcm.orbit.steady import Steady, steady
 from fcm.scene.model import FloatArray
 
 REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is
@@ -67,6 +69,8 @@ def doubled_paths(
             )
             if path.z.shape[0]:
                 paths.append(path)
+            else:
+                lost += 1
     return paths, lost
 
 
@@ -114,32 +118,60 @@ def doubled_starts(
 
 
 def _beside(problem: Doubled, points: list[Sample], k: int, look: Look) -> Iterator[FloatArray]:
-    """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first."""
-    unstable_after = points[k].stable
+    """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
+
+    Not at the flip itself, where all of them but a few are further off than what rounding takes for one. Where
+    none is near an unstable motion, that which a disturbance of it comes to may be one.
+    """
+    ends = [id(flip(points, j)) for j in flips(points)]
     after, before = points[k + 1 : k + 1 + BESIDE], points[k : max(k - BESIDE, -1) : -1]
-    sides = (after, before) if unstable_after else (before, after)
-    for point in (one for side in sides for one in side):
+    sides = (after, before) if points[k].stable else (before, after)
+    near = [point for side in sides for point in side if id(point) not in ends]
+    for point in near:
         look()
         shot = problem.once.shot(point.z)
         if shot is not None:
             yield from _doubled(problem, point, shot)
+    for point in near[:1]:
+        shot = problem.once.shot(point.z)
+        if shot is not None:
+            yield from _approached(problem, point, shot, look)
 
 
 def _doubled(problem: Doubled, point: Sample, once: Shot) -> Iterator[FloatArray]:
     """The motion in the direction in which a disturbance changes its sign after each period."""
-    matrix = once.derivative * (once.scale / once.scale[:, None])
-    values, vectors = np.linalg.eig(matrix)
-    way = vectors[:, values.real.argmin()].real
-    way = way / np.abs(way).max()
     for reach in REACHES:
-        x = once.x + reach * way * once.scale
         try:
-            guess = Shot(once.system, x, problem.shooting.resting, problem.repeats)
+            guess = Shot(once.system, _disturbed(once, reach), problem.shooting.resting, problem.repeats)
             found = converged(guess)
         except SimulationError:
             continue
-        if found is None or Shot(once.system, found[0].x, periods=problem.once.repeats).residual < AGAIN:
-            continue
-        newton = Newton(problem)
-        if held(newton, np.append(found[0].x[problem.free], point.frequency)):
-            yield np.array(newton.z)
+        if found is not None:
+            yield from _held(problem, point, found[0])
+
+
+def _approached(problem: Doubled, point: Sample, once: Shot, look: Look) -> Iterator[FloatArray]:
+    """The motion that a simulation comes to from a disturbed one."""
+    x, system = _disturbed(once, REACHES[0]), once.system
+    found = steady(system, State(x[system.q], x[system.p], x[system.f]), look)
+    if isinstance(found, Steady) and found.periods == problem.repeats:
+        state = found.state
+        x = np.concatenate((state.q, state.velocity, state.friction))
+        yield from _held(problem, point, Shot(system, x, problem.shooting.resting, problem.repeats))
+
+
+def _disturbed(once: Shot, reach: float) -> FloatArray:
+    """The start of a motion, moved by reach, relative to it, on the way that turns with each period."""
+    values, vectors = np.linalg.eig(once.derivative * (once.scale / once.scale[:, None]))
+    way = vectors[:, values.real.argmin()].real
+    x: FloatArray = once.x + reach * way / np.abs(way).max() * once.scale
+    return x
+
+
+def _held(problem: Doubled, point: Sample, shot: Shot) -> Iterator[FloatArray]:
+    """The solution of the problem that a motion is, unless that repeats before."""
+    if Shot(shot.system, shot.x, periods=problem.once.repeats).residual < AGAIN:
+        return
+    newton = Newton(problem)
+    if held(newton, np.append(shot.x[problem.free], point.frequency)):
+        yield np.array(newton.z)
