@@ -702,6 +702,17 @@ def test_a_corner_at_which_a_curve_of_many_unknowns_turns_back_is_landed_on(step
     assert path.parameter[folds] == pytest.approx([2.0, 2.0 - back], abs=1e-8 * back)
 
 
+@pytest.mark.parametrize("step", (0.2, 0.05))
+def test_a_corner_of_many_unknowns_is_gone_to_at_once_and_left_by_a_share_of_the_step(step):
+    """Where its other side is found from this one."""
+    z = np.append(np.zeros(102), 1.0)
+    z[:2] = 1.0
+    path = follow(Widened(zigzag(0.5)), z, (1.0, 6.0), True, step)
+    for corner in path.where(Mark.FOLD):
+        beside = np.linalg.norm((path.z - path.z[corner])[:, [0, 1, -1]] / [1.0, 1.0, 2.0], axis=1)
+        assert np.count_nonzero(beside < 1e-3) <= 3
+
+
 def test_a_margin_is_the_same_only_within_its_group():
     """However near another of its kind is: here that of the other group, by its angle."""
     problem = Problem(1, 4, 0)

@@ -37,7 +37,8 @@ BEYOND = cython.declare(cython.double, 1e-7)
 TOUCHED = cython.declare(cython.double, 1e-8)  # a margin this near is met: less than BEYOND
 NEAR = cython.declare(cython.double, 1e-4)  # where points matter, a corner further away is gone to by steps,
 NEARER = cython.declare(cython.double, 0.9)  # each this share of the way
-AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner
+AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner,
+SAME = cython.declare(cython.double, 0.1)  # or this share of that before it, where every place counts
 LONGEST = 20_000  # steps
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
 
@@ -77,7 +78,7 @@ class Follower:
         self.problem, self.front = problem, front or Front(problem)
         self.front.newton.evaluations = 0
         self.max_step, self.progress, self.hasty = max_step, progress, hasty
-        self.near = max_step if hasty else NEAR
+        self.near = max_step if hasty or problem.dear else NEAR
         self.passage = Passage(self.front, span, stations)
         self.narrow = Narrow([one for one in narrow if one[1] < max_step * (span[1] - span[0])])
         self.corners, self.attempts = Leaving(self.passage, problem.soft), 0
@@ -232,7 +233,7 @@ class Follower:
     def leave(self, place: Place, at: cython.double, past: cython.double = BEYOND) -> object:
         """Go on from a corner, a place at a length from here; past: where to look if it is soft."""
         self.corners.at(place, at, past)
-        self.step = AFTER
+        self.step = max(AFTER, SAME * self.step) if self.problem.dear else AFTER
         return None
 
     def aim(self, step: float, longer: bool) -> None:

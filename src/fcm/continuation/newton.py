@@ -67,7 +67,7 @@ class Newton(Bordered):
             if self.problem.soft and self.settled(step, step / before, count):
                 return self.direct()
             noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
-            worse: cython.double = HOPELESS if self.problem.soft else 2.0
+            worse: cython.double = HOPELESS if self.problem.soft or self.problem.dear else 2.0
             if not step < FAR or (count > 2 and step > worse * before and not noise):
                 return False
             for i in range(size):
