@@ -45,12 +45,15 @@ class Kernels(build_ext):
         super().finalize_options()
         self.parallel = os.cpu_count()
 
+    def run(self) -> None:
+        self.optional = self.editable_mode or not self.inplace  # here, for it is set aside for what follows
+        super().run()
+
     def build_extensions(self) -> None:
-        optional = self.editable_mode or not self.inplace
         for kernel in self.extensions:
-            kernel.optional = optional
+            kernel.optional = self.optional
             self._discard_if_old(kernel)
-        if optional and not self._compiles():
+        if self.optional and not self._compiles():
             return
         translated = cythonize(  # type: ignore[no-untyped-call]
             self.extensions,
@@ -63,15 +66,17 @@ class Kernels(build_ext):
         for kernel, in_C in zip(self.extensions, translated, strict=True):
             kernel.sources = in_C.sources
         super().build_extensions()
-        if self.inplace or self.editable_mode:
+        if self.editable_mode:
             # as pip does for what it copies: where Python may not write bytecode, a start takes 0.1 s longer
             compile_dir("src/fcm", quiet=1)
 
     def _compiles(self) -> bool:
         """Whether C is compiled here, with Python's headers; where not, kernels need not be translated."""
-        arrays = self.extensions[-1]
+        source = Path(self.build_temp) / "headers.c"
+        source.parent.mkdir(parents=True, exist_ok=True)
+        source.write_text("#include <Python.h>\n")
         try:
-            self.compiler.compile(arrays.sources, self.build_temp, arrays.define_macros, self.include_dirs)
+            self.compiler.compile([str(source)], include_dirs=self.include_dirs)
         except CompileError as reason:
             self.warn(f"the kernels of fcm are not compiled: {reason}")
             return False
