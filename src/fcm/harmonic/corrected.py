@@ -123,8 +123,8 @@ class Corrected:
         """Corrected amplitudes (dof,) at places of their own, where the displacement is settled.
 
         Those found are each as good as the harmonics that it was found with, so that the greatest of some is
-        high by chance. Of places that lie together the middle one speaks for all. Small displacements stay as
-        they were found, and so do those that settling leads away from.
+        high by chance. Of places that lie together the middle one tells for all how much they change by that.
+        Small displacements stay as they were found, and so do those that settling leads away from.
         """
         d, amplitude = np.arange(len(places)), found.copy()
         for group in _within(np.unique(places), ALONE if self.corrector.ranking.cheap else TOGETHER):
@@ -133,8 +133,8 @@ class Corrected:
             if change is None:
                 continue
             there, now = (places >= group[0]) & (places <= group[-1]), self.amplitude[i]
-            factor = (now + self.unit[i] * change[1:]) / np.where(now > 0.0, now, 1.0)
-            amplitude[there] = (self.amplitude[places, d] * factor)[there]
+            more = self.unit[i] * (change - self.change[i])[1:] / np.where(now > 0.0, now, 1.0)
+            amplitude[there] += (self.amplitude[places, d] * more)[there]
         return amplitude
 
     def settled_at(self, place: int) -> FloatArray | None:
