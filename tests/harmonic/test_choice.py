@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from fcm.continuation import follow
-from fcm.harmonic import choice, start, trace
-from fcm.harmonic.choice import Outline, accurate, enlarged, estimated, judged, outlined
+from fcm.harmonic import choice, outline, start, trace
+from fcm.harmonic.choice import accurate, enlarged, estimated, judged
 from fcm.harmonic.cost import seconds_of
+from fcm.harmonic.outline import Outline, foretold, outlined
 from fcm.harmonic.system import System
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
@@ -27,8 +28,8 @@ EXACT = {
 
 def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
     passes = []
-    traced = choice.traced
-    monkeypatch.setattr(choice, "traced", lambda *args: passes.append(args) or traced(*args))
+    traced = outline.traced
+    monkeypatch.setattr(outline, "traced", lambda *args: passes.append(args) or traced(*args))
     found = accurate(System(scene("yang1998", 100)), 1e-6)
     assert found.system.harmonics == (1,)
     assert found.reached
@@ -92,12 +93,22 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
 
 
+def test_an_outline_has_the_harmonics_that_are_foreseen_and_estimates_no_error(monkeypatch):
+    """Those of the accurate response, of which it is said that they were enough; foreseen to do less."""
+    known = accurate(System(scene("yang1998", 5)), 1e-2)
+    monkeypatch.setattr(choice, "errors_along", None)
+    found = foretold(System(scene("yang1998", 5)), 1e-2)
+    assert known.reached and found.system.harmonics == known.system.harmonics
+    ahead = found.ahead(1e-2)
+    assert ahead.told and ahead.change <= 1e-2 < outlined(System(scene("yang1998", 5))).ahead(1e-2).change
+
+
 def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
     """A round that alone is not too long is not begun after others."""
     system = System(scene("yang1998", 5))
     enough, taken = accurate(system, 1e-4), system.work.seconds
     assert enough.reached and not enough.begun
-    monkeypatch.setattr(choice, "PATIENCE", taken)
+    monkeypatch.setattr(outline, "PATIENCE", taken)
     monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.9 * taken)
     found = accurate(System(system.scene), 1e-4)
     assert not found.reached and not found.begun
@@ -115,13 +126,13 @@ def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
         monkeypatch.setattr(
             module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
         )
-    outline = outlined(system)
+    found = outlined(system)
     assert paths[start] and paths[trace]
     evaluations = sum(path.evaluations for some in paths.values() for path in some)
-    assert outline.seconds == pytest.approx(seconds_of(system, evaluations, 3))
-    judged(outline, 1e-3)
-    assert system.work.seconds > outline.seconds
-    assert outline.seconds_with((1, 2, 3)) == pytest.approx(outline.seconds)
+    assert found.seconds == pytest.approx(seconds_of(system, evaluations, 3))
+    judged(found, 1e-3)
+    assert system.work.seconds > found.seconds
+    assert found.seconds_with((1, 2, 3)) == pytest.approx(found.seconds)
 
 
 def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
@@ -129,7 +140,7 @@ def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
     system = System(scene("yang1998", 5))
     first = outlined(system)
     monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.0)
-    monkeypatch.setattr(choice, "PATIENCE", 1.01 * first.seconds)
+    monkeypatch.setattr(outline, "PATIENCE", 1.01 * first.seconds)
     found = accurate(System(system.scene), 1e-3)
     assert found.begun and set(found.further) > {1, 2, 3}
     assert found.system.harmonics == (1,) and not found.reached
@@ -142,7 +153,7 @@ def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
 
 
 def test_what_would_take_too_long_is_said(monkeypatch):
-    monkeypatch.setattr(choice, "PATIENCE", 0.0)
+    monkeypatch.setattr(outline, "PATIENCE", 0.0)
     found = accurate(System(scene("yang1998", 5)), 1e-3)
     assert not found.reached
     assert found.system.harmonics == (1,)
@@ -164,15 +175,15 @@ def test_no_more_harmonics_are_added_than_some_seconds_allow():
 
 def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
     """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
-    own = choice.foreseen
+    own = outline.foreseen
     monkeypatch.setattr(
-        choice, "foreseen", lambda *a: replace(own(*a), change=0.0, told=False, harmonics=(1, 2, 3, 5, 9))
+        outline, "foreseen", lambda *a: replace(own(*a), change=0.0, told=False, harmonics=(1, 2, 3, 5, 9))
     )
-    monkeypatch.setattr(choice, "DOUBTFUL", 0.0)
+    monkeypatch.setattr(outline, "DOUBTFUL", 0.0)
     found = accurate(System(scene("yang1998", 5)), 1e-4)
     assert found.system.harmonics == (1, 2, 3) and not found.reached
     assert found.further == (1, 2, 3, 5, 9) and not found.begun
-    monkeypatch.setattr(choice, "DOUBTFUL", np.inf)
+    monkeypatch.setattr(outline, "DOUBTFUL", np.inf)
     assert accurate(System(scene("yang1998", 5)), 1e-4).system.harmonics == (1, 2, 3, 5, 9)
 
 

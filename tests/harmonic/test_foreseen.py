@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.choice import outlined
 from fcm.harmonic.further import padded
+from fcm.harmonic.outline import outlined
 from fcm.harmonic.system import System
 
 from .truth import MANY, scene

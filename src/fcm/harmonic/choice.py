@@ -2,65 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.continuation.follow import Progress
-from fcm.harmonic.beside import beside
-from fcm.harmonic.cost import AGAIN, PATIENCE, seconds_of
+from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.crest import RIVAL
-from fcm.harmonic.error import Errors, Reported, errors_along, reported
-from fcm.harmonic.foreseen import LOW, NOTHING, UNKNOWN, Foreseen, foreseen, needed
+from fcm.harmonic.error import Errors, errors_along
+from fcm.harmonic.foreseen import NOTHING, UNKNOWN, needed
 from fcm.harmonic.nearby import with_a_window
-from fcm.harmonic.start import Found, few_of
+from fcm.harmonic.outline import ROUNDS, Outline, near, outlined, with_more
+from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
-from fcm.harmonic.trace import Traced, traced
-from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
-
-ROUNDS = 8  # of tracing, estimating, choosing
-DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they bring the accuracy nearer
-
-
-@dataclass(frozen=True)
-class Outline:
-    """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
-
-    seconds: about what following its levels and branches took.
-    """
-
-    system: System
-    traced: Traced
-    shown: tuple[Reported, ...]
-    seconds: float
-
-    def seconds_with(self, harmonics: tuple[int, ...]) -> float:
-        """About what following its levels and branches with other harmonics takes."""
-        few, many = len(self.system.harmonics), len(harmonics)
-        if not self.seconds:  # nothing was to be followed
-            return 0.0
-        grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
-        return self.seconds * grown * many / few
-
-    def within(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
-        """More harmonics without the highest of those that are new, until following them takes no longer.
-
-        The lowest stay: a branch of one harmonic may be of no motion at all.
-        """
-        least = {*self.system.harmonics, *range(1, LOW + 1)}
-        while self.seconds_with(more) > seconds and not least.issuperset(more):
-            highest = max(set(more) - least)
-            more = tuple(h for h in more if h != highest)
-        return more
-
-    def ahead(self, accuracy: float) -> Foreseen:
-        """What more harmonics would do, and those that an accuracy takes."""
-        paths = self.traced.branches.paths
-        if not paths:
-            return Foreseen(0.0, True, self.system.harmonics)
-        return foreseen(self.system, paths, [one.amplitude for one in self.shown], accuracy)
 
 
 @dataclass(frozen=True)
@@ -98,8 +53,7 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
     with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer is given up.
     Whether the branches are complete is another question, see their status.
     """
-    found, work = outlined(system, progress), system.work
-    further, begun = tuple[int, ...](), False
+    found, further, begun = outlined(system, progress), tuple[int, ...](), False
     for _ in range(ROUNDS - 1):
         ahead, sure = found.ahead(accuracy), None
         more = ahead.harmonics
@@ -112,23 +66,8 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
                     return sure
             else:
                 more = enlarged(sure, accuracy)
-        blind = not ahead.told and ahead.change <= accuracy  # what is told of is no reason for more
-        if blind:
-            more = found.within(DOUBTFUL - work.seconds, more)
-        if more == found.system.harmonics:
-            further = ahead.harmonics if blind and ahead.harmonics != more else ()
-            break
-        if work.seconds + found.seconds_with(more) > PATIENCE:
-            further = more
-            break
-        near = _near(found, more)
-        try:
-            with work.up_to(PATIENCE):
-                then = outlined(system.with_harmonics(more), progress, found.traced.found, near)
-        except TooLongError:
-            further, begun = more, True
-            break
-        if not then.shown:  # no solution was found: the one of fewer harmonics, which says its error, stays
+        then, further, begun = with_more(found, ahead, more, accuracy, progress)
+        if then is None:
             break
         found = then
     return replace(sure or judged(found, accuracy), further=further, begun=begun)
@@ -139,8 +78,8 @@ def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accur
     than is worth it."""
     if found.seconds_with(harmonics) > AGAIN:
         return None
-    near = _near(found, harmonics)
-    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.found, near)
+    beside = near(found, harmonics)
+    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.found, beside)
     return judged(then, accuracy) if then.shown else None
 
 
@@ -165,13 +104,7 @@ def _after(before: Outline | None, system: System, progress: Progress | None = N
     """The response of a system, after that with fewer harmonics."""
     if before is None:
         return outlined(system, progress)
-    return outlined(system, progress, before.traced.found, _near(before, system.harmonics))
-
-
-def _near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:
-    """Solutions with more harmonics beside the stable peaks of a response."""
-    shown = [one.amplitude for one in before.shown]
-    return beside(before.system, before.traced.branches.paths, shown, harmonics)
+    return outlined(system, progress, before.traced.found, near(before, system.harmonics))
 
 
 def judged(outline: Outline, accuracy: float) -> Accurate:
@@ -188,19 +121,6 @@ def judged(outline: Outline, accuracy: float) -> Accurate:
     every = np.concatenate((matter, *(one.fold for one in errors)))
     worst, told = float(every.max(initial=0.0)), float(every[np.isfinite(every)].max(initial=0.0))
     return Accurate(system, response, shown, outline.seconds, errors, peak, worst, told, worst <= accuracy)
-
-
-def outlined(
-    system: System,
-    progress: Progress | None = None,
-    fewer: tuple[Found, ...] = (),
-    near: Sequence[FloatArray] = (),
-) -> Outline:
-    """The response of a system; fewer and near as of `traced`."""
-    before = system.work.seconds
-    response = traced(system, progress, fewer, near)
-    shown = tuple(reported(system, path) for path in response.branches.paths)
-    return Outline(system, response, shown, system.work.seconds - before)
 
 
 def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:

@@ -18,7 +18,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
-    from fcm.harmonic.choice import Outline
+    from fcm.harmonic.outline import Outline
     from fcm.harmonic.system import System
 
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
@@ -71,7 +71,7 @@ def first_balances(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
     That of one harmonic, and where branches of few are known to be apart, also that of `SOME`, as others may
     lead to no closed branch; of many contacts that of one, and only where branches are apart.
     """
-    from fcm.harmonic.choice import outlined
+    from fcm.harmonic.outline import outlined
 
     whole = scene.whole()
     many = len(whole.contacts) >= MANY
@@ -83,13 +83,16 @@ def first_balances(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
 
 
 def further_balances(scene: Scene, look: Look) -> Iterator[Outline]:
-    """Those where one harmonic is not enough: of `FEW`, and of as many as it takes; none of many contacts."""
-    from fcm.harmonic.choice import accurate, outlined
+    """Those where one harmonic is not enough: of `FEW`, and of as many as it is foreseen to take.
+
+    None of many contacts.
+    """
+    from fcm.harmonic.outline import foretold, outlined
 
     whole = scene.whole()
     if whole.modal.frequency.all() and len(whole.contacts) < MANY:
         yield outlined(_single(whole, look).with_harmonics(FEW))
-        yield accurate(_single(whole, look), ACCURACY)
+        yield foretold(_single(whole, look), ACCURACY)
 
 
 def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dict[float, list[State]]:
@@ -131,6 +134,6 @@ def _single(whole: Scene, look: Look) -> System:
 
 def _outlined(one: System) -> Outline:
     """The branches of `SOME` harmonics, or of one where there are many contacts."""
-    from fcm.harmonic.choice import outlined
+    from fcm.harmonic.outline import outlined
 
     return outlined(one if len(one.scene.contacts) >= MANY else one.with_harmonics(SOME))

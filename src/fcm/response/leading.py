@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.harmonic.choice import Accurate, Outline, judged
+from fcm.harmonic.choice import Accurate, judged
 from fcm.harmonic.error import reported
+from fcm.harmonic.outline import Outline
 from fcm.harmonic.system import System
 from fcm.harmonic.tops import tops_between
 from fcm.results.peak import Peak
