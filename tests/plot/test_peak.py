@@ -46,6 +46,16 @@ def test_peaks_that_are_nearly_equal_lie_within_the_axes():
     assert low == 0.0 and 1.02 * 6.0 < high < 1.2 * 6.0
 
 
+def test_frequencies_that_are_nearly_equal_are_read_from_their_ticks():
+    found = peaks(n_0=[8, 10, 12])
+    found.frequency[:] = np.array([[197.989], [197.993], [197.991]])
+    figure = draw_peak(found)
+    figure.canvas.draw()
+    axis = figure.axes[1].yaxis
+    assert axis.get_offset_text().get_text() == ""
+    assert any(label.get_text().startswith("197.99") for label in axis.get_ticklabels())
+
+
 def test_another_degree_of_freedom():
     upper, _ = draw_peak(peaks(n_0=[0, 10, 50]), dof="v").axes
     assert upper.lines[0].get_ydata().tolist() == pytest.approx([1.4, 0.6, 0.8])

@@ -23,6 +23,7 @@ COLUMN, TWO_COLUMNS = 85.0 / 25.4, 170.0 / 25.4  # [inch] widths of a journal
 STYLE: dict[Any, Any] = {
     "axes.formatter.limits": (-3, 4),
     "axes.formatter.use_mathtext": True,
+    "axes.formatter.useoffset": False,  # a frequency is read from its tick, not from a sum
     "axes.linewidth": 0.6,
     "axes.unicode_minus": True,
     "font.family": ["STIXGeneral", "DejaVu Serif"],  # a character that the first lacks is of the second
