@@ -433,6 +433,25 @@ def test_a_low_mode_within_reach_of_the_range_is_a_mode():
     assert scene_from_dict(one).modal.frequency[0] == 1e-3
 
 
+@pytest.mark.parametrize("top", [{}, {"response": {"frequency": [0.01, 0.02]}}])
+def test_modes_are_kept_for_the_frequencies_of_a_schedule_too(top):
+    """Its forces may be far above those of the range, or there is none."""
+    rows, omega = 80, 0.5
+    chain = 2.0 * np.eye(rows) - np.eye(rows, k=1) - np.eye(rows, k=-1)
+    schedule = [{"frequency": 0.02, "cycles": 1}, {"frequency": omega, "cycles": 1}]
+    table = {"dofs": [f"u{i}" for i in range(rows)], "stiffness": chain.tolist(), "mass": [1.0] * rows}
+    force = [{"dof": "u0", "amplitude": 1.0}]
+    scene = scene_from_dict(
+        top | {"structure": table | {"damping": 0.01}, "force": force, "schedule": schedule}
+    )
+    bound = float(scene.notes[0].split("off by at most ")[1].split(",")[0])
+    values, shapes = np.linalg.eigh(chain)
+    exact = (shapes[0] ** 2 / (values - omega**2 + 0.02j * np.sqrt(values) * omega)).sum()
+    static = (shapes[0] ** 2 / values).sum()
+    at = scene.modal.dofs.index("u0")
+    assert abs(answer(scene.modal, omega)[at, at] - exact) <= bound * static < 0.01 * static
+
+
 def test_numbers_of_matrices_can_be_swept():
     sweep = {"modal.damping": [0.01, 0.02], "force.3x.dof.2x": [0.0, 1.0]}
     curves = read(top={"sweep": sweep}).curves

@@ -38,7 +38,7 @@ from fcm.scene.parts import (
     read_units,
     response_table,
 )
-from fcm.scene.schedule import read_schedule, read_start
+from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, read_sweep
@@ -116,8 +116,9 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
     response = response_table(top)
     ends, step = read_response(top, response, unit)
     harmonics, accuracy = read_harmonics(response)
-    parts, reported, notes = _parts(top, files, unit, response, ends)
-    schedule, start = read_schedule(top, unit), read_start(top, parts)
+    schedule = read_schedule(top, unit)
+    parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule))
+    start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts)))
     return {
         "title": top.text("title", ""),

@@ -30,7 +30,8 @@ def modal_of_matrices(
     """Modal table (frequencies in rad/s), shapes at all rows (row, mode), and what is to be said.
 
     loads (row, load) are the directions of contacts and forces, springs (load,) the stiffness of contacts
-    along theirs, outputs those that are only reported; `ends` is the range of angular frequencies.
+    along theirs, outputs those that are only reported; `ends` are the lowest and highest angular frequency
+    of the forces.
     """
     directions, others = split(loads, outputs)
     top_frequency = ends[1] if np.isfinite(ends[1]) else 0.0
@@ -122,7 +123,7 @@ def how_far_off(matrices: Matrices, bound: float, damping: float) -> str:
     """By how much receptances may err and, with one damping ratio for all modes, heights of resonances."""
     ratio = matrices.ratio or matrices.hysteretic / 2.0
     most = max(bound + 2.0 * ratio * damping, 1e-15)
-    text = f"receptances up to the range's end are off by at most {_upwards(most)}"
+    text = f"receptances up to the forces' highest frequency are off by at most {_upwards(most)}"
     if not ratio:
         return text
     return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"

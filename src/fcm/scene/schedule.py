@@ -29,6 +29,18 @@ def read_schedule(top: Section, unit: str) -> tuple[Phase, ...]:
     return tuple(phases)
 
 
+def with_schedule(ends: tuple[float, float], schedule: tuple[Phase, ...]) -> tuple[float, float]:
+    """Lowest and highest frequency of the forces, from the range that is traced and the phases.
+
+    >>> with_schedule((np.nan, np.nan), (Phase(3.0, 10.0), Phase(2.0, 10.0)))
+    (2.0, 3.0)
+    """
+    every = np.array([*ends, *(phase.frequency for phase in schedule)])
+    if np.isnan(every).all():
+        return ends
+    return float(np.nanmin(every)), float(np.nanmax(every))
+
+
 def _whole(cycles: float) -> float:
     """The cycles, without a rounding error beside a whole number of them.
 
