@@ -116,12 +116,15 @@ def test_it_is_refused_where_it_means_nothing(others):
 
 
 def marched(n_0, omega, cycles, steps=600):
-    """Half the peak-to-peak u of each cycle of the paper's oscillator from rest: its law in small steps."""
+    """The paper's oscillator from rest, its law in small steps.
+
+    Of each cycle half the peak-to-peak u, greatest normal and friction force, slip, dissipated energy.
+    """
     shapes, natural = np.array([[0.707, 0.707], [1.0, -0.5]]), np.array([1.0, 10.0])
     q, rate, friction, (u, v) = np.zeros(2), np.zeros(2), 0.0, (0.0, 0.0)
     dt, found = 2.0 * np.pi / omega / steps, []
     for cycle in range(cycles):
-        us = []
+        us, most, slip, energy = [], [0.0, 0.0], 0.0, 0.0
         for step in range(steps):
             force = np.sin(omega * dt * (cycle * steps + step))
             load = max(n_0 + v, 0.0)
@@ -129,11 +132,14 @@ def marched(n_0, omega, cycles, steps=600):
             rate = rate + dt * (pushed - 0.02 * natural * rate - natural**2 * q)
             q = q + dt * rate
             before, (u, v) = u, shapes.T @ q
-            limit = 0.4 * max(n_0 + v, 0.0)
-            friction = min(max(friction + u - before, -limit), limit)
+            trial, now = friction + u - before, max(n_0 + v, 0.0)
+            held, friction = friction, min(max(trial, -0.4 * now), 0.4 * now)
+            slip += abs(trial - friction) if now > 0.0 else 0.0  # k_u is 1
+            energy += (held + friction) / 2.0 * (u - before)
+            most = np.maximum(most, [now, abs(friction)])
             us.append(u)
-        found.append(np.ptp(us) / 2.0)
-    return found
+        found.append([np.ptp(us) / 2.0, *most, slip, energy])
+    return np.array(found)
 
 
 def test_they_are_found_where_they_are_far_from_the_motions_that_they_leave():
@@ -147,6 +153,14 @@ def test_they_are_found_where_they_are_far_from_the_motions_that_they_leave():
     twice = twice[np.argsort(curve.frequency[twice])]
     assert curve.frequency[twice[0]] < 0.73 and curve.frequency[twice[-1]] > 0.762
     last = marched(0.0, 0.745, 150)[-2:]
-    for part, extreme in ((curve.orbits.cycle_least, min), (curve.orbits.cycle_greatest, max)):
-        between = np.interp(0.745, curve.frequency[twice], part[twice, 0])
-        assert between == pytest.approx(extreme(last), rel=0.01)
+    expected = [
+        (curve.orbits.cycle_least[:, 0], last[:, 0].min()),
+        (curve.orbits.cycle_greatest[:, 0], last[:, 0].max()),
+        (curve.cycle[:, 0, 0], last[:, 1].max()),
+        (curve.cycle[:, 0, 1], last[:, 2].max()),
+        (curve.cycle[:, 0, 2], last[:, 3].mean()),
+        (curve.cycle[:, 0, 3], last[:, 4].mean()),
+    ]
+    for values, value in expected:
+        between = np.interp(0.745, curve.frequency[twice], values[twice])
+        assert between == pytest.approx(value, rel=0.01)

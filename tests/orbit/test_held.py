@@ -81,6 +81,7 @@ def test_the_curve_is_that_with_all_contacts(responses):
     assert set(light.regime[:, 0]) == set(whole.regime[:, 0]) != {"E"}
     for end in (0, -1):
         assert light.amplitude[end] == pytest.approx(whole.amplitude[end], rel=SAME)
+        assert light.cycle[end] == pytest.approx(whole.cycle[end], rel=1e-6, abs=1e-9)
 
 
 def test_of_a_sweep_it_is_told_in_how_many_curves(scene):

@@ -43,7 +43,7 @@ def energy(motion: Motion) -> Energy:
     """
     work = slip = damping = turnover = 0.0
     for cycle in motion.cycles:
-        parts = _powers(cycle)
+        parts = powers_of(cycle)
         work, slip, damping = work + parts.work, slip + parts.slip, damping + parts.damping
         turnover += parts.turnover
     first, last = motion.cycles[0], motion.cycles[-1]
@@ -52,7 +52,7 @@ def energy(motion: Motion) -> Energy:
     return Energy(work, slip, damping, stored, turnover + abs(stored))
 
 
-def _powers(cycle: Cycle) -> Powers:
+def powers_of(cycle: Cycle) -> Powers:
     """The integrals of the powers over a cycle."""
     system, modal = cycle.system, cycle.system.scene.modal
     wave, damper = system.wave, 2.0 * modal.mass * modal.damping * modal.frequency

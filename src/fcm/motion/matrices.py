@@ -85,15 +85,23 @@ def held_limits(system: System) -> FloatArray:
 
 def _limits_of(system: System, one: Held) -> list[FloatArray]:
     """The three rows of a contact."""
+    load, force = held_forces(system, one)
+    if one.open:
+        return [-load] * 3
+    if not has_friction(one.contact):
+        return [load] * 3
+    limit = one.contact.mu * load
+    return [limit, limit - force, limit + force]
+
+
+def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
+    """The normal and the friction force of a contact that is held closed: rows of the state vector."""
     contact, shapes = one.contact, system.scene.modal.shapes
     load, force = np.zeros((2, system.size - 2))
     load[system.q], load[-1] = contact.k_v * (shapes @ contact.normal), contact.n_0
-    if one.open:
-        return [-load] * 3
-    if not has_friction(contact):
-        return [load] * 3
-    force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
-    return [contact.mu * load, contact.mu * load - force, contact.mu * load + force]
+    if has_friction(contact):
+        force[system.q], force[-1] = contact.k_u * (shapes @ contact.tangential), -contact.k_u * one.rest
+    return load, force
 
 
 def has_friction(contact: Contact) -> bool:

@@ -30,6 +30,8 @@ _NEGATIVE_SLIP = cython.declare(cython.int, 3)
 class Powers(Walk):
     """Work of the forces, dissipation by slip and by damping, and the sum of all magnitudes, over a motion.
 
+    `slips` and `paths` (contact,): the dissipation by each contact, and the way that it slips.
+
     Parameters
     ----------
     flows : Flows
@@ -47,6 +49,7 @@ class Powers(Walk):
         self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
         self._y, self._terms = np.zeros((2, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._nodes, self._weights = _ON_ONE
+        self.slips, self.paths = np.zeros((2, flows.contacts))
 
     @cython.cfunc
     @cython.nogil
@@ -96,7 +99,10 @@ class Powers(Walk):
             rate = 0.0
             for i in range(m):
                 rate += self._y[0, m + i] * (self.flows.tangential[j, i] - ratio * self.flows.normal[j, i])
-            slip += self._y[0, 2 * m + j] * rate
+            lost: cython.double = self._y[0, 2 * m + j] * rate
+            slip += lost
+            self.slips[j] += weight * lost
+            self.paths[j] += weight * fabs(rate)
         self.work += weight * power
         self.slip += weight * slip
         self.damping += weight * loss

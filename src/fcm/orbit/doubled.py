@@ -120,8 +120,8 @@ def doubled_starts(
 def _beside(problem: Doubled, points: list[Sample], k: int, look: Look) -> Iterator[FloatArray]:
     """Motions of twice the periods at the frequencies of points beside a flip, the unstable ones first.
 
-    Not at the flip itself, where all of them but a few are further off than what rounding takes for one;
-    where none is near an unstable motion, that which a disturbance of it comes to may be one.
+    Not at flips themselves, beside which a motion hardly changes that does not repeat. Where none is near an
+    unstable motion, that which a disturbance of it comes to may be one.
     """
     ends = [id(flip(points, j)) for j in flips(points)]
     after, before = points[k + 1 : k + 1 + BESIDE], points[k : max(k - BESIDE, -1) : -1]

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
+from fcm.motion.borne import borne
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
 from fcm.motion.state import State
@@ -28,6 +29,7 @@ class Sample:
     state: State  # at the forces' angle 0
     states: tuple[str, ...]  # of each contact over the period
     measure: Measure
+    borne: FloatArray  # (contact, 4) as of `borne`
     multipliers: npt.NDArray[np.complex128]  # Floquet's, the greatest first
     residual: float  # by which the period fails to close, relative to the motion
     stable: bool  # whether small disturbances die out, or at least do not grow
@@ -47,8 +49,8 @@ def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: i
     shot = _shot(problem, z)
     multipliers = shot.multipliers
     return Sample(
-        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), multipliers,
-        shot.residual, within_unit_circle(multipliers), z, direction, mark, several(shot),
+        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), borne([shot.cycle]),
+        multipliers, shot.residual, within_unit_circle(multipliers), z, direction, mark, several(shot),
     )  # fmt: skip
 
 
@@ -64,8 +66,8 @@ def settled(omega: float, motion: Steady) -> Sample:
     """What is kept of a motion that a simulation has come to."""
     none = np.zeros(0)
     return Sample(
-        omega, motion.state, motion.states, motion.measure, motion.multipliers, motion.error, True,
-        none, none, steady=motion,
+        omega, motion.state, motion.states, motion.measure, motion.borne, motion.multipliers,
+        motion.error, True, none, none, steady=motion,
     )  # fmt: skip
 
 

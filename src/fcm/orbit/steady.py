@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.motion.borne import borne
 from fcm.motion.cycle import Cycle
 from fcm.motion.errors import SimulationError
 from fcm.motion.measure import Measure, measure
@@ -53,6 +54,7 @@ class Steady(NamedTuple):
     shares: FloatArray  # (contact, 3) of the time in stick, in slip, open
     multipliers: npt.NDArray[np.complex128]  # Floquet's over the periods; none of periods 0
     error: float  # by which it fails to repeat, relative to the motion; nan of periods 0
+    borne: FloatArray  # (contact, 4) as of `borne`
 
 
 def steady(system: System, state: State, look: Look = without_end) -> Steady | State:
@@ -127,6 +129,7 @@ def _of_shot(shot: Shot) -> Steady:
     return Steady(
         shot.periods, shot.state, shot.cycle.states, measure(shot.cycle), amplitude.min(axis=0),
         amplitude.max(axis=0), shares([shot.cycle]), shot.multipliers, shot.residual,
+        borne([shot.cycle]),
     )  # fmt: skip
 
 
@@ -183,7 +186,7 @@ def _ranging(cycles: Sequence[Cycle]) -> Steady | None:
     state = State(y[system.q].copy(), y[system.p].copy(), y[system.f].copy(), start.angle)
     return Steady(
         0, state, cycles[-1].states, together(measures), amplitude.min(axis=0), amplitude.max(axis=0),
-        shares(cycles), none, np.nan,
+        shares(cycles), none, np.nan, borne(cycles),
     )  # fmt: skip
 
 

@@ -17,8 +17,11 @@ from fcm.continuation import Status
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.system import System as Balanced
 from fcm.harmonic.trace import traced
-from fcm.motion.matrices import has_friction
+from fcm.motion.matrices import has_friction, held_forces
+from fcm.motion.measure import extremes
+from fcm.motion.segments import Segments
 from fcm.motion.state import State
+from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.reduction.sentences import named
@@ -130,6 +133,20 @@ def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
     letters = dict(zip(scene.computed(), states, strict=True))
     letters |= {one.place: "S" if one.open else "E" for one in scene.held}
     return tuple(letters[i] for i in range(len(letters)))
+
+
+def whole_borne(system: System, segments: Segments, computed: FloatArray) -> FloatArray:
+    """What each contact of the whole scene bears, as of `borne`; those that are held do not slip."""
+    scene = system.scene
+    every = np.zeros((len(scene.contacts) + len(scene.held), 4))
+    every[scene.computed()] = computed
+    for one in scene.held:
+        if not one.open:
+            load, force = held_forces(system, one)
+            least, greatest = extremes(system, segments, np.array([load, force]))
+            every[one.place, 0] = greatest[0].value
+            every[one.place, 1] = max(greatest[1].value, -least[1].value)
+    return every
 
 
 def on_contacts(curves: Sequence[Curve], contacts: Sequence[Contact]) -> list[str]:

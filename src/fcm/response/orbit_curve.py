@@ -13,7 +13,7 @@ from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
-from fcm.reduction.held import NotKeptError, lost_by, whole_state, whole_states
+from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
 from fcm.response.not_unique import NotUnique, not_unique
@@ -45,7 +45,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     for group in groups:
         for found in group.points:
             folds += [point.frequency for point in found if point.mark & Mark.FOLD]
-            whole = [_of_whole(scene, point) for point in found]
+            whole = [_of_whole(group.problem, point) for point in found]
             points += [None, *whole] if points else whole
             kept += [_kept(group.problem, found)] if scene.held else []
     least = np.min(kept, axis=0) if kept else _kept(groups[0].problem, [])
@@ -61,11 +61,15 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     return curve
 
 
-def _of_whole(scene: Scene, point: Sample) -> Sample:
+def _of_whole(problem: OrbitProblem, point: Sample) -> Sample:
     """A point with the contacts that are held."""
+    scene = problem.scene
     if not scene.held:
         return point
-    return replace(point, state=whole_state(scene, point.state), states=whole_states(scene, point.states))
+    shot, states = problem.shot(point.z), whole_states(scene, point.states)
+    none = np.full((len(states), 4), np.nan)
+    borne = none if shot is None else whole_borne(shot.system, shot.segments, point.borne)
+    return replace(point, state=whole_state(scene, point.state), states=states, borne=borne)
 
 
 def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
@@ -125,7 +129,7 @@ def _curve(
         mean=_rows(points, "mean", empty),
         regime=regime,
         loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
-        cycle=np.full((len(points), *empty.cycle.shape[1:]), np.nan),
+        cycle=_borne(points, empty),
         stable=stable,
         table_error=zero,
         error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
@@ -164,6 +168,12 @@ def _rows(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArra
     none = np.full(len(empty.peaks), np.nan)
     rows = [none if point is None else getattr(point.measure, name) for point in points]
     return np.array(rows).reshape(len(points), len(empty.peaks))
+
+
+def _borne(points: Sequence[Sample | None], empty: Curve) -> FloatArray:
+    """What the contacts bear at each point, (point, contact, 4)."""
+    none = np.full(empty.cycle.shape[1:], np.nan)
+    return np.array([none if p is None else p.borne for p in points]).reshape(len(points), *none.shape)
 
 
 def _cycles(points: Sequence[Sample | None], name: str, empty: Curve) -> FloatArray:
