@@ -8,7 +8,6 @@ import numpy as np
 
 from fcm.motion.cycle import Cycle
 from fcm.motion.energy import powers_of
-from fcm.motion.measure import extremes
 from fcm.scene.model import FloatArray
 
 
@@ -34,14 +33,13 @@ def borne(cycles: Sequence[Cycle]) -> FloatArray:
 def _greatest(cycle: Cycle) -> FloatArray:
     """The greatest normal and friction force of each contact: (2, contact)."""
     system, each = cycle.system, len(cycle.system.contacts)
-    rows = np.zeros((2 * each, system.size - 2))
-    rows[:each, system.n], rows[each:, system.f] = np.eye(each), np.eye(each)
-    least, greatest = (np.array([one.value for one in of]) for of in extremes(system, cycle.segments, rows))
+    system.run(system.forces, cycle.segments)
+    least, greatest = np.asarray(system.forces.least), np.asarray(system.forces.greatest)
     load = np.maximum(system.preload + greatest[:each], 0.0)
     return np.array([load, np.maximum(np.abs(least[each:]), np.abs(greatest[each:]))])
 
 
 def _slip(cycle: Cycle) -> FloatArray:
     """The way that each contact slips, and the energy that this takes: (2, contact)."""
-    powers = powers_of(cycle)
+    powers = powers_of(cycle, everywhere=False)
     return np.array([powers.paths, powers.slips])

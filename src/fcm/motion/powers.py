@@ -39,12 +39,21 @@ class Powers(Walk):
         Modal amplitudes of the forces.
     damper : (mode,)
         2 m zeta omega of the modes.
+    everywhere : bool
+        Or only while a contact slips, for what slip takes.
     """
 
     def __init__(
-        self, flows: Flows, sine: FloatArray, cosine: FloatArray, static: FloatArray, damper: FloatArray
+        self,
+        flows: Flows,
+        sine: FloatArray,
+        cosine: FloatArray,
+        static: FloatArray,
+        damper: FloatArray,
+        everywhere: bool = True,
     ) -> None:
         Walk.__init__(self, flows)
+        self._everywhere = everywhere
         self.work = self.slip = self.damping = self.turnover = 0.0
         self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
         self._y, self._terms = np.zeros((2, flows.size)), np.zeros((ORDER + 1, flows.size))
@@ -59,6 +68,11 @@ class Powers(Walk):
         left: cython.double = self.segments.length[self.at]
         length: cython.double
         i: cython.Py_ssize_t
+        slips: cython.bint = self._everywhere
+        for i in range(self.flows.contacts):
+            slips |= self.segments.states[self.at, i] >= _POSITIVE_SLIP
+        if not slips:
+            return
         for i in range(self.flows.size):
             self._y[1, i] = self.segments.y[self.at, i]
         while left > 0.0:

@@ -64,7 +64,7 @@ class System:
         self.limit_rows = self._limit_rows()
         kernels = _kernels_of(scene, self._kernels)
         self.flows, self._march, self._derivative, self._along = kernels[:4]
-        self.displaced, self.limits, self.integrals, self.kept = kernels[4:]
+        self.displaced, self.limits, self.forces, self.kept, self.integrals = kernels[4:]
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -127,9 +127,17 @@ class System:
         flows, wide = Flows(matrices_of(self)), self.size - 2
         displacements = np.zeros((self.scene.modal.shapes.shape[1], wide))
         displacements[:, self.q] = self.scene.modal.shapes.T
-        moves, limits = Scan(flows, Rows(displacements)), Scan(flows, Rows(self.limit_rows))
-        kept, along = Scan(flows, Rows(held_limits(self))), Directional(flows)
-        return flows, March(flows), Derivative(flows), along, moves, limits, Integrals(flows), kept
+        rows = displacements, self.limit_rows, self._force_rows(), held_limits(self)
+        moves, limits, forces, kept = (Scan(flows, Rows(each)) for each in rows)
+        kernels = March(flows), Derivative(flows), Directional(flows)
+        return flows, *kernels, moves, limits, forces, kept, Integrals(flows)
+
+    def _force_rows(self) -> FloatArray:
+        """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""
+        c = len(self.contacts)
+        rows = np.zeros((2 * c, self.size - 2))
+        rows[:c, self.n], rows[c:, self.f] = np.eye(c), np.eye(c)
+        return rows
 
     def _limit_rows(self) -> FloatArray:
         """Rows of mu n - f and of mu n + f of each contact, for y without the forces' angle."""
@@ -141,7 +149,7 @@ class System:
         return rows.reshape(2 * c, self.size - 2)
 
 
-_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Integrals, Scan]
+_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Scan, Scan, Integrals]
 
 
 class _Latest(local):
