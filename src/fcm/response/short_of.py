@@ -18,17 +18,19 @@ def short_of(found: Accurate, lost: Sequence[Lost], accuracy: float) -> str:
     lost: how far the frequencies are off at which stability is lost without a fold.
     """
     if not found.reached:
-        return _of_harmonics(found)
+        return _of_harmonics(found, accuracy)
     off = [one for one in lost if not one.error <= accuracy]
     return _of_stability(found, off) if off else ""
 
 
-def _of_harmonics(found: Accurate) -> str:
+def _of_harmonics(found: Accurate, accuracy: float) -> str:
     """Too large errors of peaks and folds, and how long it takes with more harmonics."""
     folds, said = found.folds, _with_harmonics(found)
     untold = np.count_nonzero(np.isnan(folds))
     if np.isnan(found.worst) and np.isnan(found.peak).any():
         said += " the errors of some peaks cannot be told"
+    elif untold and found.told <= accuracy:
+        said += f" the errors of {untold} of {folds.size} folds cannot be told"
     elif untold:
         said += f" an estimated error of {found.told:.1e} remains"
         said += f", and that of {untold} of {folds.size} folds cannot be told"
