@@ -37,6 +37,20 @@ def test_what_is_nowhere_is_given_up_within_few_evaluations(blade):
         assert 0 < lifted.newton.evaluations - before <= 8  # Newton steps of one guess
 
 
+def test_one_among_many_points_is_given_up_where_a_single_one_is_sought_by_parts(blade):
+    """Of 140 unknowns."""
+    path, _ = blade
+    some = Lifted(System(load_scene("blade").each_curve()[0], (1, 2, 3)).balance(), [1], [1, 2, 3], ENOUGH)
+    top = np.abs(path.z[:, :-1]).max(axis=1).argmax()
+    z, taken = np.append(2.0 * path.z[top, :-1], path.parameter[top]), []
+    for briefly in (True, False):
+        before = some.newton.evaluations
+        assert not some.beside(z, path.direction[top], briefly)
+        taken.append(some.newton.evaluations - before)
+    assert 0 < taken[0] <= 8 < taken[1]
+    assert some.beside(path.z[0], path.direction[0], True)
+
+
 def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(blade):
     """Against Newton's method to the precision of numbers: it takes more Jacobians and comes to the same."""
     path, lifted = blade

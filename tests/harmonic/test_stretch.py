@@ -7,6 +7,7 @@ import pytest
 
 import fcm
 from fcm.harmonic import corrected, stretch
+from fcm.harmonic.believed import runs
 from fcm.response import trace
 
 
@@ -30,6 +31,33 @@ def test_past_corners_and_by_way_of_them_a_curve_is_the_same(monkeypatch):
 def test_where_the_work_is_limited_the_error_cannot_be_told(monkeypatch):
     monkeypatch.setattr(corrected, "EFFORT", 1.0)
     assert np.isnan(errors("beam")).any()
+
+
+def test_a_stretch_that_takes_too_long_with_its_further_harmonics_is_not_begun(monkeypatch):
+    """They make more corners and folds, so that more evaluations are needed than the curve itself took."""
+    own, begun = stretch._followed, []
+
+    def just_short(curve, first, last):
+        few, more = len(curve.corrector.system.harmonics), len(curve.sets(np.array([first, last])))
+        unknowns = len(curve.corrector.system.scene.contacts) * (2 + 4 * more)
+        needed = curve.path.evaluations * (last - first) / len(curve.path.z)
+        curve.effort = 0.9 * needed * more / few * unknowns**2
+        assert few < more
+        return heights(curve, first, last)
+
+    heights = stretch.heights
+    monkeypatch.setattr("fcm.harmonic.crest.heights", just_short)
+    monkeypatch.setattr(stretch, "_followed", lambda *a: begun.append(a) or own(*a))
+    assert np.isnan(errors("beam")).any()
+    assert not begun
+
+
+def test_where_an_error_cannot_be_told_no_other_stretch_is_followed_for_it(monkeypatch):
+    asked = []
+    monkeypatch.setattr("fcm.harmonic.crest.heights", lambda *a: asked.append(a))
+    monkeypatch.setattr("fcm.harmonic.crest.runs", lambda missed: 2 * list(runs(missed)))
+    assert np.isnan(errors("beam")).any()
+    assert len(asked) == 1
 
 
 def test_all_stretches_of_a_curve_share_its_effort(monkeypatch):

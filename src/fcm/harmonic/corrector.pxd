@@ -15,5 +15,5 @@ cdef class Corrector:
     cdef dict spares
     cdef double[::1] found
     cdef Lifted of_set(self, Py_ssize_t k)
-    cdef bint put(self, Py_ssize_t k, double[::1] z, double[::1] direction, double[::1] amplitude) except -1
-    cdef int twice(self, Py_ssize_t k) except -1
+    cdef bint put(self, Py_ssize_t k, double[::1] z, double[::1] direction, double[::1] amplitude, bint best) except -1
+    cdef int twice(self, Py_ssize_t k, bint best) except -1

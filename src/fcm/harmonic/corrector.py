@@ -94,7 +94,7 @@ class Corrector:
             self.further.at(z[i], amplitude[i])
             k: cython.Py_ssize_t = self.ranking.choose(best)
             if k >= 0:
-                self.put(k, z[i], direction[i], amplitude[i])
+                self.put(k, z[i], direction[i], amplitude[i], best)
                 change[i, 0] = (self.found[0] - z[i, n]) / z[i, n]
                 for d in range(amplitude.shape[1]):
                     change[i, 1 + d] = (self.found[1 + d] - amplitude[i, d]) / unit[i, d]
@@ -107,11 +107,15 @@ class Corrector:
         z: cython.double[::1],
         direction: cython.double[::1],
         amplitude: cython.double[::1],
+        best: cython.bint,
     ) -> cython.bint:
-        """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there."""
+        """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there.
+
+        Of many unknowns more than what is found at once is looked for at the best points alone.
+        """
         lifted: Lifted = self.of_set(k)
         d: cython.Py_ssize_t
-        if not lifted.beside(z, direction):
+        if not lifted.beside(z, direction, not best):
             self.found[:] = NAN
             return False
         self.found[:] = lifted.found
@@ -121,12 +125,12 @@ class Corrector:
             most = max(most, amplitude[d])
             off = max(off, fabs(self.found[1 + d] - amplitude[d]))
         if self.again and off > LARGE * most:
-            self.twice(k)
+            self.twice(k, best)
         return True
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def twice(self, k: cython.Py_ssize_t) -> cython.int:
+    def twice(self, k: cython.Py_ssize_t, best: cython.bint) -> cython.int:
         """The point just found corrected."""
         lifted: Lifted = self.lifts[k]
         corrector: Corrector = self.of(self.ranking.sets[k])
@@ -135,7 +139,7 @@ class Corrector:
         corrector.further.at(z, self.found[1:])
         j: cython.Py_ssize_t = corrector.ranking.choose(False)
         if j >= 0:
-            corrector.put(j, z, direction, self.found[1:])
+            corrector.put(j, z, direction, self.found[1:], best)
             self.found[:] = corrector.found
         return 0
 

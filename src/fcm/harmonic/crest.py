@@ -57,7 +57,7 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
     unknown = np.zeros(len(tops), dtype=np.bool_)
     for first, end in runs(np.isnan(change[:, 0])):
         may = _may_exceed(corrected, change, first, end, now) if end - first > FEW else d < 0
-        rivals = may | ((first <= tops) & (tops < end))
+        rivals = (may | ((first <= tops) & (tops < end))) & ~unknown
         if rivals.any():
             followed = heights(corrected, first - 1, end)
             if followed is None:

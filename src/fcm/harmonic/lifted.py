@@ -33,6 +33,7 @@ class Lifted:
 
     def __init__(self, balance: Balance, fewer: list[int], more: list[int], enough: cython.double) -> None:
         self.balance, self.enough, self.dear = balance, enough, balance.unknowns >= DEAR
+        self.many, self.brief = balance.unknowns >= MANY, self.dear
         self.homotopy = Homotopy(balance)
         self.newton = Newton(self.homotopy)
         self.guess, self.row = np.zeros(balance.unknowns + 1), np.zeros(balance.unknowns + 1)
@@ -63,10 +64,16 @@ class Lifted:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def beside(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.bint:
-        """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve."""
+    def beside(
+        self, z: cython.double[::1], direction: cython.double[::1], briefly: cython.bint = False
+    ) -> cython.bint:
+        """Whether there is a point near z (fewer unknowns + 1,), normal to the direction of the curve.
+
+        Briefly, as for one among many points: where there are many unknowns it is not sought by parts.
+        """
         i: cython.Py_ssize_t
         total: cython.double = 0.0
+        self.brief = self.dear or (self.many and briefly)
         for i in range(self.place.shape[0]):
             self.guess[self.place[i]] = z[i]
         self.balance.measure(self.guess)
@@ -94,7 +101,7 @@ class Lifted:
         self.newton.z[:] = self.guess
         if self.nearly() and self.newton.moved <= FAR and self.onward():
             return True
-        if self.dear:
+        if self.brief:
             return False
         self.newton.z[:] = self.guess
         self.homotopy.evaluate(self.guess)
@@ -132,14 +139,14 @@ class Lifted:
             step = newton.step()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
-            if self.dear and (step > TWICE * FAR if count == 0 else step > min(2.0 * before, FAR)):
+            if self.brief and (step > TWICE * FAR if count == 0 else step > min(2.0 * before, FAR)):
                 return False
             for i in range(self.guess.shape[0]):
                 newton.z[i] += newton.scale[i] * newton.delta[i]
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()
-            if newton.problem.unknowns >= MANY and self.again(first):
+            if self.many and self.again(first):
                 return newton.direct()
             before = step
         return False

@@ -101,7 +101,8 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
     span = _span(corrected, before, behind)
     balance = corrected.corrector.system.with_harmonics(more).balance()
     budget = _Budget(corrected, balance.unknowns)
-    if path.evaluations * (last - first) / len(path.z) > budget.left:
+    grown = len(more) / len(corrected.corrector.system.harmonics)  # as the corners and folds are
+    if grown * path.evaluations * (last - first) / len(path.z) > budget.left:
         return None
     pieces = []
     for begin, end in ((before, behind), (behind, before)):
