@@ -154,8 +154,8 @@ def _curve(followed: _Followed) -> Curve:
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     """A response with points where stability changes between folds, and whether each point is stable.
 
-    With an accuracy, and how far it is from where more harmonics have these; of a curve that has not come to
-    it, and is said not to, nothing is looked for where it has long lost that of more harmonics.
+    With an accuracy, and how far it is from where more harmonics have these; not of a curve that has not come
+    to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
     """
     short = accuracy is not None and not found.reached
     paths, shown, errors, stable = [], [], [], []
@@ -163,7 +163,7 @@ def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
         judged = stability(found.system, path, astray(error.truncation) if short else None)
         inserted = judged.inserted
-        if accuracy is not None:
+        if accuracy is not None and not short:
             lost += lost_along(found.system, path, judged.crossings, accuracy)
         if not inserted:
             paths.append(path)
