@@ -18,7 +18,9 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.system import System as Balanced
 from fcm.harmonic.trace import traced
 from fcm.motion.matrices import has_friction, held_forces
-from fcm.motion.measure import extremes
+from fcm.motion.measure import extremes_by
+from fcm.motion.rows import Rows
+from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
 from fcm.motion.state import State
 from fcm.motion.system import System
@@ -142,8 +144,8 @@ def whole_borne(system: System, segments: Segments, computed: FloatArray) -> Flo
     every[scene.computed()] = computed
     for one in scene.held:
         if not one.open:
-            load, force = held_forces(system, one)
-            least, greatest = extremes(system, segments, np.array([load, force]))
+            rows = Rows(np.array(held_forces(system, one)))
+            least, greatest = extremes_by(Scan(system.flows, rows), system, segments)
             every[one.place, 0] = greatest[0].value
             every[one.place, 1] = max(greatest[1].value, -least[1].value)
     return every
