@@ -34,6 +34,11 @@ CASES = [
     ("modal.dofs", ["u", "\x1b[31m", "w.x"], 'modal.dofs[1]: "\\u001b[31m" is not a name'),
     ("modal.dofs", ["u", "v", "u"], 'modal.dofs: "u" is there 2 times'),
     ("modal.frequency", GONE, "modal.frequency: missing; give a list of numbers"),
+    (
+        "modal.damping",
+        GONE,
+        "modal.damping: missing; give a number for all modes, or a list with one for each",
+    ),
     ("modal.frequency", 1.0, "modal.frequency: must be a list of numbers, is 1"),
     ("modal.frequency", [], "modal.frequency: is empty; there must be at least one mode"),
     ("modal.frequency", [1.0, -10.0], "modal.frequency[1]: must be at least 0, is -10"),

@@ -129,7 +129,7 @@ def _per_mode(
     """One number for each mode; a single number stands for all."""
     if as_float(section.data.get(key, default)) is not None:
         return np.full(modes or 1, section.number(key, RULES[key], default))
-    vector = section.vector(key, RULES[key])
+    vector = section.vector(key, RULES[key], "a number for all modes, or a list with one for each")
     if vector is not None and modes is not None:
         _same_count(section, key, vector, modes)
     return vector

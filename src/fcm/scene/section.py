@@ -101,9 +101,9 @@ class Section:
         self.wrong(key, f"must be a string, is {described(value)}")
         return ""
 
-    def vector(self, key: str, rule: Rule) -> FloatArray | None:
+    def vector(self, key: str, rule: Rule, right: str = "a list of numbers") -> FloatArray | None:
         """A list of numbers; None after a mistake."""
-        if self.missing(key, "a list of numbers"):
+        if self.missing(key, right):
             return None
         return self.numbers(self.data[key], self.at(key), rule)
 
