@@ -95,7 +95,9 @@ def test_points_alone_are_seen(path):
     with netCDF4.Dataset(path, "a") as data:
         data["frequency"][0], data["frequency"][1] = [1.0, NAN, 1.2], [1.5, NAN, NAN]
         data["stable"][0] = [1.0, NAN, 0.0]
-    (axes,) = draw_response(read_response(path)).axes
+    figure = draw_response(read_response(path))
+    (axes,) = figure.axes
+    assert "a point, not stable or not told" in [text.get_text() for text in figure.legends[0].get_texts()]
     dots = {
         (x, y): line.get_markerfacecolor() == line.get_color()
         for line in axes.lines

@@ -40,7 +40,7 @@ _FADED = f"may err by more than {100 * _DOUBTFUL:g} %"  # what is said of it,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
-_HOLLOW = "one point, not stable or not told"  # what is a hollow dot
+_HOLLOW = "a point, not stable or not told"  # what is a hollow dot
 _UNNAMED = "_unnamed"  # label of all parts but the first; the underscore keeps it out of legends
 
 
@@ -76,7 +76,7 @@ def draw_response(
             draw_errors(figure, below, curves, colours, width)
             below.set_xlabel(axes.get_xlabel())
             axes.set_xlabel("")
-        notes = _notes(curves, colours[0], width)
+        notes = _notes(curves, column, colours[0], width)
         if below is not None:
             name_errors(figure, curves, colours, width, notes)
         elif notes:
@@ -134,12 +134,12 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
                 curve.frequency, values, color=line.get_color(), linewidth=width, linestyle=style,
                 alpha=alpha, label=_UNNAMED,
             )  # fmt: skip
-    alone = _alone(curve, column)
-    for values, face in ((solid, line.get_color()), (np.where(np.isnan(solid), amplitude, np.nan), "none")):
-        if np.isfinite(values[alone]).any():
+    alone, hollow = _alone(curve, column), _not_stable(curve)
+    for which, face in ((alone & ~hollow, line.get_color()), (alone & hollow, "none")):
+        if which.any():
             axes.plot(
-                curve.frequency[alone], values[alone], ".", color=line.get_color(), markerfacecolor=face,
-                label=_UNNAMED,
+                curve.frequency[which], amplitude[which], ".", color=line.get_color(), markerfacecolor=face,
+                label=_UNNAMED, clip_on=False,
             )  # fmt: skip
 
 
@@ -151,7 +151,7 @@ def _alone(curve: DrawnCurve, column: int) -> BoolArray:
     return alone
 
 
-def _notes(curves: list[DrawnCurve], colour: str, width: float) -> dict[str, Line2D]:
+def _notes(curves: list[DrawnCurve], column: int, colour: str, width: float) -> dict[str, Line2D]:
     """Why parts of curves are faded, dashed or dotted: lines like theirs, by what is to be said of them."""
     from matplotlib.lines import Line2D
 
@@ -162,7 +162,17 @@ def _notes(curves: list[DrawnCurve], colour: str, width: float) -> dict[str, Lin
         notes[_NOT_STABLE] = Line2D([], [], color=colour, linewidth=width, linestyle=_DASHES)
     if any(curve.untold is not None and curve.untold.any() for curve in curves):
         notes[_UNTOLD] = Line2D([], [], color=colour, linewidth=width, linestyle=_DOTS)
+    if any((_alone(curve, column) & _not_stable(curve)).any() for curve in curves):
+        notes[_HOLLOW] = Line2D([], [], color=colour, linestyle="none", marker=".", markerfacecolor="none")
     return notes
+
+
+def _not_stable(curve: DrawnCurve) -> BoolArray:
+    """Where a curve is unstable, or that is not told."""
+    found = np.zeros(len(curve.frequency), np.bool_)
+    for here in (None if curve.stable is None else ~curve.stable, curve.untold):
+        found = found if here is None else found | here
+    return found
 
 
 def doubtful(curve: DrawnCurve) -> BoolArray:
