@@ -159,3 +159,11 @@ def test_what_is_settled_at_one_of_several_peaks_that_lie_together_is_not_the_er
     for d in (0, 2):
         true = abs(shown.amplitude[:, d].max() / height(found, problem, [], 0, d) - 1.0)
         assert true > 1e-3 and true / 2.0 < found.peak[d] < 2.0 * true
+
+
+def test_a_peak_in_a_stretch_beside_which_nothing_is_found_is_not_told_from_far_away():
+    """The second harmonic meets a mode of little damping there, and the exact peak is 2 % higher."""
+    found = estimated(System(replace(random_scene(60061), harmonics=None), (1,)), 0.0)
+    (shown,), problem = found.shown, OrbitProblem(found.system.scene)
+    true = abs(shown.amplitude[:, 1].max() / height(found, problem, [], 0, 1) - 1.0)
+    assert true > 1e-2 and true / 2.0 < found.peak[1] < 2.0 * true

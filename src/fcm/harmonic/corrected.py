@@ -22,7 +22,8 @@ TOGETHER = 8  # points, within which tops of degrees of freedom lie together
 ALONE = 0  # the same where to settle them is cheap: each has other harmonics that do most
 EFFORT = 8e7  # evaluations times the square of the unknowns, some second of work, for what is followed
 LEADS = 0.5  # of what the first of the harmonics would do, from which on one that meets a mode is looked at
-BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner
+BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner,
+NEXT = (1, 2)  # and where that is a top, which a longer stretch may be higher than
 
 Indices = npt.NDArray[np.intp]
 
@@ -82,8 +83,9 @@ class Corrected:
                 np.concatenate((before[more], middle[more])),
                 np.concatenate((middle[more], after[more])),
             )
-        for place in places.tolist():
-            self.bridge(place)
+        bridged = {k: self.bridged(k, NEXT if k in tops else BESIDE) for k in places.tolist()}
+        for place, change in bridged.items():
+            self.change[place] = change
         return self.interpolated(np.arange(count))
 
     def lost(self) -> npt.NDArray[np.bool_]:
@@ -158,21 +160,24 @@ class Corrected:
         share = self.corrector.further.shares(self.path.z[places], self.amplitude[places])
         return self.corrector.ranking.enough_of(share.max(axis=0))
 
-    def bridge(self, place: int) -> None:
-        """Where the corrected curve is missed, as at a corner that has moved: the mean of those beside it."""
-        if np.isfinite(self.change[place]).all():
-            return
+    def bridged(self, place: int, reach: tuple[int, ...]) -> FloatArray:
+        """Displacement (1 + dof,) of a point: where the corrected curve is missed, as at a corner that has
+        moved, the mean of what is found within reach on both sides, if something is."""
+        now: FloatArray = self.change[place].copy()
+        if np.isfinite(now).all():
+            return now
         beside = []
         for step in (-1, 1):
-            ways = [place + step * k for k in BESIDE if 0 <= place + step * k < len(self.known)]
+            ways = [place + step * k for k in reach if 0 <= place + step * k < len(self.known)]
             for way in ways:
                 self.find(np.array([way]))
                 if np.isfinite(self.change[way]).all():
                     beside.append(self.change[way])
                     break
             else:
-                return
-        self.change[place] = 0.5 * (beside[0] + beside[1])
+                return now
+        mean: FloatArray = 0.5 * (beside[0] + beside[1])
+        return mean
 
     def interpolated(self, points: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""
