@@ -149,7 +149,7 @@ def test_a_bound_at_which_the_gap_closes_is_a_bound(scene):
 
 
 def test_an_isolated_branch_is_between_the_turns_that_are_told():
-    """That no ordinary run with these harmonics reaches: it is followed from a fold of the track."""
+    """It is followed from a fold of the track, and is one of the branches of an ordinary run."""
     scene = gap5()
     gap, value = number_of(scene, "contact.c.gap"), 3.5
     way = Way(System(scene, (1, 3)), along(gap), (3.0, 4.0), (value,), 0.05)
@@ -160,7 +160,9 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     spots = [spot for curve in curves for spot in curve.spots if abs(spot.z[-1] - value) < 1e-9]
     folds = np.unique([spot.z[-2] for spot in spots])
     ordinary = traced(moved(way.system, gap.put(scene, value))).branches.paths
-    at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in ordinary])
+    isolated = [path for path in ordinary if path.status is Status.CLOSED]
+    others = [path for path in ordinary if path.status is not Status.CLOSED]
+    at_ordinary = np.concatenate([path.parameter[path.where(Mark.FOLD)] for path in others])
     closed = follow(
         moved(way.system, gap.put(scene, value)).balance(),
         beside_fold(way, max(spots, key=lambda spot: spot.z[-2]).z),
@@ -170,6 +172,8 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
     )
     at_closed = np.unique(closed.parameter[closed.where(Mark.FOLD)].round(10))
     assert closed.status is Status.CLOSED
+    (same,) = isolated
+    assert np.unique(same.parameter[same.where(Mark.FOLD)].round(10)) == pytest.approx(at_closed, rel=EXACT)
     assert folds == pytest.approx(np.sort(np.concatenate((at_ordinary, at_closed))), rel=EXACT)
 
 
