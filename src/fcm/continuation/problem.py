@@ -11,7 +11,7 @@ import cython
 import numpy as np
 
 BOUNDLESS = cython.declare(cython.double, 1e9)  # `boundless` where a problem says nothing else
-DEAR = cython.declare(cython.int, 64)  # unknowns, from which on a place costs more than slight corners say
+DEAR = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
 

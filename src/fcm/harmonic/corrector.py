@@ -111,11 +111,11 @@ class Corrector:
     ) -> cython.bint:
         """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there.
 
-        Of many unknowns more than what is found at once is looked for at the best points alone.
+        Of balances that are not small more than what is found at once is looked for at the best points alone.
         """
         lifted: Lifted = self.of_set(k)
         d: cython.Py_ssize_t
-        if not lifted.beside(z, direction, not best):
+        if not lifted.beside(z, direction, not best and not self.ranking.cheap):
             self.found[:] = NAN
             return False
         self.found[:] = lifted.found
