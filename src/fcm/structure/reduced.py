@@ -69,19 +69,23 @@ def reduced(
     if found.count == wanted and (wanted == system.rows or not (rest and loads.shape[1])):
         return plain
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
+    plain = replace(plain, beyond=float(np.sqrt(beyond)))
     if not (rest and loads.shape[1]):
-        return replace(plain, beyond=float(np.sqrt(beyond)), bound=np.nan)
+        return replace(plain, bound=np.nan)
     more = flexibility(system, kept, loads, top, beyond)
-    both = Modes(
-        np.concatenate((kept.stiffness, more.modes.stiffness)),
-        np.concatenate((kept.shapes, more.modes.shapes), axis=1),
-    )
-    bound, first = more.bound + of_receptances(K, M, both, loads, top), float(np.sqrt(beyond))
-    aside = (0.0, 0.0)
-    if others is not None and others.shape[1] and loads.shape[1]:
+    both = _together(kept, more.modes)
+    bound, aside = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
+    if others is not None and others.shape[1]:
         own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
         aside = own + of_receptances(K, M, both, _stiffest(both, others), top), damped
-    return replace(plain, modes=both, beyond=first, bound=bound, damping=more.damping, aside=aside)
+    return replace(plain, modes=both, bound=bound, damping=more.damping, aside=aside)
+
+
+def _together(kept: Modes, more: Modes) -> Modes:
+    """Those of the structure, and after them those that stand for the others."""
+    return Modes(
+        np.concatenate((kept.stiffness, more.stiffness)), np.concatenate((kept.shapes, more.shapes), axis=1)
+    )
 
 
 def _stiffest(modes: Modes, others: FloatArray) -> FloatArray:
