@@ -13,6 +13,7 @@ from scipy.optimize import minimize_scalar
 import fcm
 from fcm.continuation import Mark, Status, follow
 from fcm.continuation.newton import Newton
+from fcm.harmonic import outline
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic, sample
@@ -67,6 +68,18 @@ def test_a_branch_that_no_end_of_the_range_leads_to_is_found():
     assert last.amplitude == pytest.approx(curve.amplitude[k], rel=1e-6)
     rest = simulate(scene, omega, 400).measures(last=1)[0]
     assert rest.amplitude[1] < 0.5 * last.amplitude[1]
+
+
+def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
+    """Whether for their time, or as the harmonics that are foreseen take too long."""
+    scene = fcm.load_scene(Path(__file__).parent / "scenes/isolated.toml")
+    paths, missed = explore(OrbitProblem(scene), most=0.0)
+    assert paths and all(path.status is not Status.STALLED for path in paths)
+    assert missed.startswith("the search for further branches was given up: a balance")
+    monkeypatch.setattr(outline, "PATIENCE", 0.0)
+    (curve,) = trace_exact(scene).curves
+    assert not curve.complete and "was given up: with" in curve.reason
+    assert curve.frequency[0] == pytest.approx(scene.frequency_range[0])
 
 
 def test_a_motion_between_points_of_a_path_is_on_it_and_on_no_other():

@@ -24,8 +24,7 @@ class Accurate(Outline):
 
     errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
     amplitude over all of them; worst the greatest of these and of the errors of the folds, NaN where one
-    cannot be told, and told the greatest of those that can. further: the harmonics that would do more but
-    take too long, if any, and whether that was seen only when they had been begun.
+    cannot be told, and told the greatest of those that can.
     """
 
     errors: tuple[Errors, ...]
@@ -33,8 +32,6 @@ class Accurate(Outline):
     worst: float
     told: float
     reached: bool
-    further: tuple[int, ...] = ()
-    begun: bool = False
 
     @property
     def folds(self) -> FloatArray:

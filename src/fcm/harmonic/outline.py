@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
@@ -24,13 +24,16 @@ DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they 
 class Outline:
     """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
 
-    seconds: about what following its levels and branches took.
+    seconds: about what following its levels and branches took. further: the harmonics that would do more but
+    take too long, if any, and whether that was seen only when they had been begun.
     """
 
     system: System
     traced: Traced
     shown: tuple[Reported, ...]
     seconds: float
+    further: tuple[int, ...] = field(default=(), kw_only=True)
+    begun: bool = field(default=False, kw_only=True)
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
         """About what following its levels and branches with other harmonics takes."""
@@ -77,16 +80,16 @@ def foretold(system: System, accuracy: float) -> Outline:
 
     As `accurate`, but no error is estimated: for motions that are not of the balance it is a guess alone.
     """
-    found = outlined(system)
+    found, further, begun = outlined(system), tuple[int, ...](), False
     for _ in range(ROUNDS - 1):
         ahead = found.ahead(accuracy)
         if ahead.told and ahead.change <= accuracy:
             break
-        then, _, _ = with_more(found, ahead, ahead.harmonics, accuracy, None)
+        then, further, begun = with_more(found, ahead, ahead.harmonics, accuracy, None)
         if then is None:
             break
         found = then
-    return found
+    return replace(found, further=further, begun=begun)
 
 
 def with_more(

@@ -12,6 +12,7 @@ from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Branches, Follow
 from fcm.motion.errors import SimulationError
 from fcm.orbit.apart import first_balances, further_balances, passes
+from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, samples
@@ -91,19 +92,24 @@ def trace_orbits(
 
 
 def explore(
-    problem: OrbitProblem, along: Follow = follow, look: Look = without_end
+    problem: OrbitProblem, along: Follow = follow, look: Look = without_end, most: float = np.inf
 ) -> tuple[list[Path], str]:
-    """All branches of a scene as paths, and why there is no solution at an end of the range, else ''."""
+    """All branches of a scene as paths, and what is missing, else ''.
+
+    That is why there is no solution at an end of the range, and why the search for further branches was given
+    up: the balances that lead to them may take so many seconds of processor time.
+    """
     scene = problem.scene
     found, missed, sought, apart = starts(problem, look)
     branches = partial(
         all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step, along=along
     )
     paths = branches(found).paths
+    bounded = Bounded(look, most)
     if not sought:
-        paths = _with_others(problem, paths, apart, branches, look)
+        paths = _with_others(problem, paths, apart, branches, bounded)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
-    return list(paths), "; ".join(missed[end] for end in ends)
+    return list(paths), "; ".join([*(missed[end] for end in ends), *bounded.given_up])
 
 
 def _with_others(
@@ -111,18 +117,18 @@ def _with_others(
     paths: tuple[Path, ...],
     apart: bool,
     branches: Callable[..., Branches],
-    look: Look,
+    bounded: Bounded,
 ) -> tuple[Path, ...]:
     """Paths, and those of other branches that the balance leads to.
 
     One harmonic is enough where each of its ends and tops leads to a motion as high, on a path that is there.
     apart as of `first_balances`.
     """
-    scene = problem.scene
+    scene, look = problem.scene, bounded.look
     for balances in (first_balances(scene, apart, look), further_balances(scene, look)):
         before, high = len(paths), True
-        for balance in balances:
-            points, as_high = along_balance(problem, balance, look)
+        for balance in bounded.each(balances):
+            points, as_high = along_balance(problem, balance, bounded.outside)
             high = high and as_high
             for z in points:  # what is passed already is known without being followed again
                 if not known(paths, [z], problem):

@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+import numpy as np
+
 from fcm.continuation import Mark, Path, Stage, Status, follow
 from fcm.continuation.trail import Kept, Points
 from fcm.orbit.doubled import Doubled
@@ -55,6 +57,10 @@ class Clock:
     def __init__(self, limit: float | None) -> None:
         self.limit, self._ask = limit, 0.0
         self._end = None if limit is None else time.process_time() + limit
+
+    def share(self, part: float) -> float:
+        """So much of it [s]."""
+        return np.inf if self.limit is None else part * self.limit
 
     @property
     def over(self) -> bool:
