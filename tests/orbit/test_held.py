@@ -12,7 +12,7 @@ from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.start import first_point, near_balance
 from fcm.reduction import held
-from fcm.response import exact_work, orbit_curve
+from fcm.response import exact_work, legs, orbit_curve
 from fcm.response.exact import trace_exact
 from fcm.response.legs import Leg, Legs, TimeOver
 from fcm.run import Report
@@ -129,6 +129,26 @@ def test_beside_points_that_are_not_kept_no_other_motions_are_sought(scene, monk
     (curve,) = trace_exact(scene).curves
     assert curve.complete and not curve.orbits.held.size
     assert len(sought) == 1
+
+
+def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
+    """From a motion of the contacts that are computed then, as all before are; to the curve of them all."""
+    weak = (scene.contacts[0], replace(scene.contacts[1], n_0=2.0), scene.contacts[2])
+    scene, calls = replace(scene, contacts=weak), []
+    wrong = (Held(1, weak[1], False, held.resting(scene)[1]), Held(2, weak[2], True))
+    monkeypatch.setattr(exact_work, "foreseen", lambda *_: wrong)
+    monkeypatch.setattr(legs, "follow", spied(legs.follow, calls))
+    (curve,) = trace_exact(scene).curves
+    assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
+    begun = [(problem, stage) for problem, *_, stage, _ in calls if stage is not None]
+    assert len(begun) == 1
+    problem, stage = begun[0]
+    assert len(stage.kept.before.z) > 10
+    for z in (*stage.kept.before.z, stage.z):
+        assert problem.shot(z).residual < 1e-9 and problem.shot(z).cycle.states[1] == "E"
+    (whole,) = trace_exact(scene, tolerance=None).curves
+    for dof, peak in whole.peaks.items():
+        assert curve.peaks[dof].amplitude == pytest.approx(peak.amplitude, rel=SAME)
 
 
 def spied(function, calls):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 from fcm.harmonic.rigid import too_stiff
@@ -21,6 +21,7 @@ from fcm.response.only_peaks import Alone, peaks_alone, peaks_curve, peaks_of
 from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import orbit_curve, visited_curve
 from fcm.response.search import Search
+from fcm.response.taken_over import Released
 from fcm.response.unreached import unreached
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
@@ -85,6 +86,7 @@ class _Followed:
     clock: Clock
     stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
     periods: int
+    before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
 
     def lightly(self, scene: Scene) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
@@ -140,6 +142,9 @@ class _Followed:
         """
         legs = Legs(scene.frequency_range, self.report, self.clock.look, _watched if scene.held else None)
         problems, groups = [OrbitProblem(scene)], list[OrbitBranches]()
+        for problem, found in self.before:
+            legs.take(Released(problem, problems[0]).legs(found.found(problem)))
+        self.before[:] = [(problems[0], legs)]
         try:
             paths, without = explore(problems[0], legs, legs.look, self.clock.share(BESIDE))
             reason = incomplete(scene, paths, without)

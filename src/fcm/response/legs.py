@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from fcm.continuation import Mark, Path, Stage, Status, follow
+from fcm.continuation.branches import SAME
 from fcm.continuation.trail import Kept, Points
 from fcm.orbit.doubled import Doubled
 from fcm.orbit.periodic import without_end
@@ -96,6 +97,8 @@ class Legs:
         self.look, self.passing = look, passing
         self.number = 0  # of the next one
         self._begun: tuple[OrbitProblem, Stage] | None = None
+        self._passed: Leg | None = None  # the last one of which nothing was wrong
+        self._given = dict[int, Leg]()  # of another scene, with the same motions
         self._seen, self._took = time.monotonic(), 0.0
         saved = (leg for leg in report.saved if isinstance(leg, Leg))
         self._known = {_key(leg): leg for leg in saved}  # the latest of each
@@ -111,7 +114,7 @@ class Legs:
         _progress: object = None,
     ) -> Path:
         """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
-        saved = self._known.get(_key(self._leg(problem)))
+        saved = self._known.get(_key(self._leg(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
             stage = None if saved is None else saved.stage
             path = self._followed(problem, start, span, forward, max_step, stations, stage)
@@ -152,7 +155,26 @@ class Legs:
         self.report(covered, f"{stage.kept.number} points")
         if self.passing is not None:
             self.passing(problem, stage.z)
+            self._passed = self._leg(problem, stage=stage)
         self.look()
+
+    def found(self, problem: OrbitProblem) -> list[Leg]:
+        """The legs of a problem as far as all their points were passed."""
+        legs = {_key(leg): leg for leg in self._known.values() if leg.path is not None}
+        if self._passed is not None and _key(self._passed) not in legs:
+            legs[_key(self._passed)] = self._passed
+        held, repeats = kind_of(problem)
+        return [leg for leg in legs.values() if (leg.held, leg.repeats) == (held, repeats)]
+
+    def take(self, legs: Iterable[Leg]) -> None:
+        """Go on with legs that begin where one is to be followed."""
+        self._given = {leg.number: leg for leg in legs}
+
+    def _taken(self, problem: OrbitProblem, start: FloatArray, forward: bool) -> Leg | None:
+        """The one with the next number, if it begins there."""
+        leg = self._given.get(self.number)
+        known = leg is not None and _key(leg) == _key(self._leg(problem))
+        return leg if leg is not None and known and _begins_at(leg, problem, start, forward) else None
 
     def keep(self) -> None:
         """Save the curve that is being followed as far as it is there."""
@@ -165,24 +187,36 @@ class Legs:
 
     def paths(self, problem: OrbitProblem) -> list[Path]:
         """What is saved of the curves of a problem, those that an earlier run came to among them."""
-        held, repeats = _kind(problem)
+        held, repeats = kind_of(problem)
         legs = [leg for leg in self._known.values() if (leg.held, leg.repeats) == (held, repeats)]
         found = [leg.there() for leg in sorted(legs, key=lambda leg: leg.number)]
         return [path for path in found if path.z.shape[0]]
 
     def _leg(self, problem: OrbitProblem, path: Path | None = None, stage: Stage | None = None) -> Leg:
         """The one that is followed now."""
-        return Leg(self.number, *_kind(problem), path, stage)
+        return Leg(self.number, *kind_of(problem), path, stage)
 
     def _save(self, leg: Leg) -> None:
         self._known[_key(leg)] = leg
         self.report.save(leg)
 
 
+def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool) -> bool:
+    """Whether a leg is that from a start in a direction."""
+    if leg.path is not None:
+        first, rise = leg.path.z[0], float(leg.path.direction[0, -1])
+    else:
+        assert leg.stage is not None
+        first, rise = leg.stage.start, float(leg.stage.heading[-1])
+    problem.measure(first)
+    off = np.linalg.norm((first - start) / np.asarray(problem.scale))
+    return bool(off < SAME) and (rise > 0.0) == forward
+
+
 def _key(leg: Leg) -> tuple[int, tuple[int, ...], int]:
     return leg.number, leg.held, leg.repeats
 
 
-def _kind(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
+def kind_of(problem: OrbitProblem) -> tuple[tuple[int, ...], int]:
     """The contacts that are held, and the periods: with others it is another curve."""
     return tuple(one.place for one in problem.scene.held), problem.repeats
