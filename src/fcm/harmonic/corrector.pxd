@@ -7,6 +7,7 @@ cdef class Corrector:
     cdef readonly Ranking ranking
     cdef readonly Further further
     cdef bint again
+    cdef double fruitless
     cdef double enough
     cdef int most
     cdef list lifts

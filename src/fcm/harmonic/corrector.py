@@ -18,6 +18,8 @@ LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from wh
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
 SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
+# evaluations times the square of the unknowns, some half second of work, for points that are not found
+FRUITLESS = cython.declare(cython.double, 2e7)
 MOST = 16  # balances, and correctors, that are kept for the next system,
 MANY = 64  # and of balances so many, where each is small
 NAN = cython.declare(cython.double, float("nan"))
@@ -49,7 +51,7 @@ class Corrector:
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others; no set is known."""
-        self.system = system
+        self.system, self.fruitless = system, 0.0
         self.forget()
         self.ranking.take(system)
 
@@ -111,11 +113,16 @@ class Corrector:
     ) -> cython.bint:
         """Whether the curve of a known set is found beside a point; found (1 + dof,) is what it has there.
 
-        Of balances that are not small more than what is found at once is looked for at the best points alone.
+        Of balances that are not small more than what is found at once is looked for at the best points alone,
+        and so it is where that has led nowhere for long.
         """
         lifted: Lifted = self.of_set(k)
         d: cython.Py_ssize_t
-        if not lifted.beside(z, direction, not best and not self.ranking.cheap):
+        size: cython.double = lifted.balance.unknowns
+        before: cython.double = lifted.newton.evaluations
+        vain: cython.bint = self.fruitless > FRUITLESS or not self.ranking.cheap
+        if not lifted.beside(z, direction, vain and not best):
+            self.fruitless += (lifted.newton.evaluations - before) * size * size
             self.found[:] = NAN
             return False
         self.found[:] = lifted.found
@@ -139,8 +146,10 @@ class Corrector:
         corrector.further.at(z, self.found[1:])
         j: cython.Py_ssize_t = corrector.ranking.choose(False)
         if j >= 0:
+            corrector.fruitless = self.fruitless
             corrector.put(j, z, direction, self.found[1:], best)
             self.found[:] = corrector.found
+            self.fruitless = corrector.fruitless
         return 0
 
     def seconds(self) -> float:
