@@ -30,7 +30,7 @@ from fcm.scene.model import FloatArray, Held, Scene
 
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
-BESIDE = 0.3  # of the time for a curve, that balances may take which are to lead to its further branches
+BESIDE = 1.0 / 3.0  # of the time for a curve, that balances which may lead to further branches may take
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 AT_END = f"{STOPPED}its end, while other motions beside its points were sought"
 
@@ -142,10 +142,10 @@ class _Followed:
         """
         legs = Legs(scene.frequency_range, self.report, self.clock.look, _watched if scene.held else None)
         problems, groups = [OrbitProblem(scene)], list[OrbitBranches]()
-        for problem, found in self.before:
-            legs.take(Released(problem, problems[0]).legs(found.found(problem)))
-        self.before[:] = [(problems[0], legs)]
         try:
+            for problem, found in self.before:
+                legs.take(Released(problem, problems[0]).legs(found.found(problem)))
+            self.before[:] = [(problems[0], legs)]
             paths, without = explore(problems[0], legs, legs.look, self.clock.share(BESIDE))
             reason = incomplete(scene, paths, without)
             groups.append(OrbitBranches(problems[0], paths))

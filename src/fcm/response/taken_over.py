@@ -13,7 +13,6 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Path, Stage
-from fcm.continuation.branches import SAME
 from fcm.continuation.front import Front
 from fcm.continuation.stage import state_of
 from fcm.continuation.trail import Kept, Points
@@ -21,6 +20,8 @@ from fcm.motion.matrices import has_friction
 from fcm.orbit.problem import OrbitProblem
 from fcm.response.legs import Leg, kind_of
 from fcm.scene.model import FloatArray
+
+CLOSE = 1e-8  # distance, in the problem's scale, that rounding may put between the same point of two problems
 
 
 class Released:
@@ -107,7 +108,7 @@ class Released:
         if not front.begin(there, row):
             return None
         off = (np.asarray(front.here.z) - there) / np.asarray(front.newton.scale)
-        same = np.linalg.norm(off) < SAME and np.asarray(front.here.tangent) @ row > 1.0 - SAME
+        same = np.linalg.norm(off) < CLOSE and np.asarray(front.here.tangent) @ row > 1.0 - CLOSE
         return front if same else None
 
     def _heading(self, stage: Stage) -> FloatArray:
