@@ -7,12 +7,14 @@ from fcm.harmonic.choice import estimated
 from fcm.harmonic.lost import lost_along
 from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
+from fcm.orbit import periodic
 from fcm.response.exact import trace_exact
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
 
 MANY = tuple(range(1, 21))
+NEGLIGIBLE = 1e-5  # an error: below, a crossing may by chance be nearer than is known of it
 
 
 def oscillator(frequency, damping, shapes, contact, force, span):
@@ -49,7 +51,7 @@ def test_the_error_is_what_twenty_harmonics_change(flips, count):
     assert len(found) == len(true) >= 2
     for one in found:
         off = np.abs(true / one.frequency - 1.0).min()
-        assert off / 2.0 < one.error < 2.0 * off
+        assert off / 2.0 < one.error < 2.0 * max(off, NEGLIGIBLE)
 
 
 @pytest.fixture(scope="module")
@@ -92,8 +94,10 @@ def test_the_accuracy_holds_for_where_stability_is_lost(bouncing):
     assert not curve.short_of and not any(one.sweep == "up" for one in curve.swept().untold)
 
 
-def test_what_cannot_be_told_is_said(bouncing):
-    """With six harmonics, which 0.1 takes, stability is lost where more have no solution beside them."""
+def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
+    """With six harmonics, which 0.1 takes, multipliers are above 1 long before those of the exact motion."""
     curve = traced_curve(bouncing, Wanted(None, 0.1))
-    assert "the error of the frequency at which stability is lost" in curve.short_of
-    assert curve.short_of.endswith("cannot be told")
+    held = [periodic(bouncing, omega).stable for omega in (0.72, 0.735, 0.742)]
+    assert all(held)
+    assert not (curve.stable[(curve.frequency > 0.7) & (curve.frequency < 0.742)] == 0.0).any()
+    assert any(one.sweep == "up" and one.start < 0.742 and one.end > 0.757 for one in curve.swept().untold)

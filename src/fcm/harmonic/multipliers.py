@@ -2,6 +2,8 @@ r"""Floquet multipliers of a balanced solution, and what they say of its stabili
 
 The growth over a period of a small disturbance, slow or fast, is an eigenvalue of the `Monodromy` of the
 motion. Its motion is the `Finer` one; that of the harmonics balanced alone tells how sure the verdict is.
+Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes change by a
+hundredth, the further harmonics are balanced too (`Refined`).
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
 the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of
 the number of real multipliers above +1, and changes exactly at the folds: it decides.
@@ -9,6 +11,7 @@ the number of real multipliers above +1, and changes exactly at the folds: it de
 
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Sequence
 
@@ -18,7 +21,8 @@ import numpy.typing as npt
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
-from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, either, even
+from fcm.harmonic.refined import Refined
+from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even
 from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
 from fcm.harmonic.transitions import Transitions
@@ -39,8 +43,10 @@ NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which not
 class Multipliers:
     """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
 
-    def __init__(self, system: System, highest: float) -> None:
+    def __init__(self, system: System, highest: float, last: bool = False) -> None:
+        """The last balances no further harmonics where the finer motion leaves a verdict in doubt."""
         linear = system.linear
+        self.highest, self.last = highest, last
         self.contacts = len(system.scene.contacts)
         self.contact = contact = np.zeros((self.contacts, 4))  # what all look at
         harmonics = [int(h) for h in system.harmonics]
@@ -53,10 +59,12 @@ class Multipliers:
         self.fine = Monodromy(stiffness, Transitions(contact, finer))
         self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
         self.eigenvalues = Eigenvalues(SMALL)
+        self.further: tuple[Refined, Multipliers] | None
         self.take(system)
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
+        self.system, self.further = system, None
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
 
@@ -90,19 +98,44 @@ class Multipliers:
         values = self._values(self.fine, omega)
         if values is None:
             return UNKNOWN
-        found = self._found(Spectrum(values), omega, turning, enough)
+        found = self._found(Spectrum(values), z, turning, enough)
         return either(found, self._resting(omega))._replace(held=fine.held) if fine.held else found
 
-    def _found(self, fine: Spectrum, omega: float, turning: bool, enough: Sequence[float]) -> Verdict:
-        """The verdict, which the motion of the balanced harmonics alone confirms where that may matter."""
+    def _found(self, fine: Spectrum, z: FloatArray, turning: bool, enough: Sequence[float]) -> Verdict:
+        """The verdict, which the motion of the balanced harmonics alone confirms where that may matter.
+
+        What that does not confirm, or only just, is that of a motion with the further harmonics balanced too,
+        which may be the last.
+        """
         alone = fine.verdict(turning)
         safe = alone.growth < -max(SAFE, SHIFT * self.finer.shift)
         if not fine.odd and (safe or alone.stable in enough):
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
             return even(fine, fine, turning)
-        values = self._values(self.plain, omega)
-        return UNKNOWN if values is None else even(fine, Spectrum(values), turning)
+        values = self._values(self.plain, float(z[-1]))
+        if values is None:
+            return UNKNOWN
+        plain = Spectrum(values)
+        found = even(fine, plain, turning)
+        if turning:
+            return found
+        untold = found._replace(stable=math.nan)
+        if self.last:
+            return untold if doubtful(found, fine, plain, 1.0) else found
+        slight = 0.0 < found.growth < max(SAFE, SHIFT * self.finer.shift)
+        if slight or doubtful(found, fine, plain, SHIFT):
+            return self._refined(z) or untold
+        return found
+
+    def _refined(self, z: FloatArray) -> Verdict | None:
+        """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
+        if self.further is None:
+            refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]))
+            self.further = refined, type(self)(refined.system, self.highest, last=True)
+        refined, judge = self.further
+        there = refined.beside(z, self.finer.x)
+        return None if there is None else judge.verdict(there)
 
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""

@@ -65,7 +65,8 @@ class Around:
 class RingMultipliers(Multipliers):
     """The multipliers of solutions of one sector."""
 
-    def __init__(self, system: System, highest: float) -> None:
+    def __init__(self, system: System, highest: float, last: bool = False) -> None:
+        self.system, self.highest, self.last, self.further = system, highest, last, None
         linear, ring = system.linear, system.scene.ring
         assert isinstance(linear, RingLinear) and ring is not None
         n = ring.period

@@ -12,6 +12,7 @@ from cython.cimports.libc.math import atan2, fabs, hypot, log
 STABLE = cython.declare(cython.double, 1e-7)  # by which a multiplier may exceed 1
 SURELY = 0.02  # logarithm of a real multiplier that truncation may put on the wrong side of 1 in any case
 SHIFTED = 2.0  # or, of one that it shifts, as far as this many times the shift
+FLIP_NEAR = 0.4  # [rad] from -1 within which a pair is followed as it passes: there modes flip
 SMALL = 0.75  # multipliers below are far from growth, wherever they turn
 FAR_FROM_GROWTH = cython.declare(cython.double, SMALL)
 PI = cython.declare(cython.double, 3.141592653589793)
@@ -115,6 +116,21 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     if found.stable != plain.verdict(plain.odd or turning).stable:
         return found._replace(stable=math.nan)
     return found
+
+
+def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> bool:
+    """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
+
+    That is so where it is none, of a growth that is less than some times its change, and where a pair turns
+    so fast towards -1 that it may meet there, of which one multiplier leaves by a flip.
+    """
+    if math.isnan(found.stable):
+        return True
+    one, other = fine.verdict(fine.odd), plain.verdict(plain.odd)
+    if found.stable == 1.0:
+        turned = abs(one.before_flip - other.before_flip)
+        return found.before_flip < min(FLIP_NEAR, SHIFTED * turned)
+    return found.growth < times * abs(one.growth - other.growth)
 
 
 def either(one: Verdict, other: Verdict) -> Verdict:

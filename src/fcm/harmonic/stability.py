@@ -20,7 +20,7 @@ from fcm.continuation import Path
 from fcm.continuation.secants import Secants
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
 from fcm.harmonic.multipliers import multipliers
-from fcm.harmonic.spectrum import Kind, Verdict
+from fcm.harmonic.spectrum import FLIP_NEAR, Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.verdicts import Verdicts
 from fcm.harmonic.windows import MANY, dip
@@ -32,7 +32,6 @@ __all__ = ["Crossing", "Inserted", "Kind", "Stability", "multipliers", "stabilit
 
 SPAN = 16  # points between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
-FLIP_NEAR = 0.4  # [rad] from -1 within which a multiplier is followed as it passes: there modes flip
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
 FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO
@@ -193,7 +192,7 @@ class _Along:
 
     def _crossing(self, a: float, b: float) -> Crossing | None:
         """Where the growth changes sign between two places."""
-        first, found = int(a), None
+        first, found, enough = int(a), None, self.verdicts.enough(a, b)
         curve = self.verdicts.curve(first)
         before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
@@ -202,7 +201,7 @@ class _Along:
             at = sides.at
             if sides.width < FINE or not curve.put(at):
                 break
-            verdict = self.verdicts.judge(curve.z)
+            verdict = self.verdicts.judge(curve.z, enough)
             now = max(verdict.growth, ENOUGH)
             if math.isnan(now):
                 break

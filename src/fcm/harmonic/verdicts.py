@@ -21,7 +21,7 @@ from fcm.harmonic.system import System
 from fcm.harmonic.windows import MANY, Seen, apart, seen
 from fcm.scene.model import FloatArray
 
-EITHER = (0.0, 1.0)
+EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 
 
 class Verdicts:
@@ -61,8 +61,8 @@ class Verdicts:
         self._verdicts[t] = verdict
         return verdict
 
-    def judge(self, z: FloatArray, enough: Sequence[float] = EITHER) -> Verdict:
-        """Of a solution that is not kept; its growth is not in doubt where its verdict is (`enough`)."""
+    def judge(self, z: FloatArray, enough: Sequence[float] = ()) -> Verdict:
+        """Of a solution that is not kept; `enough` as of `Multipliers.verdict`."""
         self.evaluations += 1
         return self.multipliers.verdict(z, enough=enough)
 
@@ -85,6 +85,15 @@ class Verdicts:
     def grows(self, t: float) -> bool:
         """Whether a disturbance does at a place with a verdict."""
         return self._verdicts[t].growth > 0.0
+
+    def enough(self, *places: float) -> Sequence[float]:
+        """What is enough to find where growth changes sign between places: EITHER, if the finer motion alone
+        says the same of these as their verdicts."""
+        alone = (self.judge(self._z(t), EITHER).growth > 0.0 for t in places)
+        return EITHER if all(one == self.grows(t) for one, t in zip(alone, places, strict=True)) else ()
+
+    def _z(self, t: float) -> FloatArray:
+        return self.between[t].z if t in self.between else self.path.z[int(t)]
 
     def seen(self, t: float) -> Seen:
         """What is known of a place with a verdict."""

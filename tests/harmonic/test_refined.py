@@ -1,0 +1,78 @@
+"""Verdicts in doubt: of light impacts, whose multipliers come slowly to those of the exact motion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.multipliers import Multipliers
+from fcm.orbit import periodic
+from fcm.scene import Contact, Force, Modal, Scene
+
+from .test_stability import _state, only, system
+
+
+def impacts(frequency, damping, shapes, contact, pushed):
+    """One contact of a tangential and a normal degree of freedom, mu, k_u, k_v, n_0."""
+    modal = Modal(
+        ("u", "v"), np.ones(len(frequency)), np.array(frequency), np.array(damping), np.array(shapes)
+    )
+    axes = np.eye(2)
+    force = Force(axes[pushed], 1.0, 0.0)
+    return Scene("impacts", modal, (Contact("c", axes[0], axes[1], *contact),), (force,), (0.5, 3.0), 0.05)
+
+
+ONE_MODE = impacts([1.0], [0.0396], [[0.178, -1.24]], (0.0104, 9.97, 14.16, -0.3), 0)
+TWO_MODES = impacts(
+    [1.0, 2.2068],
+    [0.010356, 0.0043],
+    [[0.3086, 2.1875], [0.6168, -2.3066]],
+    (0.0935, 0.1418, 1.972, -5.777),
+    1,
+)
+FOUR_MODES = impacts(
+    [1.0, 1.65852, 3.25401, 3.7308],
+    [0.04446, 0.01065, 0.01622, 0.02916],
+    [[-0.3129, 0.14039], [-1.6088, 1.2205], [-1.94042, 1.48304], [-0.07922, -1.72049]],
+    (0.4489, 3.72894, 4.89631, -1.93406),
+    0,
+)
+
+
+def judged(scene, omega, highest):
+    """The verdict of the balanced solution, and whether the exact motion beside it is stable."""
+    of = system(scene, highest)
+    z = only(scene, omega, highest)
+    orbit = periodic(scene, omega, _state(of, z))
+    balance = of.balance()
+    balance.report(z, np.zeros_like(z))
+    np.testing.assert_allclose(orbit.measure.amplitude, np.asarray(balance.output), rtol=0.02)
+    return Multipliers(of, omega).verdict(z), orbit.stable
+
+
+@pytest.mark.parametrize(("scene", "omega", "highest"), [(ONE_MODE, 1.129, 4), (FOUR_MODES, 0.9953, 9)])
+def test_light_impacts_that_any_start_leads_to_are_not_called_unstable(scene, omega, highest):
+    verdict, true = judged(scene, omega, highest)
+    assert true
+    assert verdict.stable == 1.0
+
+
+def test_a_pair_about_to_meet_at_minus_one_is_not_called_stable():
+    verdict, true = judged(TWO_MODES, 2.1997, 3)
+    assert not true
+    assert verdict.stable != 1.0
+
+
+def test_a_verdict_in_doubt_is_that_of_forces_of_another_level():
+    of, twice = (system(scene, 4) for scene in (ONE_MODE, _doubled(ONE_MODE)))
+    z = only(_doubled(ONE_MODE), 1.129, 4)
+    of_level, of_forces = (Multipliers(one, 1.129) for one in (of, twice))
+    assert of_level.verdict(z).growth == pytest.approx(of_forces.verdict(z).growth, abs=1e-8)
+    assert of_level.further is not None
+
+
+def _doubled(scene):
+    (force,) = scene.forces
+    return replace(scene, forces=(replace(force, amplitude=2.0 * force.amplitude),))
