@@ -69,7 +69,7 @@ def test_points_that_lead_nowhere_are_sought_by_parts_for_a_while_only():
         return corrector.seconds() - before
 
     first = taken(False)
-    again = [taken(False) for _ in range(200)]
+    again = [taken(False) for _ in range(320)]
     assert again[0] == pytest.approx(first)
     assert again[-1] < 0.6 * first
     assert taken(True) == pytest.approx(first)

@@ -19,7 +19,7 @@ ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, w
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
 SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
 # evaluations times the square of the unknowns, some half second of work, for points that are not found
-FRUITLESS = cython.declare(cython.double, 2e7)
+FRUITLESS = cython.declare(cython.double, 4e7)
 MOST = 16  # balances, and correctors, that are kept for the next system,
 MANY = 64  # and of balances so many, where each is small
 NAN = cython.declare(cython.double, float("nan"))
