@@ -277,6 +277,25 @@ def test_what_does_not_move_has_no_logarithmic_axis():
         draw_response(response(still), log=True)
 
 
+@pytest.mark.parametrize(("last", "faded"), [(1.3, True), (1.005, False)])
+def test_a_wide_stretch_whose_error_is_not_known_is_faded_and_the_legend_says_so(last, faded):
+    """One as narrow as that of a fold is not."""
+    error = np.where((FREQUENCY >= 1.0) & (FREQUENCY <= last), np.nan, 1e-3)
+    curve = with_errors(resonance(9.0, 1.2, 5.0), np.zeros(201), error)
+    figure = draw_response(response(curve))
+    faint = [line.get_xydata() for line in figure.axes[0].lines if line.get_alpha() is not None]
+    faint = [line[np.isfinite(line[:, 1]), 0] for line in faint if line[np.isfinite(line[:, 1])].size]
+    said = [text.get_text() for legend in _legends(figure) for text in legend.get_texts()]
+    assert any("not told how far" in one for one in said) == faded
+    if faded:
+        assert any(abs(x[0] - 1.0) < 0.01 and abs(x[-1] - last) < 0.01 for x in faint)
+
+
+def _legends(figure):
+    own = [axes.get_legend() for axes in figure.axes]
+    return [*figure.legends, *(one for one in own if one is not None)]
+
+
 def test_a_level_curve_is_below_the_frame():
     height = np.full((201, 2), 1e-8)
     height[::2] += 1e-20

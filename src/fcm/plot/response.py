@@ -36,7 +36,8 @@ _LINE: LineStyle = "-"
 _DASHES: LineStyle = (0, (3.0, 1.6))
 _DOTS: LineStyle = (0, (1.0, 1.0))
 _DOUBTFUL = 0.2  # estimated error beyond which a curve is faded,
-_FADED = f"may err by more than {100 * _DOUBTFUL:g} %"  # what is said of it,
+_WIDE = 1e-2  # of its frequency: a stretch whose error is not known, as far as a fold may be moved
+_FADED = f"may err by more than {100 * _DOUBTFUL:g} %, or it is not told how far"  # what is said of both,
 _ALPHA = 0.3  # and how much of it is left
 _NOT_STABLE = "unstable"  # what is dashed
 _UNTOLD = "whether it is stable is not told"  # what is dotted
@@ -115,8 +116,8 @@ def _draw_curve(axes: Axes, curve: DrawnCurve, column: int, width: float) -> Non
     """A solid line where the curve is stable or the file knows of no stability, a dashed one where it is
     unstable, a dotted one where that is not told.
 
-    Faded is what may err by more than a fifth. A point without neighbours, as one of peaks alone, is a dot,
-    hollow unless it is stable.
+    Faded is what may err by more than a fifth, or by what is not known. A point without neighbours, as one
+    of peaks alone, is a dot, hollow unless it is stable.
     """
     amplitude = curve.amplitude[:, column]
     unstable = np.zeros(len(amplitude), np.bool_) if curve.stable is None else ~curve.stable
@@ -176,10 +177,20 @@ def _not_stable(curve: DrawnCurve) -> BoolArray:
 
 
 def doubtful(curve: DrawnCurve) -> BoolArray:
-    """Where the estimated error of the harmonics left out is more than a fifth."""
-    if curve.truncation_error is None:
+    """Where the estimated error of the harmonics left out is more than a fifth, or not known for long.
+
+    Beside a fold it is never known; a curve of which it is nowhere, as of exact motions, has none.
+    """
+    error = curve.truncation_error
+    if error is None or not np.isfinite(error).any():
         return np.zeros(len(curve.frequency), np.bool_)
-    return np.nan_to_num(curve.truncation_error) > _DOUBTFUL
+    found: BoolArray = np.nan_to_num(error) > _DOUBTFUL
+    unknown = np.isnan(error) & np.isfinite(curve.frequency)
+    ends = np.flatnonzero(np.diff(np.concatenate(([False], unknown, [False]))))
+    for first, end in ends.reshape(-1, 2).tolist():
+        own = curve.frequency[first:end]
+        found[first:end] |= bool(np.ptp(own) > _WIDE * own.max())
+    return found
 
 
 def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, FloatArray]:
