@@ -76,7 +76,7 @@ class Kernels(build_ext):
         source.parent.mkdir(parents=True, exist_ok=True)
         source.write_text("#include <Python.h>\n")
         try:
-            self.compiler.compile([str(source)], include_dirs=self.include_dirs)
+            self.compiler.compile([str(source)], self.build_temp, include_dirs=self.include_dirs)
         except CompileError as reason:
             self.warn(f"the kernels of fcm are not compiled: {reason}")
             return False
