@@ -14,7 +14,7 @@ from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
 
 MANY = tuple(range(1, 21))
-NEGLIGIBLE = 1e-5  # an error: below, a crossing may by chance be nearer than is known of it
+NEGLIGIBLE = 2e-6  # an error: below, a crossing may by chance be nearer than is known of it
 
 
 def oscillator(frequency, damping, shapes, contact, force, span):

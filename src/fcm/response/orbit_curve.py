@@ -11,8 +11,8 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
-from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample
+from fcm.orbit.shooting import Shot
 from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
@@ -45,10 +45,13 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     for group in groups:
         for found in group.points:
             folds += [point.frequency for point in found if point.mark & Mark.FOLD]
-            whole = [_of_whole(group.problem, point) for point in found]
+            whole = found
+            if scene.held:
+                shots = [group.problem.shot(point.z) for point in found]
+                kept += [_kept(scene, shots)]
+                whole = [_of_whole(scene, *one) for one in zip(found, shots, strict=True)]
             points += [None, *whole] if points else whole
-            kept += [_kept(group.problem, found)] if scene.held else []
-    least = np.min(kept, axis=0) if kept else _kept(groups[0].problem, [])
+    least = np.min(kept, axis=0) if kept else _kept(scene, [])
     if lost := lost_by(least).tolist():  # other motions beside such points are of no use
         raise NotKeptError(tuple(lost), reason)
     curve = replace(_curve(scene.whole(), points, reason, search), folds=folds)
@@ -61,25 +64,21 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     return curve
 
 
-def _of_whole(problem: OrbitProblem, point: Sample) -> Sample:
+def _of_whole(scene: Scene, point: Sample, shot: Shot | None) -> Sample:
     """A point with the contacts that are held."""
-    scene = problem.scene
-    if not scene.held:
-        return point
-    shot, states = problem.shot(point.z), whole_states(scene, point.states)
+    states = whole_states(scene, point.states)
     none = np.full((len(states), 4), np.nan)
     borne = none if shot is None else whole_borne(shot.system, shot.segments, point.borne)
     return replace(point, state=whole_state(scene, point.state), states=states, borne=borne)
 
 
-def _kept(problem: OrbitProblem, points: Sequence[Sample]) -> FloatArray:
+def _kept(scene: Scene, shots: Sequence[Shot | None]) -> FloatArray:
     """The least of its limit or gap that each contact which is held keeps: (contact, 2), else nan."""
-    scene = problem.scene
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
-    shots = [shot for shot in (problem.shot(point.z) for point in points) if shot is not None]
-    if not shots:
+    rooms = [shot.kept for shot in shots if shot is not None]
+    if not rooms:
         return kept
-    least = np.min([shot.kept for shot in shots], axis=0, initial=1.0)
+    least = np.min(rooms, axis=0, initial=1.0)
     for one, room in zip(scene.held, least, strict=True):
         kept[one.place, int(one.open)] = room
     return kept
