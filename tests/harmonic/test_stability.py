@@ -241,6 +241,24 @@ def test_many_modes_that_follow_are_as_good_as_all(monkeypatch):
     assert error(all_modes, few) < 5e-3
 
 
+def test_a_mode_far_stiffer_than_the_others_changes_nothing_beside_a_rigid_body():
+    """Whose eigenvectors are dependent. In steps of the stiff mode a period would be 1e9 of them."""
+    frequency = np.array([0.0, 1.0, 1.9, 2.5, 3.1, 4.3, 5.2, 1e9])
+    shapes = 0.4 * np.random.default_rng(3).normal(size=(8, 2))
+    shapes[0] = 0.5, 0.0
+    contact = Contact("c", np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.4, 1.0, 1.0, 0.5)
+
+    def multipliers_with(modes):
+        damping = np.where(frequency > 0.0, 0.01, 0.0)
+        modal = Modal(("u", "v"), np.ones(modes), frequency[:modes], damping[:modes], shapes[:modes])
+        scene = Scene("stiff", modal, (contact,), (Force(np.array([1.0, 0.0]), 0.5, 0.0),), (0.8, 1.3), 0.05)
+        return multipliers(system(scene, 3), only(scene, 1.1, 3))
+
+    without = multipliers_with(7)
+    assert without.size >= 14
+    assert error(multipliers_with(8), without) < 1e-9
+
+
 def test_a_rigid_body_that_nothing_holds_is_no_instability():
     free = one_mode(frequency=0.0, damping=0.0, shape=(1.0, 0.0))
     z = only(free, 1.1, 3)

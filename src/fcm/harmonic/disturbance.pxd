@@ -11,8 +11,8 @@ cdef class Disturbances:
     cdef int propagate(self, double length) except -1
     cdef int jump(self, double length) except -1
     cdef void fill(self, double length) noexcept
-    cdef void carry(self) noexcept
-    cdef void product(self, double[:, ::1] left, double[:, ::1] right, double factor) noexcept
+    cdef int carry(self) except -1
+    cdef int product(self, double[:, ::1] left, double[:, ::1] right, double factor) except -1
     cdef int apply(self, double h) except -1
     cdef int resist(self, Py_ssize_t columns) except -1
     cdef void drag(self, Py_ssize_t columns) noexcept

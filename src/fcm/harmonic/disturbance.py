@@ -24,6 +24,7 @@ else:
 REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
 LARGE = cython.declare(cython.int, 3000)  # products from which on BLAS is faster
+MANY = cython.declare(cython.double, 3.0)  # steps that take longer than to square the exponential
 FEW = cython.declare(cython.int, 12)  # disturbances up to which the exponential itself is made, by squaring
 # the angle, in radians of the fastest motion, from which it is squared
 SHORT = cython.declare(cython.double, 0.25)
@@ -59,7 +60,7 @@ class Disturbances:
     @cython.exceptval(-1, check=False)
     def propagate(self, length: cython.double) -> cython.int:
         """X by the exponential, by the state's eigenvalues, or by a series in steps in which its terms do not
-        grow large."""
+        grow large; of those there are too many where a mode is far stiffer than the others."""
         if self.size <= FEW:
             return self.jump(length)
         s: Stiffness = self.stiffness
@@ -68,6 +69,8 @@ class Disturbances:
         if self.propagator.through(self.key, length, s.omega, s.system, X):
             return 0
         s.make()
+        if s.rate * length > MANY * REACH:
+            return self.jump(length)
         steps: cython.int = cython.cast(cython.int, ceil(s.rate * length / REACH))
         i: cython.int
         steps = max(steps, 1)
@@ -122,8 +125,8 @@ class Disturbances:
                 self.A[m + i, 2 * m + j] = length * self.stiffness.image[i, j]
 
     @cython.cfunc
-    @cython.exceptval(check=False)
-    def carry(self) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def carry(self) -> cython.int:
         """X by 1 + E, of the rows of (q, q'); the places of the sliders stay."""
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -136,13 +139,19 @@ class Disturbances:
                     self.F[i, k] += weight * self.X[j, k]
             for j in range(self.size):
                 self.X[i, j] += self.F[i, j]
+        return 0
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def product(
         self, left: cython.double[:, ::1], right: cython.double[:, ::1], factor: cython.double
-    ) -> cython.void:
+    ) -> cython.int:
         """F = factor left right, of the rows of (q, q')."""
+        if self.modes * self.modes * self.size > LARGE:
+            n: cython.Py_ssize_t = 2 * self.modes
+            np.matmul(np.asarray(left)[:, :n], np.asarray(right)[:n], out=np.asarray(self.F))
+            np.multiply(self.F, factor, out=np.asarray(self.F))
+            return 0
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -155,6 +164,7 @@ class Disturbances:
                 if weight != 0.0:
                     for k in range(self.size):
                         self.F[i, k] += weight * right[j, k]
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
