@@ -54,6 +54,15 @@ def test_participation_is_the_share_of_the_static_flexibility(listed):
     assert found["normalisation"] == "largest value 1; modal masses from 1 to 3"
 
 
+def test_forces_stay_in_the_table_beside_many_contacts_and_what_does_not_fit_is_said(listed):
+    contact = SCENE[SCENE.index("[[contact]]") : SCENE.index("[[force]]")]
+    second, third = (contact.replace("shroud", name) for name in ("root", "tip"))
+    found = listed(SCENE.replace("[[force]]", f"{second}{third}[[force]]"))
+    assert "force.v" in found.out.splitlines()[0]
+    assert "6 of 7 directions of contacts and forces: --json has all" in found.err
+    assert "directions" not in listed(SCENE).err
+
+
 def test_what_is_amiss_is_said_before_anything_is_solved(listed):
     warnings = json.loads(listed(SCENE, "--json").out)["warnings"]
     assert "contact.shroud.normal: no mode moves along it" in warnings

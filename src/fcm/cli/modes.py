@@ -12,7 +12,8 @@ from fcm.cli.files import largest_file_option
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.scene_name import scene_argument
 
-_MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line
+_MOST_DIRECTIONS = 6  # whose participation fits beside each other on a line,
+_MOST_FORCES = 2  # these of them, where contacts need the others
 
 
 @click.command()
@@ -36,6 +37,9 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
     if not to_json:
         if any(share is None for mode in found["modes"] for share in mode["participation"].values()):
             messages.info("- no share: there rigid-body modes yield to a static load without end")
+        count, shown = len(found["modes"][0]["participation"]), len(_shown(found))
+        if shown < count:
+            messages.info(f"{shown} of {count} directions of contacts and forces: --json has all")
         messages.info(f"shapes: {found['normalisation']}")
         for note in found["notes"]:
             messages.info(note)
@@ -45,7 +49,7 @@ def modes(messages: Messages, scene: str, to_json: bool, largest_file: int) -> N
 
 def as_table(found: dict[str, Any]) -> str:
     """One line for each mode."""
-    directions = list(found["modes"][0]["participation"])[:_MOST_DIRECTIONS]
+    directions = _shown(found)
     ring = "nodal_diameter" in found["modes"][0]
     header = [
         "mode",
@@ -71,6 +75,15 @@ def as_table(found: dict[str, Any]) -> str:
             ]
         )
     return aligned(rows, left=1)
+
+
+def _shown(found: dict[str, Any]) -> list[str]:
+    """The directions that fit beside each other: the first of the contacts, then the first of the forces."""
+    every = list(found["modes"][0]["participation"])
+    contacts = [name for name in every if name.startswith("contact.")]
+    forces = [name for name in every if name not in contacts]
+    few = forces[: max(_MOST_FORCES, _MOST_DIRECTIONS - len(contacts))]
+    return contacts[: _MOST_DIRECTIONS - len(few)] + few
 
 
 def _short(direction: str) -> str:
