@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fcm as package
-from fcm.plot.tracked import draw_tracked, read_tracked
+from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
 
 SCENES = Path(package.__file__).parent / "scenes"
 OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
@@ -80,6 +80,16 @@ def test_the_tracked_number_has_a_unit_in_files_and_pictures(fcm, tmp_path):
     drawn = read_tracked(tmp_path / "folds.nc")
     assert drawn is not None
     assert draw_tracked(drawn).axes[0].get_xlabel() == "$n_{0}$ (N)  (contact.shroud.n_0)"
+
+
+def test_peaks_of_very_different_heights_are_all_to_be_seen_and_no_name_lies_on_them():
+    number, none = np.linspace(1.0, 2.0, 5), np.zeros(5)
+    heights = np.outer(number, (1.0, 1e-3))
+    tracks = (DrawnTrack(f"peak of {d}", number, number, heights, none, none, none + 1.0) for d in "uv")
+    figure = draw_tracked(DrawnTracking("contact.c.n_0", ("u", "v"), "Hz", tuple(tracks)))
+    upper, (legend,) = figure.axes[0], figure.legends
+    assert upper.get_yscale() == "log" and upper.get_legend() is None
+    assert [text.get_text() for text in legend.get_texts()] == ["peak of u", "peak of v"]
 
 
 def test_the_error_of_tracked_curves_is_told_or_said_to_be_unknown(fcm):

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from fcm.response.trace import traced_curve
+from fcm.response.track import track
 from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
 
@@ -61,3 +62,15 @@ def test_peaks_among_many_are_those_of_the_linear_structure():
         top = minimize_scalar(answer, bounds=around, args=(d,), method="bounded", options={"xatol": 1e-8})
         assert peak.amplitude == pytest.approx(-top.fun, rel=1e-9)
         assert peak.frequency == pytest.approx(top.x, rel=1e-6)
+
+
+def test_of_many_outputs_those_that_lead_are_tracked_and_the_others_are_said_to_be_left_out():
+    found = track(masses(["*"], 2, 50.0), "peaks", "contact.c.n_0", (49.0, 50.0), harmonics=1)
+    assert found.tracking is not None and found.tracking.complete
+    whats = {one.what for one in found.tracking.curves}
+    assert {f"peak of {name}" for name in ("m7", "m20", "m21")} <= whats and len(whats) < 10
+    (said,) = found.left_out
+    assert f"of {COUNT} degrees of freedom" in said and "[response] output" in said
+    curve = traced_curve(masses(["*"], 2, 50.0), Wanted((1,)))
+    highest = max(one.amplitude[-1, found.dofs.index("m7")] for one in found.tracking.curves)
+    assert highest == pytest.approx(curve.peaks["m7"].amplitude, rel=1e-8)

@@ -13,7 +13,15 @@ from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, symbols, with_unit
 from fcm.plot.read import FloatArray, floats
-from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
+from fcm.plot.style import (
+    HEIGHT,
+    WIDTH,
+    has_decades,
+    house_style,
+    logarithmic_axis,
+    new_figure,
+    sequence_colours,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -121,22 +129,25 @@ def _draw_peaks(drawn: DrawnTracking, dof: str | None) -> Figure:
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         names = list(dict.fromkeys(track.what for track in wanted))
         colours = dict(zip(names, sequence_colours(len(names)), strict=True))
+        highest: list[float] = []
         for track in wanted:
             name = dof or track.what.removeprefix("peak of ")
             column = drawn.dofs.index(name) if name in drawn.dofs else 0
             height = np.where(track.trough == 1.0, np.nan, track.amplitude[:, column])
             frequency = np.where(track.trough == 1.0, np.nan, track.frequency)
+            highest += (
+                height[track.trough != 1.0].max(keepdims=True).tolist() if not track.trough.all() else []
+            )
             label = track.what if track.what in names else None  # once for all its curves
             names = [one for one in names if one != label]
             for axes, values, text in ((upper, height, label), (lower, frequency, None)):
                 _line(axes, track, values, colours[track.what], text)
         upper.set_ylabel(with_unit("Peak amplitude", drawn.length), parse_math=False)
         lower.set_ylabel(frequency_label(drawn.frequency_unit).replace("Frequency", "Peak frequency"))
-        low, high = upper.get_ylim()
-        if low > 0.0 and high > 10.0 * low:
+        if highest and has_decades(highest):
             logarithmic_axis(upper)
         if len(colours) > 1:
-            upper.legend()
+            figure.legend(*upper.get_legend_handles_labels(), loc="outside right upper")
         _say_unstable(lower, wanted)
         _name_number(lower, drawn)
         _mark_optimum(upper, lower, drawn)

@@ -26,11 +26,11 @@ FEW = 50  # degrees of freedom, up to which a curve is followed by all: their pe
 
 
 def leading(scene: Scene) -> Scene:
-    """The scene (of one curve) at the degrees of freedom that lead; itself if there are few."""
+    """The scene at the degrees of freedom that lead in its first curve; itself if there are few."""
     dofs = scene.modal.dofs
     if len(dofs) <= FEW:
         return scene
-    natural, shapes = _modes(linear_of(scene))
+    natural, shapes = _modes(linear_of(scene.each_curve()[0]))
     order = np.argsort(natural)
     within = 1 + int(np.count_nonzero(natural <= scene.frequency_range[1]))
     chosen = np.zeros(len(dofs), dtype=np.bool_)

@@ -16,6 +16,7 @@ from fcm.harmonic.choice import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.curve_sweep import checkpoint_of
+from fcm.response.leading import leading
 from fcm.response.tracked_work import KINDS, STATES, STOPPED, Followed, TrackedWork
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.result import DEFECT, NOT_BEGUN, Response
@@ -89,12 +90,15 @@ def track(
     begin = time.perf_counter()
     free = number.freed(scene)
     wanted = wanted_of(scene, harmonics, accuracy)
-    curves = free.each_curve()
+    tracked = leading(free)
+    curves = tracked.each_curve()
     chosen = wanted.harmonics or needed(curves, number, span, wanted)
     place = place or place_for((jobs or os.cpu_count() or 1) if len(curves) > 1 else 1)
-    response = Response.without_curves(scene)
+    response = Response.without_curves(tracked)
     response.tracking, response.method = Tracking(over, what, span, chosen, []), "tracked"
     with checkpoint_of(keep, resume) as checkpoint:
+        if what == "peaks":
+            response.left_out = _untracked(len(free.modal.dofs), len(tracked.modal.dofs))
         work = TrackedWork(number, what, span, chosen)
         outcome = _swept(work, curves, checkpoint, place, progress)
         for i, one in enumerate(curves):
@@ -103,6 +107,14 @@ def track(
             checkpoint.done()
     response.seconds = time.perf_counter() - begin
     return response
+
+
+def _untracked(every: int, tracked: int) -> list[str]:
+    """What is said of outputs whose peaks are not tracked, as they are too many."""
+    if tracked == every:
+        return []
+    which = f"those of {tracked}, at contacts and forces and where modes move most, are tracked"
+    return [f"peaks of {every - tracked} of {every} degrees of freedom: {which}; [response] output chooses"]
 
 
 def _swept(
