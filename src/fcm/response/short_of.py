@@ -8,8 +8,11 @@ import numpy as np
 
 from fcm.harmonic.choice import Accurate
 from fcm.harmonic.cost import PATIENCE
+from fcm.harmonic.foreseen import NOTHING
 from fcm.harmonic.lost import Lost
 from fcm.units import in_unit
+
+MOST_NAMES = 3  # of degrees of freedom in one sentence
 
 
 def short_of(found: Accurate, lost: Sequence[Lost], accuracy: float) -> str:
@@ -28,14 +31,14 @@ def _of_harmonics(found: Accurate, accuracy: float) -> str:
     folds, said = found.folds, _with_harmonics(found)
     untold = np.count_nonzero(np.isnan(folds))
     if np.isnan(found.worst) and np.isnan(found.peak).any():
-        said += " the errors of some peaks cannot be told"
+        said += f" the errors of some peaks cannot be told{_whose(found, accuracy)}"
     elif untold and found.told <= accuracy:
         said += f" the errors of {untold} of {folds.size} folds cannot be told"
     elif untold:
-        said += f" an estimated error of {found.told:.1e} remains"
+        said += f" an estimated error of {found.told:.1e} remains{_whose(found, accuracy)}"
         said += f", and that of {untold} of {folds.size} folds cannot be told"
     else:
-        said += f" an estimated error of {found.worst:.1e} remains"
+        said += f" an estimated error of {found.worst:.1e} remains{_whose(found, accuracy)}"
     if not found.further:
         return said
     more = found.further
@@ -43,6 +46,18 @@ def _of_harmonics(found: Accurate, accuracy: float) -> str:
     if found.begun:
         return f"{said}; more were given up after some {PATIENCE:.0f} s of work: --harmonics {which}"
     return f"{said}; more would take some {found.seconds_with(more):.0f} s: --harmonics {which}"
+
+
+def _whose(found: Accurate, accuracy: float) -> str:
+    """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
+    height = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0)
+    short = ~(found.peak <= accuracy) & (height > NOTHING * height.max())
+    off, dofs = np.flatnonzero(short), found.system.scene.modal.dofs
+    if not 0 < off.size < len(dofs):
+        return ""
+    worst = off[np.argsort(-np.nan_to_num(found.peak[off], nan=np.inf), kind="stable")]
+    more = f" and {off.size - MOST_NAMES} more" if off.size > MOST_NAMES else ""
+    return f" (of {len(dofs)} peaks, those of {', '.join(dofs[i] for i in worst[:MOST_NAMES])}{more})"
 
 
 def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:
