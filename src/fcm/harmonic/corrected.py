@@ -21,7 +21,6 @@ UNSETTLED = 1e-7  # a displacement at a top, relative, worth to be settled: all 
 TOGETHER = 8  # points, within which tops of degrees of freedom lie together
 ALONE = 0  # the same where to settle them is cheap: each has other harmonics that do most
 EFFORT = 8e7  # evaluations times the square of the unknowns, some second of work, for what is followed
-LEADS = 0.5  # of what the first of the harmonics would do, from which on one that meets a mode is looked at
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner,
 NEXT = (1, 2)  # and where that is a top, which a longer stretch may be higher than
 
@@ -106,20 +105,10 @@ class Corrected:
 
         Displacements swing there from a point to the next: those around tell nothing of them.
         """
-        natural, further = self.corrector.system.linear.natural, self.corrector.further
         if not self.corrector.ranking.cheap:
             return np.zeros(0, dtype=np.intp)
-        times = natural / self.path.parameter[:, None]
-        whole = np.floor(times)
-        before, mode = np.nonzero(np.diff(whole, axis=0))
-        harmonic = np.maximum(whole[before], whole[before + 1])[range(len(before)), mode]
-        nearer = np.abs(times[before + 1, mode] - harmonic) < np.abs(times[before, mode] - harmonic)
-        inside = (harmonic <= further.highest) & (0 < before) & (before + 2 < len(self.known))
-        at, harmonic = (before + nearer)[inside], harmonic[inside].astype(np.intp)
-        share = further.shares(self.path.z[at], self.amplitude[at])
-        leads = share[range(len(at)), harmonic - 1] > LEADS * share.max(axis=1, initial=0.0)
-        beside: Indices = np.unique(at[leads, None] + np.arange(-1, 2))
-        return beside
+        met: Indices = self.corrector.further.meetings(self.path.z, self.amplitude)
+        return met
 
     def settled(self, places: Indices, found: FloatArray) -> FloatArray:
         """Corrected amplitudes (dof,) at places of their own, where the displacement is settled.

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from fcm.continuation import Mark
 from fcm.harmonic.believed import runs
 from fcm.harmonic.corrected import TOGETHER, Corrected, Indices
+from fcm.harmonic.shifted import rises
 from fcm.harmonic.stretch import heights
 from fcm.scene.model import FloatArray
 
@@ -15,7 +16,6 @@ RIVAL = 0.8  # of the greatest amplitude: what is this high may become the great
 LEAP = 4.0  # times what it changes along itself, and is displaced at its ends: a stretch rises by no more
 GAP = 0.2  # of a change of an amplitude, by which it may be more in the gap that a moved corner leaves
 FEW = 8  # points in a row without a displacement, as beside a corner: those around them tell enough
-BETWEEN = np.arange(1, 8)[:, None] / 8.0  # parts of the way from a point to the next
 
 
 def settling_at_ends(corrected: Corrected, growth: FloatArray, tops: Indices) -> FloatArray:
@@ -93,22 +93,8 @@ def rise_beside(corrected: Corrected, growth: FloatArray, moved: FloatArray, pla
     Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
     is told of what lies between a point and a corner.
     """
-    amplitude, place, d = corrected.amplitude, corrected.place, np.arange(len(places))
-    corner, last = (corrected.path.mark & Mark.CORNER) > 0, len(place) - 1
-    rise = np.zeros(len(places))
-    before, at = (np.searchsorted(place, place[places], side) - 1 for side in ("left", "right"))
-    for first in (before, at):  # points may coincide
-        k = np.clip(first, 0, last - 1)
-        known = np.isfinite(moved[k, d] + moved[k + 1, d]) & ~corner[k] & ~corner[k + 1] & (k == first)
-        length, x, y = place[k + 1] - place[k], BETWEEN, 1.0 - BETWEEN
-        between = (
-            (amplitude[k, d] * (1.0 + 2.0 * x) + growth[k, d] * length * x) * y * y
-            + (amplitude[k + 1, d] * (1.0 + 2.0 * y) - growth[k + 1, d] * length * y) * x * x
-            + (moved[k, d] * y + moved[k + 1, d] * x)
-        )
-        higher = between.max(axis=0) - amplitude[places, d] - moved[places, d]
-        rise = np.where(known, np.maximum(rise, higher), rise)
-    return rise
+    corner = ((corrected.path.mark & Mark.CORNER) > 0).view(np.uint8)
+    return rises(corrected.place, corrected.amplitude, growth, moved, corner, places)
 
 
 def _may_exceed(

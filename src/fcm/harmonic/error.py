@@ -20,7 +20,7 @@ from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
 from fcm.harmonic.ripple import ripple
-from fcm.harmonic.shifted import Beside
+from fcm.harmonic.shifted import shifted
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -109,14 +109,15 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
         height = shown.amplitude.max(axis=0)
         return Errors(none, none[:, 0], none[0], height, np.zeros(len(folds)), np.zeros(HIGHEST))
     change = corrected.everywhere(special, tops)
-    shift, unit = _at_frequency(corrected, shown, change), corrected.unit
+    unit, growth = corrected.unit, shown.growth
+    shift = shifted(corrected.place, path.z, path.direction, shown.amplitude, growth, unit, change)
     error = _of_points(corrected, shown, change, shift)
     error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
     at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
-    at_ends += settling_at_ends(corrected, shown.growth, tops)
-    height = np.where(inside, crests(corrected, shown.growth, change[:, 1:], tops), at_ends)
-    own = rise_beside(corrected, shown.growth, np.zeros_like(unit), tops)  # no error
+    at_ends += settling_at_ends(corrected, growth, tops)
+    height = np.where(inside, crests(corrected, growth, change[:, 1:], tops), at_ends)
+    own = rise_beside(corrected, growth, np.zeros_like(unit), tops)  # no error
     now = shown.amplitude[tops, d] + np.where(inside, own, 0.0)
     settles = inside | ~corrected.linear[tops]
     error[tops[settles], d[settles]] = _of_peaks(np.abs(height - now) / unit[tops, d])[settles]
@@ -157,35 +158,9 @@ def _of_peaks(error: FloatArray) -> FloatArray:
     return peaks
 
 
-def _at_frequency(corrected: Corrected, shown: Reported, change: FloatArray) -> FloatArray:
-    """Differences from the amplitudes to those of the corrected curve at the same frequency, in its units."""
-    path, place, rate = corrected.path, corrected.place, corrected.path.direction[:, -1]
-    moved = path.parameter * (1.0 + change[:, 0])
-    value = shown.amplitude + corrected.unit * change[:, 1:]
-    slope = _slope(place, np.column_stack((moved - path.parameter, value - shown.amplitude)))
-    beside, out = Beside(place, moved, rate + slope[:, 0]), np.empty(value.shape)
-    beside.values(
-        np.ascontiguousarray(path.parameter),
-        np.sign(rate),
-        np.ascontiguousarray(value),
-        np.ascontiguousarray(shown.growth + slope[:, 1:]),
-        out,
-    )
-    shift: FloatArray = (out - shown.amplitude) / corrected.unit
-    return shift
-
-
 def _medians(values: FloatArray) -> FloatArray:
     """Of each row, NaN where all of it is; as `numpy.median`, which takes ten times as long for so few."""
     count = values.shape[1]
     ordered = np.sort(values, axis=1) if count > 2 else values
     middle: FloatArray = 0.5 * (ordered[:, (count - 1) // 2] + ordered[:, count // 2])
     return middle
-
-
-def _slope(place: FloatArray, values: FloatArray) -> FloatArray:
-    """Rates of change (point, value) along the path, from differences; points may coincide."""
-    step = place[1:] - place[:-1]
-    step[~(step > 0.0)] = 1.0
-    pieces = (values[1:] - values[:-1]) / step[:, None]
-    return 0.5 * (np.concatenate((pieces[:1], pieces)) + np.concatenate((pieces, pieces[-1:])))

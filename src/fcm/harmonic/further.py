@@ -15,6 +15,7 @@ from collections.abc import Sequence
 import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import fabs, floor
 
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.system import System
@@ -29,6 +30,7 @@ else:
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
 FEW = 1000  # modes times ports, up to which a sum over them is faster without BLAS
+LEADS = cython.declare(cython.double, 0.5)  # of the greatest share, from which on one that meets a mode leads
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
@@ -48,6 +50,7 @@ class Further:
         few = system.scene.ring is None and linear.ports.size <= FEW
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.modes = ForcedModes(*own) if few else None
+        self.natural = np.array(linear.natural)
         self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
         self.force = np.zeros((self.highest, 2 * self.contacts, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
@@ -79,6 +82,39 @@ class Further:
         self.others = own
         self.share[:] = 0.0
         return found
+
+    def meetings(self, z: cython.double[:, ::1], amplitude: cython.double[:, ::1]) -> npt.NDArray[np.intp]:
+        """Points of a curve z (point, unknown + 1) where a harmonic that is left out meets a mode and leads
+        there, each with those beside it."""
+        m: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        n: cython.Py_ssize_t = z.shape[1] - 1
+        met = np.zeros(z.shape[0], dtype=np.uint8)
+        flags: cython.uchar[::1] = met
+        for m in range(self.natural.shape[0]):
+            for i in range(1, z.shape[0] - 2):
+                before: cython.double = self.natural[m] / z[i, n]
+                after: cython.double = self.natural[m] / z[i + 1, n]
+                h: cython.double = floor(max(before, after))
+                if h == floor(min(before, after)) or h > self.highest:
+                    continue
+                at: cython.Py_ssize_t = i + 1 if fabs(after - h) < fabs(before - h) else i
+                if self.leads(z[at], amplitude[at], cython.cast(cython.Py_ssize_t, h) - 1):
+                    flags[at - 1] = flags[at] = flags[at + 1] = 1
+        return np.flatnonzero(met)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def leads(
+        self, z: cython.double[::1], amplitude: cython.double[::1], h: cython.Py_ssize_t
+    ) -> cython.bint:
+        """Whether one of the shares at a point is nearly the greatest."""
+        k: cython.Py_ssize_t
+        most: cython.double = 0.0
+        self.at(z, amplitude)
+        for k in range(self.highest):
+            most = max(most, self.share[k])
+        return self.share[h] > LEADS * most
 
     def linear(self, z: FloatArray) -> npt.NDArray[np.bool_]:
         """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import cython
+import numpy as np
+from cython.cimports.libc.math import isnan
+
+from fcm.scene.model import FloatArray
 
 HALVINGS = cython.declare(cython.int, 40)  # of a piece, to where the parameter is a value
+PARTS = cython.declare(cython.int, 8)  # of the way from a point to the next
 NAN = cython.declare(cython.double, float("nan"))
 
 
@@ -117,3 +122,109 @@ def cubic(
         + begin * x * (1.0 - x) * (1.0 - x)
         - end * x * x * (1.0 - x)
     )
+
+
+def shifted(
+    place: cython.double[::1],
+    z: cython.double[:, ::1],
+    direction: cython.double[:, ::1],
+    amplitude: cython.double[:, ::1],
+    growth: cython.double[:, ::1],
+    unit: cython.double[:, ::1],
+    change: cython.double[:, ::1],
+) -> FloatArray:
+    """Differences (point, dof) from the amplitudes of a curve to those of another at the same parameter.
+
+    z, direction (point, unknown + 1): the parameter is the last. change (point, 1 + dof): from each point to
+    one of the other curve, of the parameter, relative, and of the amplitudes in their unit, in which the
+    differences are, too. growth (point, dof) is that of the amplitudes along the curve. NaN as of `Beside`.
+    """
+    i: cython.Py_ssize_t
+    d: cython.Py_ssize_t
+    n: cython.Py_ssize_t = z.shape[1] - 1
+    count: cython.Py_ssize_t = place.shape[0]
+    dofs: cython.Py_ssize_t = amplitude.shape[1]
+    along, across = np.empty((4, count)), np.empty((2, count, dofs))
+    out, differences = np.empty((count, dofs)), np.empty((count, 1 + dofs))
+    moved: cython.double[:, ::1] = along  # the other's parameter, its rate; the first's, its sign of that
+    other: cython.double[:, :, ::1] = across  # its amplitudes and their rates
+    off: cython.double[:, ::1] = differences  # of the parameter and the amplitudes
+    found: cython.double[:, ::1] = out
+    for i in range(count):
+        moved[0, i], moved[2, i] = z[i, n] * (1.0 + change[i, 0]), z[i, n]
+        moved[3, i] = 1.0 if direction[i, n] > 0.0 else (-1.0 if direction[i, n] < 0.0 else 0.0)
+        off[i, 0] = moved[0, i] - z[i, n]
+        for d in range(dofs):
+            other[0, i, d] = amplitude[i, d] + unit[i, d] * change[i, 1 + d]
+            off[i, 1 + d] = other[0, i, d] - amplitude[i, d]
+    for i in range(count):
+        moved[1, i] = direction[i, n] + slope(place, off, i, 0)
+        for d in range(dofs):
+            other[1, i, d] = growth[i, d] + slope(place, off, i, 1 + d)
+    Beside(place, along[0], along[1]).values(along[2], along[3], across[0], across[1], out)
+    for i in range(count):
+        for d in range(dofs):
+            found[i, d] = (found[i, d] - amplitude[i, d]) / unit[i, d]
+    return out
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def slope(
+    place: cython.double[::1], value: cython.double[:, ::1], i: cython.Py_ssize_t, j: cython.Py_ssize_t
+) -> cython.double:
+    """Rate of change at a point, the mean of those of the pieces beside it."""
+    before: cython.Py_ssize_t = max(i - 1, 0)
+    after: cython.Py_ssize_t = min(i, place.shape[0] - 2)
+    return 0.5 * (secant(place, value, before, j) + secant(place, value, after, j))
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def secant(
+    place: cython.double[::1], value: cython.double[:, ::1], k: cython.Py_ssize_t, j: cython.Py_ssize_t
+) -> cython.double:
+    """From a point to the next; points may coincide."""
+    step: cython.double = place[k + 1] - place[k]
+    return (value[k + 1, j] - value[k, j]) / (step if step > 0.0 else 1.0)
+
+
+def rises(
+    place: cython.double[::1],
+    amplitude: cython.double[:, ::1],
+    growth: cython.double[:, ::1],
+    moved: cython.double[:, ::1],
+    corner: cython.uchar[::1],
+    tops: cython.Py_ssize_t[::1],
+) -> FloatArray:
+    """By how much (dof,) a curve is higher between its tops and the points next to them than at its tops.
+
+    Its amplitudes (point, dof), with growth (point, dof), are moved (point, dof): they follow cubics, what
+    they are moved by straight lines. Nothing is told of what lies between a point and a corner.
+    """
+    d: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    part: cython.int
+    last: cython.Py_ssize_t = place.shape[0] - 1
+    highest = np.zeros(tops.shape[0])
+    out: cython.double[::1] = highest
+    for d in range(tops.shape[0]):
+        before: cython.Py_ssize_t = tops[d]
+        after: cython.Py_ssize_t = tops[d]
+        now: cython.double = amplitude[tops[d], d] + moved[tops[d], d]
+        while before >= 0 and place[before] >= place[tops[d]]:  # points may coincide
+            before -= 1
+        while after < last and place[after + 1] <= place[tops[d]]:
+            after += 1
+        for k in (before, after):
+            if k < 0 or k >= last or corner[k] or corner[k + 1] or isnan(moved[k, d] + moved[k + 1, d]):
+                continue
+            length: cython.double = place[k + 1] - place[k]
+            begin: cython.double = growth[k, d] * length
+            end: cython.double = growth[k + 1, d] * length
+            for part in range(1, PARTS):
+                x: cython.double = cython.cast(cython.double, part) / PARTS
+                more: cython.double = moved[k, d] * (1.0 - x) + moved[k + 1, d] * x
+                more += cubic(amplitude[k, d], amplitude[k + 1, d], begin, end, x)
+                out[d] = max(out[d], more - now)
+    return highest
