@@ -17,10 +17,12 @@ from fcm.continuation.roots import Sought
 if cython.compiled:
     from cython.cimports.fcm.continuation.margins import NEARLY_GREATEST, RISE
     from cython.cimports.fcm.continuation.prediction import along
+    from cython.cimports.fcm.continuation.problem import DEAR
     from cython.cimports.fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
 else:
     from fcm.continuation.margins import NEARLY_GREATEST, RISE
     from fcm.continuation.prediction import along
+    from fcm.continuation.problem import DEAR
     from fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
 
 SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
@@ -146,7 +148,7 @@ def within(front: Front, limit: float, values: list[float], greatest: FloatArray
     here: Place = front.here
     there: Place = front.there
     events = []
-    dear: cython.bint = front.problem.soft or front.problem.dear
+    dear: cython.bint = front.problem.soft or front.problem.unknowns >= DEAR  # what lies between helps
     folds: cython.bint = here.tangent[n] * there.tangent[n] < 0.0
     peaks = [k for k in range(front.problem.outputs) if turns(here, there, k, most[k])]
     looks = Looks(front) if dear and (folds or peaks) else None

@@ -1,3 +1,4 @@
+cdef int DEAR
 cdef int NONE
 
 cdef class Problem:

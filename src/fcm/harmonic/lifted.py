@@ -20,6 +20,7 @@ GRADUAL = (0.1, 0.25, 0.45, 0.7, 1.0)  # parts of the equations' change, where a
 DEAR = cython.declare(cython.int, 240)
 # unknowns from which on a Jacobian takes far longer than the residual: those of several contacts
 MANY = cython.declare(cython.int, 100)
+SLIGHT = cython.declare(cython.double, 0.02)  # a step so short that the Jacobian hardly changes along it
 TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
 
 
@@ -146,7 +147,7 @@ class Lifted:
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()
-            if self.many and self.again(first):
+            if (self.many or step < SLIGHT) and self.again(first):
                 return newton.direct()
             before = step
         return False

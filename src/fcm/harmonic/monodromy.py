@@ -78,11 +78,14 @@ class Monodromy(Disturbances):
         """(2 modes + memories, the same): only contacts that stick when the period begins remember."""
         c: cython.int
         i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
         row: cython.Py_ssize_t = 2 * self.modes
         columns: cython.Py_ssize_t = row + self.memories
         made = np.empty((columns, columns))
         out: cython.double[:, ::1] = made
-        out[:row, :] = self.X[:row, :columns]
+        for j in range(row):
+            for i in range(columns):
+                out[j, i] = self.X[j, i]
         for c in range(self.contacts):
             if self.transitions.remembers[c]:
                 for i in range(columns):
@@ -95,13 +98,14 @@ class Monodromy(Disturbances):
     def begin(self) -> cython.int:
         """The disturbances to be followed, before the first event."""
         i: cython.int
+        j: cython.int
         c: cython.int
         self.memories = 0
-        self.state[:] = self.transitions.state
-        self.X[:, :] = 0.0
-        for i in range(2 * self.modes):
-            self.X[i, i] = 1.0
+        for i in range(self.X.shape[0]):
+            for j in range(self.X.shape[1]):
+                self.X[i, j] = 1.0 if i == j and i < 2 * self.modes else 0.0
         for c in range(self.contacts):
+            self.state[c] = self.transitions.state[c]
             if self.transitions.remembers[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1

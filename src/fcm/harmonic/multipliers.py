@@ -88,11 +88,12 @@ class Multipliers:
         of the balanced harmonics.
         """
         fine, plain, omega = self.fine.transitions, self.plain.transitions, float(z[-1])
-        if not self.see(plain, z):
-            return UNKNOWN
-        if plain.moving + plain.held == 0:
-            return PASSIVE  # nor does the finer motion, which has no further harmonics
         self.finer.at(z)
+        if self.finer.shift == 0.0:
+            if not self.see(plain, z):
+                return UNKNOWN
+            if plain.moving + plain.held == 0:
+                return PASSIVE  # nor does the finer motion, which has no further harmonics
         if not self.see(fine, self.finer.x):
             return UNKNOWN
         values = self._values(self.fine, omega)
@@ -113,7 +114,7 @@ class Multipliers:
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
             return even(fine, fine, turning)
-        values = self._values(self.plain, float(z[-1]))
+        values = self._values(self.plain, float(z[-1])) if self.see(self.plain.transitions, z) else None
         if values is None:
             return UNKNOWN
         plain = Spectrum(values)
