@@ -44,10 +44,14 @@ def lost_along(
     system: System, path: Path, crossings: Sequence[Crossing], accuracy: float = 0.0
 ) -> list[Lost]:
     """Errors of the crossings of a path, which may be as large as accuracy."""
-    return [_lost(system, path, one, accuracy) for one in crossings]
+    known: dict[tuple[int, ...], _Beside] = {}
+    return [_lost(system, path, one, accuracy, known) for one in crossings]
 
 
-def _lost(system: System, path: Path, one: Crossing, accuracy: float) -> Lost:
+def _lost(
+    system: System, path: Path, one: Crossing, accuracy: float, known: dict[tuple[int, ...], _Beside]
+) -> Lost:
+    """Of one; known are the curves of more harmonics that others have been looked for on."""
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     corrector = corrector_of(system)
@@ -55,8 +59,9 @@ def _lost(system: System, path: Path, one: Crossing, accuracy: float) -> Lost:
     more = corrector.ranking.most()
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
-    beside = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system)
-    found = beside.crossing(one, PART * accuracy)
+    if more not in known:
+        known[more] = _Beside(system.with_harmonics(more), path, corrector.lifted(more), system)
+    found = known[more].crossing(one, PART * accuracy)
     return Lost(one.frequency, abs(found / one.frequency - 1.0), more)
 
 
