@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import cython
 import numpy as np
-from cython.cimports.libc.math import fabs, sqrt
+from cython.cimports.libc.math import atan2, ceil, cos, fabs, hypot, sin, sqrt
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.motion import EPSILON, LOAD, LOAD_RATE, Motion
@@ -21,6 +21,7 @@ else:
 # of the value h^4 / 384 at most, of the slope h^3 sqrt(3) / 216.
 VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)
 SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)
+PI = cython.declare(cython.double, 3.141592653589793)
 DEEPEST = cython.declare(cython.int, 60)  # halvings; at half of them rounding has long been reached
 SHORTEST = cython.declare(cython.double, 1e-15)  # [rad] an interval that is not halved further
 
@@ -57,6 +58,9 @@ class Crossings:
         self.bounds()
         self.sign = 0
         start: cython.int = self.definite_node()
+        if self.motion.highest == 1 and row != LOAD:
+            _of_one(self, self.motion, self.motion.first + start * self.motion.step)
+            return
         for j in range(start, start + self.motion.nodes):
             self.interval(j)
 
@@ -123,14 +127,7 @@ class Crossings:
                 value, slope = self.motion.evaluate(row, middle)
                 self.stack[depth, 0], self.stack[depth, 1], self.stack[depth, 2] = middle, value, slope
 
-    def proved(
-        self,
-        length: float,
-        g_0: float,
-        d_0: float,
-        g_1: float,
-        d_1: float,
-    ) -> bool:
+    def proved(self, length: float, g_0: float, d_0: float, g_1: float, d_1: float) -> bool:
         """Whether the row has no zero inside, or is monotone, or is nothing but rounding."""
         error: float = self.fourth * length * length * length
         b_1: float = g_0 + length * d_0 / 3.0
@@ -171,10 +168,7 @@ class Crossings:
     ) -> float:
         """Where a row takes a value, between angles where it is on different sides of it: Newton, bracketed.
 
-        Parameters
-        ----------
-        g_low, g_high
-            Row minus level at both ends; not zero, but the first where the row turns in between.
+        g_low, g_high: row minus level there; not zero, but the first where the row turns in between.
         """
         up: bool = g_high > 0.0
         length: float = high - low
@@ -202,6 +196,25 @@ class Crossings:
             if high - low <= EPSILON * fabs(x):
                 return x
         return x
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def _of_one(found: Crossings, motion: Motion, begin: float) -> cython.void:
+    """Append those of a rate a cos(theta) - b sin(theta), within a turn from an angle; see `search`."""
+    i: cython.int
+    a: float = motion.re[found.row, 0]
+    b: float = motion.im[found.row, 0]
+    angle: float = atan2(a, b)
+    angle += PI * ceil((begin - angle) / PI)
+    falls: cython.int = a * sin(angle) + b * cos(angle) > 0.0
+    for i in range(2 if hypot(a, b) > found.noise else 0):  # noqa: B007
+        kind: cython.int = found.falling if falls else found.rising
+        if kind >= 0 and not found.open[(motion.node_before(angle) + 2 * motion.nodes) % motion.nodes]:
+            found.angle[found.count], found.kind[found.count] = angle, kind
+            found.count += 1
+        angle, falls = angle + PI, 1 - falls
 
 
 def _cubic(g_0: float, d_0: float, g_1: float, d_1: float) -> float:
