@@ -107,8 +107,7 @@ class Crossings:
         ):
             self.open[left] = g < -self.noise and self.motion.at[row, right] < -self.noise
         depth: cython.int = 0
-        self.stack[0, 0] = begin + self.motion.step
-        self.stack[0, 1] = self.motion.at[row, right]
+        self.stack[0, 0], self.stack[0, 1] = begin + self.motion.step, self.motion.at[row, right]
         self.stack[0, 2] = self.motion.at[row + 1, right]
         while depth >= 0:
             end: float = self.stack[depth, 0]
@@ -146,8 +145,7 @@ class Crossings:
             return
         sign: cython.int = 1 if value > 0.0 else -1
         kind: cython.int = self.rising if sign > 0 else self.falling
-        # a polynomial has no more zeros than there is room for, so nothing is lost
-        if sign == -self.sign and kind >= 0 and self.count < self.capacity:
+        if sign == -self.sign and kind >= 0 and self.count < self.capacity:  # which all zeros have
             self.angle[self.count] = self.root(
                 self.row, 0.0, self.last, self.last_value, self.last_slope, theta, value, slope
             )
@@ -166,20 +164,20 @@ class Crossings:
         g_high: float,
         d_high: float,
     ) -> float:
-        """Where a row takes a value, between angles where it is on different sides of it: Newton, bracketed.
+        """Where a row takes a value, between angles where it is on different sides of it: Halley, bracketed.
 
         g_low, g_high: row minus level there; not zero, but the first where the row turns in between.
         """
         up: bool = g_high > 0.0
         length: float = high - low
         # near an end where it turns, the sign of the row is that of a rounding error
-        floor: float = 0.0
-        if g_low == 0.0:
-            floor = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
+        rounding: float = 4.0 * EPSILON * (self.motion.limit_bound[0] + self.motion.limit_bound[1])
+        floor: float = rounding if g_low == 0.0 else 0.0
         x: float = low + length * _cubic(g_low, length * d_low, g_high, length * d_high)
-        i: cython.int
-        for i in range(100):  # noqa: B007
-            value, slope = self.motion.evaluate(row, x)
+        third: float = 2.0 * self.motion.highest  # derivative, relative to the second: twice its bound
+        for _ in range(100):
+            c, s = cos(x), sin(x)
+            slope, value = self.motion.rate_and_value(row, row, c, s)
             value -= level
             if value == 0.0:
                 return x
@@ -187,10 +185,15 @@ class Crossings:
                 high = x
             else:
                 low = x
-            step: float = -value / slope if (slope > 0.0) == up and slope != 0.0 else high - low
+            step: float = high - low
+            if (slope > 0.0) == up and slope != 0.0:
+                step = -value / slope
+                part: float = 0.5 * step * self.motion.bend(row, c, s) / slope
+                step /= 1.0 + part if fabs(part) < 0.5 else 1.0
+            rest: float = (3.0 * self.curvature + third * fabs(slope)) * fabs(step) * step * step
             if not low < x + step < high:
                 step = 0.5 * (low + high) - x
-            elif self.curvature * step * step <= EPSILON * fabs(slope):
+            elif self.curvature * rest <= 6.0 * EPSILON * slope * slope:
                 return x + step
             x += step
             if high - low <= EPSILON * fabs(x):

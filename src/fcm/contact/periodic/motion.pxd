@@ -17,3 +17,4 @@ cdef class Motion:
     cdef (double, double) evaluate(self, int row, double theta) noexcept nogil
     cdef (double, double) rate_and_value(self, int row, int other, double c_1, double s_1) noexcept nogil
     cdef int node_before(self, double theta) noexcept nogil
+    cdef double bend(self, int row, double c_1, double s_1) noexcept nogil

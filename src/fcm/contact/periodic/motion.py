@@ -228,6 +228,23 @@ class Motion:
             value += self.re[other, k] * c - self.im[other, k] * s
         return slope, value
 
+    def bend(self, row: cython.int, c_1: float, s_1: float) -> float:
+        """Second derivative of a row at an angle, of which the cosine and the sine are given."""
+        c: float = c_1
+        s: float = s_1
+        turned: float
+        bend: float = 0.0
+        h: cython.int = 1
+        k: cython.int
+        for k in range(self.count):
+            while h < self.number[k]:
+                turned = c * c_1 - s * s_1
+                s = s * c_1 + c * s_1
+                c = turned
+                h += 1
+            bend -= self.order[k] * self.order[k] * (self.re[row, k] * c - self.im[row, k] * s)
+        return bend
+
     def node_before(self, theta: float) -> cython.int:
         """Number of the last node at or before an angle; not reduced to one turn."""
         return cython.cast(cython.int, floor((theta - self.first) / self.step))
