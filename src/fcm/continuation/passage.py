@@ -75,10 +75,11 @@ class Passage:
         if quiet(self.front, self.stops, self.most):
             return False
         for event in events.within(self.front, limit, self.values, self.greatest):
-            ends = event.mark & Mark.STATION and event.z[self.n] in (self.low, self.high)
-            mark = Mark.END if ends else event.mark
+            mark: cython.long = event.mark
+            ends: cython.bint = mark & STATION and event.z[self.n] in (self.low, self.high)
+            mark = END if ends else mark
             self.trail.put(event.z, event.direction, mark, event.orientation, event.shift)
-            if mark & Mark.STATION and self.been():
+            if mark & STATION and self.been():
                 self.around = True
             if ends or self.around:
                 return True

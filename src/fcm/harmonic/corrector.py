@@ -21,7 +21,7 @@ SETTLED = 0.05  # which it has when a round changes it by less than this part of
 # evaluations times the square of the unknowns, some half second of work, for points that are not found
 FRUITLESS = cython.declare(cython.double, 4e7)
 MOST = 16  # balances, and correctors, that are kept for the next system,
-MANY = 64  # and of balances so many, where each is small
+MANY = 128  # and of balances so many, where each is small: curves of a sweep ask for some eighty sets
 NAN = cython.declare(cython.double, float("nan"))
 
 Spare = dict[tuple[int, ...], list[Lifted]]  # balances by their harmonics

@@ -102,6 +102,23 @@ class Spectrum:
         return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
 
 
+def apart(verdict: Verdict) -> float:
+    """[rad] that multipliers which are not small have to turn at least until two of them meet."""
+    value: cython.doublecomplex
+    angle: cython.double
+    k: cython.Py_ssize_t
+    angles = []
+    for value in verdict.values:
+        angle = fabs(atan2(value.imag, value.real))
+        if angle > 0.0 and hypot(value.real, value.imag) > FAR_FROM_GROWTH:
+            angles.append(angle)
+    angles.sort()
+    nearest: cython.double = PI - angles[len(angles) - 1] if angles else INFINITY
+    for k in range(len(angles) - 2):
+        nearest = min(nearest, angles[k + 2] - angles[k])
+    return nearest
+
+
 def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     """Verdict of two approximations to a spectrum whose number of real multipliers above 1 is even.
 

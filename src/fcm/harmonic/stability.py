@@ -222,20 +222,18 @@ def _runs(flags: npt.NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
 
 def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
     """Whether three verdicts agree, with growths so nearly on a line that none between has another sign."""
-    verdicts = (one, middle, other)
-    if all(math.isnan(v.stable) for v in verdicts):
-        return True
-    if not one.stable == middle.stable == other.stable:
-        return False
+    stable, growth = (one.stable, middle.stable, other.stable), (one.growth, middle.growth, other.growth)
+    if not stable[0] == stable[1] == stable[2]:
+        return math.isnan(stable[0]) and math.isnan(stable[1]) and math.isnan(stable[2])
     # what is unstable is no less so by a flip besides
-    if one.stable == 1.0 and min(v.before_flip for v in verdicts) < FLIP_NEAR:
+    if stable[0] == 1.0 and min(one.before_flip, middle.before_flip, other.before_flip) < FLIP_NEAR:
         return False
-    safe = max(v.growth for v in verdicts) < SAFE
+    safe = max(growth) < SAFE
     if not safe and not one.held == middle.held == other.held:
         return False
-    if one.stable == 1.0 and (safe or any(v.passive for v in verdicts)):
+    if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
         return True
-    a, b, c = (max(v.growth, ENOUGH) for v in verdicts)
+    a, b, c = (max(size, ENOUGH) for size in growth)
     return abs(b - 0.5 * (a + c)) < DEVIATION * min(abs(a), abs(b), abs(c))
 
 

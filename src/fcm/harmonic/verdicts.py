@@ -16,9 +16,9 @@ from fcm.continuation import Between, Mark, Path
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.inserted import Inserted
 from fcm.harmonic.multipliers import far_above, multipliers_of
-from fcm.harmonic.spectrum import SMALL, Verdict
+from fcm.harmonic.spectrum import SMALL, Verdict, apart
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import MANY, Seen, apart, seen
+from fcm.harmonic.windows import MANY, Seen, seen
 from fcm.scene.model import FloatArray
 
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not

@@ -11,7 +11,6 @@ so that the parabola through three places tells where the least value is, and wh
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Sequence
 from functools import lru_cache
@@ -20,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.spectrum import SMALL, Verdict
+from fcm.harmonic.spectrum import Verdict
 
 DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,
 CLOSER = 0.5  # and this part of it where the way was divided: differences fall by squares, errors by cubes
@@ -39,16 +38,6 @@ class Seen(NamedTuple):
     growth: float
     flip: float  # logarithms of the products
     pair: float
-
-
-def apart(verdict: Verdict) -> float:
-    """[rad] that multipliers which are not small have to turn at least until two of them meet."""
-    angles = [abs(cmath.phase(value)) for value in verdict.values if abs(value) > SMALL]
-    angles = sorted(angle for angle in angles if angle > 0.0)
-    meetings = [math.pi - angle for angle in angles[-1:]]
-    for one, other in zip(angles, angles[2:], strict=False):
-        meetings.append(other - one)
-    return min(meetings, default=math.inf)
 
 
 def seen(length: float, verdict: Verdict) -> Seen:
