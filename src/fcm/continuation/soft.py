@@ -95,7 +95,6 @@ class Soft:
                 continue
             if step > SHARP:
                 step = max(SHARP, step * within(growth(front.newton.moved, front.prediction.cubic), *REFUSED))
-                front.prediction.cubic = False
                 continue
             reach = ahead(front, step)
             if reach < min(step, TOUCHED):
