@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from fcm.motion import energy, simulate
+from fcm.motion.borne import borne
 
 from .cases import one_mode, two_contacts, yang
 
@@ -25,3 +26,10 @@ def test_energy_balances_at_any_stiffness(stiffness, changes):
     scene = one_mode(n_0=1.0, **dict.fromkeys(changes.split(), stiffness))
     balance = energy(simulate(scene, 1.1, 1.0 if stiffness > 1e7 else 3.0))
     assert balance.error < 1e-10
+
+
+def test_what_slip_takes_of_contacts_is_that_of_the_balance_and_is_not_added_up():
+    motion = simulate(two_contacts(), 1.1, 3)
+    once, again = borne(motion.cycles), borne(motion.cycles)
+    assert once[:, 3].sum() * 3.0 == pytest.approx(energy(motion).slip, rel=1e-12)
+    assert (once == again).all() and once[:, 3].sum() > 0.0

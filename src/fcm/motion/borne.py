@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.motion.cycle import Cycle
-from fcm.motion.energy import powers_of
 from fcm.scene.model import FloatArray
 
 
@@ -32,23 +31,22 @@ def borne(cycles: Sequence[Cycle]) -> FloatArray:
     >>> borne([orbit.cycle]).round(3)
     array([[11.715,  4.686, 14.069, 23.449]])
     """
-    greatest = np.max([_greatest(cycle) for cycle in cycles], axis=0)
-    slip = np.sum([_slip(cycle) for cycle in cycles], axis=0)
-    periods = sum(cycle.duration for cycle in cycles) / cycles[0].system.period
-    together: FloatArray = np.concatenate((greatest, slip / periods)).T
-    return together
+    out = _of(cycles[0])
+    for cycle in cycles[1:]:
+        more = _of(cycle)
+        out[:, :2], out[:, 2:] = np.maximum(out[:, :2], more[:, :2]), out[:, 2:] + more[:, 2:]
+    out[:, 2:] /= sum(cycle.duration for cycle in cycles) / cycles[0].system.period
+    return out
 
 
-def _greatest(cycle: Cycle) -> FloatArray:
-    """The greatest normal and friction force of each contact: (2, contact)."""
+def _of(cycle: Cycle) -> FloatArray:
+    """Of each contact the greatest forces, and slip and energy of all the cycle: (contact, 4)."""
     system, each = cycle.system, len(cycle.system.contacts)
     system.run(system.forces, cycle.segments)
+    system.run(system.slips, cycle.segments)
     least, greatest = np.asarray(system.forces.least), np.asarray(system.forces.greatest)
-    load = np.maximum(system.preload + greatest[:each], 0.0)
-    return np.array([load, np.maximum(np.abs(least[each:]), np.abs(greatest[each:]))])
-
-
-def _slip(cycle: Cycle) -> FloatArray:
-    """The way that each contact slips, and the energy that this takes: (2, contact)."""
-    powers = powers_of(cycle, everywhere=False)
-    return np.array([powers.paths, powers.slips])
+    out = np.empty((each, 4))
+    out[:, 0] = np.maximum(system.preload + greatest[:each], 0.0)
+    out[:, 1] = np.maximum(np.abs(least[each:]), np.abs(greatest[each:]))
+    out[:, 2], out[:, 3] = system.slips.paths, system.slips.slips
+    return out

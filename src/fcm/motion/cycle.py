@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -31,7 +32,7 @@ class Cycle:
     def states(self) -> tuple[str, ...]:
         """For each contact the sequence of its states, such as 'EPEN', as if the cycle repeated."""
         lasting = np.asarray(self.segments.states)[np.asarray(self.segments.length) > 0.0]
-        return tuple(_sequence([LETTERS[code] for code in codes]) for codes in lasting.T.tolist())
+        return _sequences(lasting.tobytes(), lasting.shape[1])
 
     def values(self, rows: FloatArray, times: FloatArray) -> FloatArray:
         """rows @ y at increasing times [s] from the start of the cycle: (time, row)."""
@@ -41,6 +42,12 @@ class Cycle:
             self.system.make(np.asarray(self.segments.states)[steps.at + 1])
         values: FloatArray = out @ rows.T
         return values
+
+
+@lru_cache
+def _sequences(states: bytes, contacts: int) -> tuple[str, ...]:
+    """The sequence of each contact, from the codes of all in each segment; most repeat along a curve."""
+    return tuple(_sequence([LETTERS[code] for code in states[j::contacts]]) for j in range(contacts))
 
 
 def _sequence(letters: list[str]) -> str:

@@ -52,11 +52,11 @@ def energy(motion: Motion) -> Energy:
     return Energy(work, slip, damping, stored, turnover + abs(stored))
 
 
-def powers_of(cycle: Cycle, everywhere: bool = True) -> Powers:
-    """The integrals of the powers over a cycle; or of what slip takes alone, which is sooner found."""
+def powers_of(cycle: Cycle) -> Powers:
+    """The integrals of the powers over a cycle."""
     system, modal = cycle.system, cycle.system.scene.modal
     wave, damper = system.wave, 2.0 * modal.mass * modal.damping * modal.frequency
-    powers = Powers(system.flows, wave.real.copy(), wave.imag.copy(), system.static, damper, everywhere)
+    powers = Powers(system.flows, wave.real.copy(), wave.imag.copy(), system.static, damper)
     system.run(powers, cycle.segments)
     return powers
 

@@ -12,10 +12,12 @@ from fcm.scene.model import FloatArray
 if cython.compiled:
     from cython.cimports.fcm.motion.flow import Flows
     from cython.cimports.fcm.motion.polynomial import summed
+    from cython.cimports.fcm.motion.segments import Segments
     from cython.cimports.fcm.motion.walk import Walk
 else:
     from fcm.motion.flow import Flows
     from fcm.motion.polynomial import summed
+    from fcm.motion.segments import Segments
     from fcm.motion.walk import Walk
 
 NODES = 8  # integrate exactly polynomials of degree 15
@@ -54,11 +56,22 @@ class Powers(Walk):
     ) -> None:
         Walk.__init__(self, flows)
         self._everywhere = everywhere
-        self.work = self.slip = self.damping = self.turnover = 0.0
         self._sine, self._cosine, self._static, self._damper = sine, cosine, static, damper
         self._y, self._terms = np.zeros((2, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._nodes, self._weights = _ON_ONE
         self.slips, self.paths = np.zeros((2, flows.contacts))
+        self._none()
+
+    def begins(self, segments: Segments) -> None:
+        """See `Walk`; nothing is done yet."""
+        Walk.begins(self, segments)
+        self._none()
+
+    def _none(self) -> None:
+        """Nothing was done."""
+        self.work = self.slip = self.damping = self.turnover = 0.0
+        self.slips[:] = 0.0
+        self.paths[:] = 0.0
 
     @cython.cfunc
     @cython.nogil

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import isfinite
 from threading import local
+from typing import Any
 from weakref import ref
 
 import numpy as np
@@ -18,6 +19,7 @@ from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
 from fcm.motion.matrices import has_friction, held_as_springs, held_limits, matrices_of
+from fcm.motion.powers import Powers
 from fcm.motion.rows import Rows
 from fcm.motion.scan import Scan
 from fcm.motion.segments import Segments
@@ -27,6 +29,7 @@ from fcm.scene.model import FloatArray, Scene
 from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
+OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
 
 
 class System:
@@ -40,6 +43,9 @@ class System:
 
     def __init__(self, scene: Scene, omega: float) -> None:
         self.scene, self.omega = scene, _checked(omega)
+        if known := _LATEST.known(scene):
+            self.__dict__.update(known)
+            return
         self.contacts = scene.contacts
         modal = scene.modal
         m, c = modal.mass.size, len(scene.contacts)
@@ -62,9 +68,13 @@ class System:
         self.sticking[:, self.q], self.sticking[:, self.f] = self.k_u[:, None] * self.tangential, -np.eye(c)
         self.rough = [has_friction(contact) for contact in scene.contacts]
         self.limit_rows = self._limit_rows()
-        kernels = _kernels_of(scene, self._kernels)
-        self.flows, self._march, self._derivative, self._along = kernels[:4]
-        self.displaced, self.limits, self.forces, self.kept, self.integrals = kernels[4:]
+        self.flows = Flows(matrices_of(self))
+        self._march, self._derivative = March(self.flows), Derivative(self.flows)
+        self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
+        none = np.zeros(m)
+        self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
+        self.displaced, self.limits, self.forces, self.kept = self._scans()
+        _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
 
     def at(self, omega: float) -> System:
         """The same scene at another frequency, with the same flows."""
@@ -123,14 +133,12 @@ class System:
         """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
         return self.preload + y[self.n]
 
-    def _kernels(self) -> _Kernels:
-        flows, wide = Flows(matrices_of(self)), self.size - 2
-        displacements = np.zeros((self.scene.modal.shapes.shape[1], wide))
+    def _scans(self) -> list[Scan]:
+        """Of the displacements, of the limits of slip, of the forces, and of what held contacts keep."""
+        displacements = np.zeros((self.scene.modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = self.scene.modal.shapes.T
         rows = displacements, self.limit_rows, self._force_rows(), held_limits(self)
-        moves, limits, forces, kept = (Scan(flows, Rows(each)) for each in rows)
-        kernels = March(flows), Derivative(flows), Directional(flows)
-        return flows, *kernels, moves, limits, forces, kept, Integrals(flows)
+        return [Scan(self.flows, Rows(each)) for each in rows]
 
     def _force_rows(self) -> FloatArray:
         """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""
@@ -149,35 +157,28 @@ class System:
         return rows.reshape(2 * c, self.size - 2)
 
 
-_Kernels = tuple[Flows, March, Derivative, Directional, Scan, Scan, Scan, Scan, Integrals]
-
-
 class _Latest(local):
-    """The kernels of the scene that this thread came to last, which is still there."""
+    """What the systems of the scene that this thread came to last have in common, as long as that is there:
+    flows are dear to make."""
 
     of: Callable[[], Scene | None] = staticmethod(lambda: None)
-    kernels: _Kernels | None = None
+    common: dict[str, Any] | None = None
 
-    def keep(self, scene: Scene, kernels: _Kernels) -> None:
+    def known(self, scene: Scene) -> dict[str, Any] | None:
+        """That of a scene, if it is the one that was come to last."""
+        return self.common if self.of() is scene else None
+
+    def keep(self, scene: Scene, common: dict[str, Any]) -> None:
         """Until the scene goes, or another comes."""
-        self.of, self.kernels = ref(scene, lambda gone: self.drop(gone)), kernels
+        self.of, self.common = ref(scene, lambda gone: self.drop(gone)), common
 
     def drop(self, gone: object) -> None:
-        """Those of a scene that goes."""
+        """That of a scene that goes."""
         if self.of is gone:
-            self.kernels = None
+            self.common = None
 
 
 _LATEST = _Latest()
-
-
-def _kernels_of(scene: Scene, made: Callable[[], _Kernels]) -> _Kernels:
-    """Those of a scene, the same as long as it is the one that is asked for: flows are dear to make."""
-    kernels = _LATEST.kernels
-    if kernels is None or _LATEST.of() is not scene:
-        kernels = made()
-        _LATEST.keep(scene, kernels)
-    return kernels
 
 
 def _checked(omega: float) -> float:

@@ -151,8 +151,9 @@ class Shot:
             by_state[:, system.q] += by_state[:, places] @ (
                 system.k_u[stuck, None] * system.tangential[stuck]
             )
-            rest = np.delete(np.arange(self.x.size), places)
-            by_state, scale = by_state[np.ix_(rest, rest)], scale[rest]
+            rest = np.ones(self.x.size, dtype=bool)
+            rest[places] = False
+            by_state, scale = by_state[rest][:, rest], scale[rest]
         scale = np.maximum(scale, LEAST * scale.max(initial=0.0))
         return _eigenvalues(by_state * (scale / scale[:, None]))
 
