@@ -7,9 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.harmonic.finer import beyond
 from fcm.harmonic.multipliers import Multipliers
+from fcm.harmonic.refined import Refined
+from fcm.harmonic.trace import traced
 from fcm.orbit import periodic
-from fcm.scene import Contact, Force, Modal, Scene
+from fcm.scene import Contact, Force, Modal, Scene, load_scene
 
 from .test_stability import _state, only, system
 
@@ -76,3 +79,26 @@ def test_a_verdict_in_doubt_is_that_of_forces_of_another_level():
 def _doubled(scene):
     (force,) = scene.forces
     return replace(scene, forces=(replace(force, amplitude=2.0 * force.amplitude),))
+
+
+def test_a_solution_with_many_harmonics_takes_few_jacobians():
+    """Against the equations themselves: but for what the balanced harmonics lacked, they are solved."""
+    scene = load_scene("blade").each_curve()[0]
+    of = system(scene, 1)
+    path, finer = traced(of).branches.paths[0], Multipliers(of, scene.frequency_range[1]).finer
+    refined = Refined(of, beyond([1]))
+    assert refined.balance.unknowns >= 300
+    found = taken = 0
+    for z in path.z[::20]:
+        finer.at(z)
+        if finer.shift == 0.0:  # nothing slips
+            continue
+        before = refined.newton.evaluations
+        there = refined.beside(z, finer.x)
+        if there is None:
+            continue
+        found, taken = found + 1, taken + refined.newton.evaluations - before
+        refined.homotopy.evaluate(there)
+        assert np.abs(np.asarray(refined.homotopy.residual) / there[:-1].max()).max() < 1e-10
+    assert found > 5
+    assert taken <= 2 * found, (taken, found)

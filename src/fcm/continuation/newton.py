@@ -27,6 +27,8 @@ CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian f
 HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
 SLIGHT = cython.declare(cython.double, 1e-3)  # of the most: a second step this short is no sign of failure
 CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
+KEPT = cython.declare(cython.int, 16)  # the same where to solve takes far less than to factor,
+SHRINKING = cython.declare(cython.double, 0.3)  # and each is at most this part of the one before
 # a step after which a last one takes the Jacobian from before it, and the direction is that from there
 SHORT = cython.declare(cython.double, 1e-5)
 COARSEST = cython.declare(cython.double, 1e-6)  # a longer step is none that rounding makes
@@ -50,8 +52,6 @@ class Newton(Bordered):
         Converged is what has an error below CLOSE, for convergence of the order 1.5, that of a force whose
         slope changes as a root.
         """
-        i: cython.Py_ssize_t
-        size: cython.Py_ssize_t = self.problem.unknowns + 1
         count: cython.int
         step: cython.double
         ratio: cython.double
@@ -70,8 +70,7 @@ class Newton(Bordered):
             worse: cython.double = HOPELESS if self.problem.soft or self.problem.dear else 2.0
             if not step < FAR or (count > 2 and step > worse * before and not noise):
                 return False
-            for i in range(size):
-                self.z[i] += self.scale[i] * self.delta[i]
+            _move(self)
             ratio = step / before
             # the first step says nothing of the convergence yet; that to a corner that is not seen never
             if self.problem.soft:
@@ -128,20 +127,7 @@ class Newton(Bordered):
     @cython.exceptval(-1, check=False)
     def chords(self, before: cython.double) -> cython.bint:
         """Whether z, to which a step has led, is on the curve; else it is moved on with the same Jacobian."""
-        i: cython.Py_ssize_t
-        count: cython.int
-        step: cython.double
-        for count in range(CHORDS):  # noqa: B007
-            self.problem.probe(self.z)
-            step = self.step()
-            if step < EXACT:
-                return True
-            if not step < 0.1 * before:
-                return False
-            for i in range(self.problem.unknowns + 1):
-                self.z[i] += self.scale[i] * self.delta[i]
-            before = step
-        return False
+        return _chords(self, before, CHORDS, 0.1)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -156,11 +142,57 @@ class Newton(Bordered):
 def _again(newton: Newton, before: cython.double) -> cython.bint:
     """Whether a step with the Jacobian from before the last, of a length, leads to the curve; else it is not
     taken. What it leaves is less by as much again."""
-    i: cython.Py_ssize_t
     newton.problem.probe(newton.z)
     step: cython.double = newton.step()
     if not step * step < CLOSE * before:
         return False
+    _move(newton)
+    return True
+
+
+def settle(newton: Newton, most: float) -> bool:
+    """As `correct` from a length of 1, where the direction does not matter: a Jacobian is kept as long as
+    steps with it shrink."""
+    count: cython.int
+    step: cython.double
+    before: cython.double = 1.0
+    newton.guess[:] = newton.z
+    for count in range(ITERATIONS):
+        if not newton.factor():
+            return False
+        step = newton.step()
+        if newton.too_far(step, before, most, count):
+            return False
+        _move(newton)
+        if step < SMALL or _chords(newton, step, KEPT, SHRINKING):
+            return bool(newton.direct())
+        before = step
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def _chords(newton: Newton, before: cython.double, most: cython.int, ratio: cython.double) -> cython.bint:
+    """Whether at most so many steps with the same Jacobian, each shorter than the one before by a ratio, lead
+    from z, to which a step has led, to the curve."""
+    count: cython.int
+    step: cython.double
+    for count in range(most):  # noqa: B007
+        newton.problem.probe(newton.z)
+        step = newton.step()
+        if step < EXACT:
+            return True
+        if not step < ratio * before:
+            return False
+        _move(newton)
+        before = step
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def _move(newton: Newton) -> cython.void:
+    """Take the step that is in delta."""
+    i: cython.Py_ssize_t
     for i in range(newton.problem.unknowns + 1):
         newton.z[i] += newton.scale[i] * newton.delta[i]
-    return True

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.newton import Newton, settle
 from fcm.harmonic.further import padded
 from fcm.harmonic.homotopy import Homotopy
 from fcm.harmonic.system import System
@@ -42,5 +42,5 @@ class Refined:
         newton = self.newton
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
-        found = newton.correct(1.0, FAR)
+        found = settle(newton, FAR)
         return np.array(newton.z) if found and newton.moved <= FAR else None
