@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fcm.continuation import Mark, Status
 from fcm.harmonic.choice import accurate, given
 from fcm.harmonic.system import System
 from fcm.scene import load_scene
@@ -36,3 +37,18 @@ def test_a_closed_branch_above_which_the_level_turns_is_found(highest):
     scene = load_scene(Path(__file__).parent / "scenes/between_levels.toml").each_curve()[0]
     there = amplitudes_at(given(System(scene, up_to(highest))), 1.266)
     assert min(np.abs(one / (9.174, 27.28) - 1.0).max() for one in there) < 5e-3
+
+
+@pytest.mark.parametrize("highest", [5, 7])
+def test_a_closed_branch_far_from_where_the_level_turns_is_found_and_traced_once(highest):
+    """At 1.3 rad/s a march of the contact law with steps of a fixed length settles at (1.107, 3.222, 4.367,
+    1.662) from 12 of 40 random states, and at less than a third of it from the others.
+
+    The branch is closed, from 1.2585 to 1.3581 rad/s; the level turns at 2.5 at 1 rad/s.
+    """
+    scene = load_scene(Path(__file__).parent / "scenes/far_isola.toml").each_curve()[0]
+    found = given(System(scene, up_to(highest)))
+    there = amplitudes_at(found, 1.3)
+    assert min(np.abs(one / (1.107, 3.222, 4.367, 1.662) - 1.0).max() for one in there) < 5e-3
+    (closed,) = (path for path in found.traced.branches.paths if path.status is Status.CLOSED)
+    assert len(closed.where(Mark.FOLD)) == 2

@@ -7,6 +7,7 @@ the frequencies at which the level was followed, and that none of them tells of 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -14,12 +15,14 @@ import numpy as np
 
 from fcm.continuation import Path
 from fcm.continuation.newton import Newton
+from fcm.harmonic.balance import Balance
 from fcm.harmonic.further import padded
 from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
-SHORT = 2.0  # times 1, and that part of it: between these a turn may come to 1 within a range
+SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
+STAGE = 1.25  # by stages, each of so many times the level
 ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on either side of that
 FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
@@ -54,8 +57,8 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
     """Stable solutions (unknown + 1,) at the level 1 beside turns short of it, at whatever frequencies.
 
     At a turn the balance F(x, omega, level) = 0 is singular in the displacements x alone. With the part of x
-    along the curve held, the frequency takes its place among the unknowns, and is found for the level 1. That
-    is beside a fold, of which one side at most is stable.
+    along the curve held, the frequency takes its place among the unknowns, and is found for other levels,
+    stage by stage, up to 1. That is beside a fold, of which one side at most is stable.
     """
     of = None
     for turn in turns:
@@ -66,9 +69,20 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
         newton.z[:], newton.scale[:] = turn.z, balance.scale
         along = turn.direction / np.asarray(balance.scale)
         newton.row[:] = along / np.linalg.norm(along)
-        if newton.correct(1.0) and newton.moved < FAR:
+        if _came(balance, newton, turn.level):
             of = of or multipliers_of(system, system.scene.frequency_range[1])
             yield from (z for z in _beside(newton) if of.verdict(z).stable == 1.0)
+
+
+def _came(balance: Balance, newton: Newton, level: float) -> bool:
+    """Whether a solution beside a turn, at a level, leads to one at the level 1."""
+    stages = max(math.ceil(abs(math.log(level)) / math.log(STAGE)), 1)
+    for k in range(stages - 1, -1, -1):
+        balance.load = level ** (k / stages)
+        if not newton.correct(1.0) or newton.moved >= FAR:
+            return False
+        newton.row[:] = newton.tangent
+    return True
 
 
 def _beside(newton: Newton) -> list[FloatArray]:
