@@ -58,3 +58,21 @@ def test_a_contact_that_never_slips_or_opens_is_linear():
     further = Further(found.system)
     assert further.linear(path.z).all()
     assert (further.shares(path.z, found.shown[0].amplitude) == 0.0).all()
+
+
+def test_a_harmonic_meets_a_mode_where_its_frequency_is_that_of_the_mode(response):
+    """The eleventh and the tenth meet that at 10 rad/s and lead there, each at the point next to that and at
+    those beside it; the ninth meets it where the contact is stuck, and does nothing."""
+    (path,), (shown,) = response.traced.branches.paths, response.shown
+    further, wanted = Further(response.system), set()
+    for harmonic in (11, 10, 9):
+        off = path.parameter - 10.0 / harmonic
+        for k in np.flatnonzero(off[:-1] * off[1:] < 0.0):
+            at = k if abs(off[k]) * path.parameter[k + 1] < abs(off[k + 1]) * path.parameter[k] else k + 1
+            (share,) = further.shares(path.z[[at]], shown.amplitude[[at]])
+            if harmonic > 9:
+                assert share[harmonic - 1] > 0.5 * share.max()
+                wanted |= {at - 1, at, at + 1}
+            else:
+                assert share.max() == 0.0
+    assert further.meetings(path.z, shown.amplitude).tolist() == sorted(wanted)

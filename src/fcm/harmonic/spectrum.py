@@ -107,13 +107,13 @@ def apart(verdict: Verdict) -> float:
     value: cython.doublecomplex
     angle: cython.double
     k: cython.Py_ssize_t
-    angles = []
+    angles: list[float] = []
     for value in verdict.values:
         angle = fabs(atan2(value.imag, value.real))
         if angle > 0.0 and hypot(value.real, value.imag) > FAR_FROM_GROWTH:
             angles.append(angle)
     angles.sort()
-    nearest: cython.double = PI - angles[len(angles) - 1] if angles else INFINITY
+    nearest: float = PI - angles[len(angles) - 1] if angles else INFINITY
     for k in range(len(angles) - 2):
         nearest = min(nearest, angles[k + 2] - angles[k])
     return nearest
