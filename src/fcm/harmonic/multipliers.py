@@ -46,7 +46,7 @@ class Multipliers:
     def __init__(self, system: System, highest: float, last: bool = False) -> None:
         """The last balances no further harmonics where the finer motion leaves a verdict in doubt."""
         linear = system.linear
-        self.highest, self.last = highest, last
+        self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
         self.contact = contact = np.zeros((self.contacts, 4))  # what all look at
         harmonics = [int(h) for h in system.harmonics]
@@ -59,12 +59,13 @@ class Multipliers:
         self.fine = Monodromy(stiffness, Transitions(contact, finer))
         self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
         self.eigenvalues = Eigenvalues(SMALL)
-        self.further: tuple[Refined, Multipliers] | None
+        self.further: tuple[Refined, Multipliers] | None = None
         self.take(system)
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
-        self.system, self.further = system, None
+        same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
+        self.system, self.further = system, self.further if same else None
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
 
@@ -135,6 +136,9 @@ class Multipliers:
             refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]))
             self.further = refined, type(self)(refined.system, self.highest, last=True)
         refined, judge = self.further
+        if refined.fewer is not self.system:
+            refined.take(self.system)
+            judge.take(refined.system)
         there = refined.beside(z, self.finer.x)
         return None if there is None else judge.verdict(there)
 

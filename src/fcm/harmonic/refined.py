@@ -19,7 +19,7 @@ class Refined:
     """`beside` a point of a system's balance is one of the balance with more harmonics; a workspace."""
 
     def __init__(self, system: System, more: Sequence[int]) -> None:
-        self.harmonics, self.more = system.harmonics, tuple(more)
+        self.harmonics, self.more, self.fewer = system.harmonics, tuple(more), system
         self.system = system.with_harmonics(self.more)
         self.balance = self.system.balance()
         self.homotopy = Homotopy(self.balance)
@@ -28,6 +28,12 @@ class Refined:
         self.newton.row[:] = np.eye(self.balance.unknowns + 1)[-1]  # holds the frequency
         balanced = np.isin(np.repeat([0, *self.more], [2, *[4] * len(self.more)]), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
+
+    def take(self, system: System) -> None:
+        """A system with the same structure and harmonics, whose contacts may be others."""
+        self.fewer, self.system = system, system.with_harmonics(self.more)
+        self.balance.laws = self.system.laws()
+        self.balance.largest[:] = 0.0
 
     def beside(self, z: FloatArray, x: FloatArray) -> FloatArray | None:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
