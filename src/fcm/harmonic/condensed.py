@@ -13,7 +13,6 @@ of the same determinant, and no worse conditioned at a fold.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
 from fcm.structure.receptance import Receptance
@@ -47,17 +46,28 @@ class Condensed:
         width = 2 * self.parts
         at = np.arange(self.contacts)[None, :, None] * width + self.order.reshape(self.parts, 1, 2)
         self.place = at.reshape(self.parts, self.ports)  # of each part and port among the unknowns
+        rank = self.parts * self.modes
+        # forces on ports by modes (contact, part port part, mode), the same by part, and the modes' answer
+        self.kept = (
+            np.empty((self.contacts, 2 * self.parts**2, self.modes)),
+            np.empty((self.parts, self.ports, rank)),
+            np.empty((self.parts, self.modes, rank)),
+        )
         self.ordered, self.b, self.r = tangent, np.empty((0, 0)), np.empty((0, 0))
         self.row, self.rho = self.b, 0.0
 
     def matrix(self, row: FloatArray, by: FloatArray, out: FloatArray) -> None:
         """Fill (rank + 1, rank + 1); row (unknown + 1,), by (unknown,) the derivative by the parameter."""
-        parts, modes, rank = self.parts, self.modes, self.parts * self.modes
+        parts, rank = self.parts, self.parts * self.modes
         self.b, self.row, self.rho = by[self.place], row[self.place], float(row[-1])
         self.ordered = self.tangent[:, self.order[:, None], self.order]
-        by_mode = self.ordered.reshape(self.contacts, -1, 2) @ self.pairs  # (contact, part port part, mode)
-        blocks = by_mode.reshape(self.contacts, parts, 2, parts * modes).transpose(1, 0, 2, 3)
-        product = self.answered(self.shapes @ blocks.reshape(parts, self.ports, parts * modes))
+        by_mode, blocks, product = (
+            self.kept
+        )  # of this size, memory of its own takes longer to have than to fill
+        np.matmul(self.ordered.reshape(self.contacts, -1, 2), self.pairs, out=by_mode)
+        sorted_by_part = by_mode.reshape(self.contacts, parts, 2, rank).transpose(1, 0, 2, 3)
+        blocks.reshape(parts, self.contacts, 2, rank)[:] = sorted_by_part
+        self.answer(blocks, product)
         out[:rank, :rank] = product.reshape(rank, rank)
         out[np.arange(rank), np.arange(rank)] += 1.0
         out[:rank, rank] = self.image(self.b).ravel()
@@ -80,14 +90,18 @@ class Condensed:
         """B x: what the modes answer to the forces' change, (part, mode)."""
         pairs = x.reshape(self.parts, self.contacts, 2).swapaxes(0, 1).reshape(self.contacts, -1, 1)
         force = (self.ordered @ pairs)[:, :, 0]
-        blocks = force.reshape(self.contacts, self.parts, 2).swapaxes(0, 1).reshape(self.parts, self.ports)
-        return self.answered((blocks @ self.shapes.T)[:, :, None])[:, :, 0]
+        blocks = force.reshape(self.contacts, self.parts, 2).swapaxes(0, 1)
+        out = np.empty((self.parts, self.modes, 1))
+        self.answer(blocks.reshape(self.parts, self.ports, 1), out)
+        return out[:, :, 0]
 
-    def answered(self, force: npt.NDArray[np.float64]) -> FloatArray:
-        """Compliances times forces on the modes, (part, mode, column)."""
-        out = np.empty_like(force)
-        out[0] = self.flexibility @ force[0]
-        re, im = (np.asarray(c)[:, :, None] for c in (self.seen.c_re, self.seen.c_im))
-        out[1::2] = re * force[1::2] - im * force[2::2]
-        out[2::2] = re * force[2::2] + im * force[1::2]
-        return out
+    def answer(self, force: FloatArray, out: FloatArray) -> None:
+        """Fill (part, mode, column) with what the modes answer to forces on the ports (part, port, column).
+
+        One product for both parts of a harmonic: sums of whole arrays would take longer than it.
+        """
+        re, im = (np.asarray(c)[:, :, None] * self.shapes for c in (self.seen.c_re, self.seen.c_im))
+        both = np.concatenate((np.concatenate((re, -im), 2), np.concatenate((im, re), 2)), 1)
+        columns, count = out.shape[2], len(both)
+        out[0] = self.flexibility @ (self.shapes @ force[0])
+        np.matmul(both, force[1:].reshape(count, -1, columns), out=out[1:].reshape(count, -1, columns))
