@@ -1,9 +1,10 @@
 """Exact curves of structures with many modes that hardly anything damps: what they take.
 
-The first 24 random scenes with seven modes or more, each mode with the damping ratio 1e-4. A curve has so
-many seconds, of a processor on which np.sin takes 10 ns; where that is not enough, it has at least the points
-found until then. Beside it stands what as many points take at one period of the motion and its derivative
-each. As a program: seconds, and ``peaks`` if the peaks, folds and jumps are wanted alone.
+The first 24 random scenes with seven modes or more, with the damping ratios of 1e-4 to 0.1 that are drawn for
+their modes, and with 1e-4 for each. A curve has so many seconds, of a processor on which np.sin takes 10 ns;
+where that is not enough, it has at least the points found until then. Beside it stands what as many points
+take at one period of the motion and its derivative each. As a program: seconds, ``drawn`` or 0.0001 for one
+of the two alone, and ``peaks`` if the peaks, folds and jumps are wanted alone.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from unit import SINE, sine
 
 MODES, DAMPING, SCENES = 7, 1e-4, 24
 AFTERWARDS = 4  # times as long as it has, after which a curve that has not ended is not waited for
+CUT_OFF = "not finished in"  # how the reason of a curve begins that has taken as long as it may
 MEASURED = 100  # points of a curve at which a period and its derivative are timed
 
 
@@ -45,11 +47,12 @@ class Taken(NamedTuple):
     bare: float  # [s] a period and its derivative at one of the points
 
 
-def taken(seed: int, limit: float, only: str | None) -> Taken:
-    """What the exact curve of a scene has come to in so many seconds here."""
+def taken(seed: int, limit: float, damping: float | None, only: str | None) -> Taken:
+    """What the exact curve of a scene has come to in so many seconds here; damping as drawn if it is None."""
     scene, groups = random_scene(seed), list[OrbitBranches]()
-    damping = np.full(scene.modal.mass.size, DAMPING)
-    scene = replace(scene, modal=replace(scene.modal, damping=damping))
+    if damping is not None:
+        alike = np.full(scene.modal.mass.size, damping)
+        scene = replace(scene, modal=replace(scene.modal, damping=alike))
 
     def noted(found: Sequence[OrbitBranches], *rest: Any) -> Curve:
         groups[:] = found
@@ -74,27 +77,37 @@ def _bare(groups: Sequence[OrbitBranches]) -> float:
     return (time.process_time() - begin) / len(some)
 
 
-def main(seconds: float, only: str | None = None) -> None:
+def main(seconds: float, damping: float | None, only: str | None) -> None:
     scale = 1e6 * sine() / SINE
     seeds = list(islice((k for k in count() if random_scene(k).modal.mass.size >= MODES), SCENES))
-    work = partial(taken, limit=seconds * scale, only=only)
+    work = partial(taken, limit=seconds * scale, damping=damping, only=only)
+    ratio = "those drawn" if damping is None else f"{damping:g}"
     print(f"{only or 'all points'} of the exact curves of {SCENES} random scenes with at least {MODES} modes")
-    print(f"and the damping {DAMPING:g}, each in {seconds:g} s (of which one takes {scale:.2f} s here)")
+    print(f"damping ratios: {ratio}; each in {seconds:g} s (of which one takes {scale:.2f} s here)")
     print("seed       s  points   folds   a period and its derivative [us], of all these points [s]")
-    done = more = 0
+    done = ended = more = 0
     for seed, found in in_time(work, seeds, int(AFTERWARDS * seconds * scale) + 1):
         if found is None:
             print(f"{seed:4d}  not waited for any longer, or failed", flush=True)
             continue
         took, bare = found.seconds / scale, found.bare / scale
-        done, more = done + (found.complete and took <= seconds), more + (found.points * bare > seconds)
+        by_itself = took <= seconds and not found.reason.startswith(CUT_OFF)
+        done, ended = done + (found.complete and by_itself), ended + (by_itself and not found.complete)
+        more += found.points * bare > seconds
         print(
             f"{seed:4d} {took:7.1f} {found.points:7d} {found.folds:7d} {1e6 * bare:10.0f} "
             f"{found.points * bare:10.1f}  {found.reason}",
             flush=True,
         )
-    print(f"{done} complete in {seconds:g} s; of {more} these points alone take more than that")
+    print(f"{done} complete in {seconds:g} s, {ended} at an end by then and not complete; of {more} these")
+    print("points alone take more than that", flush=True)
 
 
 if __name__ == "__main__":
-    main(float(sys.argv[1]) if sys.argv[1:] else 10.0, *sys.argv[2:3])
+    words = [word for word in sys.argv[2:] if word != "peaks"]
+    for each in words or ("drawn", DAMPING):
+        main(
+            float(sys.argv[1]) if sys.argv[1:] else 10.0,
+            None if each == "drawn" else float(each),
+            "peaks" if "peaks" in sys.argv else None,
+        )
