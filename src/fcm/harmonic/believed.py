@@ -16,18 +16,21 @@ BELIEVED = 0.2  # estimated error of the amplitudes, up to which a solution is c
 AT_FOLD = 1e-2  # of its frequency: as far as a fold may be moved, where nothing is said of the accuracy
 
 
-def disbelieved(frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray) -> Mask:
-    """Which points of branches, one after the other, are too far from the motion, or surrounded by such.
+def disbelieved(
+    frequency: FloatArray, truncations: Sequence[FloatArray], stable: FloatArray, fold: Mask
+) -> Mask:
+    """Which points of branches, one after the other, are too far from the motion, or may be.
 
     Parameters
     ----------
-    frequency, stable : array (point,)
+    frequency, stable, fold : array (point,)
+        fold is whether a point is one.
     truncations : sequence of array (point,)
         Estimated errors of each branch, NaN where there is none.
     """
     truncation = np.concatenate(truncations)
     lost = np.concatenate([astray(one) for one in truncations])
-    far: Mask = (truncation > BELIEVED) | lost | _untold_beside(frequency, truncation, stable)
+    far: Mask = (truncation > BELIEVED) | lost | _untold(frequency, truncation, stable, fold)
     return far
 
 
@@ -39,20 +42,18 @@ def astray(truncation: FloatArray) -> Mask:
     return far
 
 
-def _untold_beside(frequency: FloatArray, truncation: FloatArray, stable: FloatArray) -> Mask:
-    """Stretches (point,) without an error next to a point whose error is beyond what is believed.
+def _untold(frequency: FloatArray, truncation: FloatArray, stable: FloatArray, fold: Mask) -> Mask:
+    """Stretches (point,) without an error: marches leave many of them.
 
-    Of those whose stable part is no more than that of a fold, which has no error either, nothing is said. A
-    point alone with an error, as one of several at a corner may be, does not part a stretch.
+    Of those at a fold, which has no error either, whose stable part is no more than that of a fold, nothing
+    is said. A point alone with an error, as one of several at a corner may be, does not part a stretch.
     """
-    found = np.zeros(len(truncation), dtype=np.bool_)
-    framed = np.concatenate(([False], truncation > BELIEVED, [False]))
-    untold = np.isnan(truncation)
+    found, untold = np.zeros(len(truncation), dtype=np.bool_), np.isnan(truncation)
     untold[1:-1] |= untold[:-2] & untold[2:] & (truncation[1:-1] <= BELIEVED)
     for first, end in runs(untold):
         own = frequency[first:end][stable[first:end] == 1.0]
         wide = own.size > 0 and np.ptp(own) > AT_FOLD * own.max()
-        found[first:end] = wide and bool(framed[first] or framed[end + 1])
+        found[first:end] = wide or not fold[max(first - 1, 0) : end + 1].any()
     return found
 
 

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Mark, Path
+from fcm.harmonic.abreast import with_those_abreast
 from fcm.harmonic.corrected import Corrected, Indices
 from fcm.harmonic.crest import crests, rise_beside, settling_at_ends
 from fcm.harmonic.further import HIGHEST
@@ -111,6 +112,8 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     change = corrected.everywhere(special, tops)
     unit, growth = corrected.unit, shown.growth
     shift = shifted(corrected.place, path.z, path.direction, shown.amplitude, growth, unit, change)
+    shift[np.isnan(change).any(axis=1)] = np.nan  # the corrected curve is missed there
+    shift = with_those_abreast(corrected, shift)
     error = _of_points(corrected, shown, change, shift)
     error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
@@ -120,7 +123,8 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     own = rise_beside(corrected, growth, np.zeros_like(unit), tops)  # no error
     now = shown.amplitude[tops, d] + np.where(inside, own, 0.0)
     settles = inside | ~corrected.linear[tops]
-    error[tops[settles], d[settles]] = _of_peaks(np.abs(height - now) / unit[tops, d])[settles]
+    told = settles & np.isfinite(height)
+    error[tops[told], d[told]] = _of_peaks(np.abs(height - now) / unit[tops, d])[told]
     for top in np.unique(tops[settles]).tolist():
         beyond = np.abs(ripple(system, path.z[top], shown.X[top])) / unit[top]
         error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
@@ -131,7 +135,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     return Errors(
         amplitude=error,
         truncation=(error * shown.amplitude).max(axis=1) / np.where(size > 0.0, size, 1.0),
-        peak=error[tops, d],
+        peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
         fold=np.abs(change[folds, 0]),
         share=share,
@@ -147,6 +151,7 @@ def _of_points(corrected: Corrected, shown: Reported, change: FloatArray, shift:
     error = np.where(corrected.linear[:, None], 0.0, np.maximum(error, CHANCE * typical))
     # what is covered in part only is known in part only, though the displacements cancel at a frequency
     moved = corrected.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
+    moved[np.isnan(moved).any(axis=1)] = 0.0  # those abreast are told by their shifts alone
     covered: FloatArray = np.maximum(error, (1.0 - COVERED) * moved)
     return covered
 

@@ -17,8 +17,12 @@ cdef class Lifted:
     cdef double[::1] row
     cdef double[::1] still
     cpdef bint beside(self, double[::1] z, double[::1] direction, bint briefly=*) except -1
+    cpdef bint abreast(self, double[::1] z, bint gradually) except -1
+    cdef bint report(self) except -1
     cdef bint corrected(self) except -1
+    cdef bint at_once(self, double[::1] guess) except -1
+    cdef bint by_parts(self, double[::1] guess) except -1
     cdef bint onward(self) except -1
     cdef bint nearly(self) except -1
     cdef bint again(self, double first) except -1
-    cdef double away(self) except -1
+    cdef double away(self, double[::1] guess) except -1

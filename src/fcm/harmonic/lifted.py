@@ -86,8 +86,25 @@ class Lifted:
         for i in range(self.guess.shape[0]):
             self.newton.scale[i] = self.balance.scale[i]
             self.newton.row[i] = self.row[i] / sqrt(total)
-        if not self.corrected():
-            return False
+        return self.corrected() and self.report()
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def abreast(self, z: cython.double[::1], gradually: cython.bint) -> cython.bint:
+        """Whether there is a point near z (unknown + 1,) at the same frequency; by parts if not at once."""
+        i: cython.Py_ssize_t
+        self.brief = self.dear
+        self.balance.measure(z)
+        for i in range(z.shape[0]):
+            self.newton.scale[i], self.newton.row[i] = self.balance.scale[i], 0.0
+        self.newton.row[self.balance.unknowns] = 1.0
+        return (self.at_once(z) or (gradually and self.by_parts(z))) and self.report()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def report(self) -> cython.bint:
+        """Fill found; true."""
+        i: cython.Py_ssize_t
         self.balance.report(self.newton.z, self.still)
         self.found[0] = self.newton.z[self.balance.unknowns]
         for i in range(self.balance.outputs):
@@ -97,21 +114,31 @@ class Lifted:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def corrected(self) -> cython.bint:
-        """Move the guess to the curve: at once, or gradually."""
-        self.homotopy.taken = 0.0
-        self.newton.z[:] = self.guess
-        if self.nearly() and self.newton.moved <= FAR and self.onward():
+        """Move the guess to the curve: at once, or by parts."""
+        if self.at_once(self.guess) and self.onward():
             return True
-        if self.brief:
-            return False
-        self.newton.z[:] = self.guess
-        self.homotopy.evaluate(self.guess)
+        return not self.brief and self.by_parts(self.guess) and self.onward()
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def at_once(self, guess: cython.double[::1]) -> cython.bint:
+        """Whether Newton's method leads from a guess to a point near it."""
+        self.homotopy.taken = 0.0
+        self.newton.z[:] = guess
+        return self.nearly() and self.newton.moved <= FAR
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def by_parts(self, guess: cython.double[::1]) -> cython.bint:
+        """The same where the equations change gradually from those that the guess solves."""
+        self.newton.z[:] = guess
+        self.homotopy.evaluate(guess)
         self.homotopy.removed[:] = self.homotopy.residual
         for part in GRADUAL:
             self.homotopy.taken = 1.0 - part
             if not self.newton.correct(1.0) or self.newton.moved > FAR:
                 return False
-        return self.away() <= FAR and self.onward()
+        return self.away(guess) <= FAR
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -168,10 +195,10 @@ class Lifted:
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def away(self) -> cython.double:
-        """Distance of the point from the guess."""
+    def away(self, guess: cython.double[::1]) -> cython.double:
+        """Distance of the point from a guess."""
         i: cython.Py_ssize_t
         total: cython.double = 0.0
-        for i in range(self.guess.shape[0]):
-            total += fabs((self.newton.z[i] - self.guess[i]) / self.newton.scale[i]) ** 2
+        for i in range(guess.shape[0]):
+            total += fabs((self.newton.z[i] - guess[i]) / self.newton.scale[i]) ** 2
         return sqrt(total)

@@ -121,7 +121,7 @@ def _curve(followed: _Followed) -> Curve:
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncations = [one.truncation for one in found.errors]
-    far = disbelieved(points.z[:, -1], truncations, stable)
+    far = disbelieved(points.z[:, -1], truncations, stable, (points.mark & Mark.FOLD) > 0)
     stable[far & (stable == 1.0)] = np.nan
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
