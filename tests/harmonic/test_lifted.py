@@ -99,6 +99,21 @@ def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(bl
     assert taken < 0.6 * needed
 
 
+def test_a_jacobian_is_kept_as_long_as_its_steps_shrink(blade):
+    """Of points of the same displacement as to the precision of numbers most take one alone."""
+    path, lifted = blade
+    exact = Lifted(lifted.balance, [1], [1, 2, 3, 4, 5, 6], 1e-9)
+    taken = []
+    for z, direction in zip(path.z[::16], path.direction[::16], strict=True):
+        before = lifted.newton.evaluations
+        if lifted.beside(z, direction):
+            now = lifted.newton.evaluations - before
+            assert exact.beside(z, direction)
+            taken += [now] if exact.newton.moved > 1e-6 else []
+    assert len(taken) > 5
+    assert taken.count(1) > 0.75 * len(taken)
+
+
 def test_a_balance_is_left_as_it_was_made():
     """Whatever contacts it was of, and whatever fewer harmonics its points had."""
     one, other = (System(load_scene(name), (1,)) for name in ("yang1998-n5", "yang1998-jump"))

@@ -24,5 +24,5 @@ cdef class Lifted:
     cdef bint by_parts(self, double[::1] guess) except -1
     cdef bint onward(self) except -1
     cdef bint nearly(self) except -1
-    cdef bint again(self, double first) except -1
+    cdef bint again(self, double first, double before) except -1
     cdef double away(self, double[::1] guess) except -1

@@ -21,6 +21,8 @@ DEAR = cython.declare(cython.int, 240)
 # unknowns from which on a Jacobian takes far longer than the residual: those of several contacts
 MANY = cython.declare(cython.int, 100)
 SLIGHT = cython.declare(cython.double, 0.02)  # a step so short that the Jacobian hardly changes along it
+CHORDS = cython.declare(cython.int, 4)  # steps with a Jacobian then,
+SHRINKING = cython.declare(cython.double, 0.4)  # each at most this part of the one before
 TWICE = cython.declare(cython.double, 2.0)  # times the farthest, beyond which a first step leads nowhere then
 
 
@@ -174,24 +176,31 @@ class Lifted:
             first = step if count == 0 else first
             if step < SMALL or (count > 0 and step < self.enough * first):
                 return newton.direct()
-            if (self.many or step < SLIGHT) and self.again(first):
+            if (self.many or step < SLIGHT) and self.again(first, step):
                 return newton.direct()
             before = step
         return False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def again(self, first: cython.double) -> cython.bint:
-        """Whether a step with the Jacobian from before the last is so short that it is the last one; else it
-        is not taken."""
+    def again(self, first: cython.double, before: cython.double) -> cython.bint:
+        """Whether steps with the Jacobian from before the last, which was so long, come to one so short that
+        it is the last; one that does not shrink as fast is not taken."""
         i: cython.Py_ssize_t
+        count: cython.int
+        step: cython.double
         newton: Newton = self.newton
-        newton.problem.probe(newton.z)
-        if not newton.step() < self.enough * first:
-            return False
-        for i in range(self.guess.shape[0]):
-            newton.z[i] += newton.scale[i] * newton.delta[i]
-        return True
+        for count in range(CHORDS):  # noqa: B007
+            newton.problem.probe(newton.z)
+            step = newton.step()
+            if not step < SHRINKING * before:
+                return False
+            for i in range(self.guess.shape[0]):
+                newton.z[i] += newton.scale[i] * newton.delta[i]
+            if step < self.enough * first:
+                return True
+            before = step
+        return False
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
