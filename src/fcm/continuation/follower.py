@@ -39,6 +39,7 @@ NEAR = cython.declare(cython.double, 1e-4)  # where points matter, a corner furt
 NEARER = cython.declare(cython.double, 0.9)  # each this share of the way
 AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner,
 SAME = cython.declare(cython.double, 0.1)  # or this share of that before it, where every place counts
+LESS = cython.declare(cython.double, 0.25)  # of a hasty step that does not go over all corners: it may
 LONGEST = 20_000  # steps
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
 
@@ -142,7 +143,7 @@ class Follower:
         if self.soft is not None:
             return self.soft.advance(self, step)
         step = self.narrow.up_to(front, step)
-        if self.problem.dear and self.over(step):
+        if self.problem.dear and (self.over(step) or (self.hasty and self.over(LESS * step))):
             return self.smooth()
         while step > SHORTEST:
             reach = ahead(front, step)
