@@ -16,15 +16,24 @@ from fcm.harmonic.system import System
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
-CYCLE = 3.5e-6  # seconds of an evaluation, for each harmonic of a contact: when it sticks, slips, is open
-SYSTEM = 2.7e-11  # and for each third power of the unknowns that are solved for
+CYCLE = 1.4e-6  # seconds of an evaluation for the mean and each harmonic of a contact, which slips
+ENTRY = 3e-9  # for each number of the contacts' tangents and of the matrix: filled, copied, solved with
+SYSTEM = 1.8e-11  # and for each third power of the unknowns that are solved for: 1/3 multiplication
 
 
 def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
-    """About what evaluations of the balance with so many harmonics take, each solved for a step."""
+    """About what evaluations of the balance with so many harmonics take, each solved for a step.
+
+    A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
+    """
     contacts, modes = len(system.scene.contacts), len(system.linear.natural)
-    unknowns = rank_of(modes, 2 * contacts, harmonics) or contacts * (2 + 4 * harmonics)
-    return evaluations * (CYCLE * contacts * harmonics + SYSTEM * float(unknowns) ** 3)
+    width = 2 + 4 * harmonics
+    unknowns = contacts * width
+    rank = rank_of(modes, 2 * contacts, harmonics)
+    solved = rank or unknowns
+    cubes = float(solved) ** 3 + 6.0 * modes * unknowns * rank
+    each = CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
+    return evaluations * each
 
 
 def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
