@@ -1,5 +1,7 @@
 """Rigid-body modes: held by closed contacts, adrift along friction alone, or not at rest at all."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -102,6 +104,24 @@ def test_a_body_that_no_contact_holds_at_rest_is_said():
     assert not found.complete and "closed contact" in found.reason and "rigid-body mode" in found.reason
     _, never = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -50.0})
     assert not never.complete and "rigid-body modes are at rest only" in never.reason
+
+
+def test_a_body_that_stops_at_a_resonance_that_nothing_damps_is_told_what_does():
+    """The fifth harmonic meets that of the body on its seat, the root of 10; damped as said it does not."""
+    body = {"dofs": ["x"], "mass": [1.0], "frequency": [0.0], "damping": [0.01], "shapes": [[1.0]]}
+    seat = {"tangential": "x", "normal": "x", "mu": 0.0, "k_u": 0.0, "k_v": 10.0, "n_0": 0.5}
+    response = {"frequency": [0.55, 0.75], "harmonics": 5}
+    _, found = curve(body, seat, (("x", 0.3),), response=response)
+    said = re.fullmatch(
+        r"stopped at (\S+) rad/s: no further point could be found: harmonic (\d+) meets a resonance .*, "
+        r"at (\S+) rad/s, that nothing damps, .*: try a modal.frequency of (\S+) for them, .* of (\S+)",
+        found.reason,
+    )
+    assert said and int(said[2]) == 5
+    assert (5.0 * float(said[1]), float(said[3])) == pytest.approx((np.sqrt(10.0),) * 2, rel=1e-5)
+    advised = body | {"frequency": [float(said[4])], "damping": [float(said[5])]}
+    _, whole = curve(advised, seat, (("x", 0.3),), response=response)
+    assert whole.complete
 
 
 def test_a_free_structure_without_contacts():

@@ -14,13 +14,15 @@ from fcm.harmonic.system import System
 from fcm.units import in_unit
 
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
+RESONANT = 1e-5  # relative, of a harmonic's frequency where a curve stops, from a resonance that it stops at
+SOFT = 30.0  # times below that resonance a spring to the ground shifts it by 1/1800
 UNDAMPED = "; nothing damps the structure, so that it may turn back on the spot: try a damping ratio of 1e-4"
 
 
 def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.bool_]]:
     """Why a curve is not complete, empty if it is; and which of its points are no steady states (point,)."""
     system, branches = found.system, found.traced.branches
-    scene, unit = system.scene, system.scene.frequency_unit
+    unit = system.scene.frequency_unit
     reasons = undetermined(system, points.z, points.force)
     nowhere = np.logical_or.reduce([np.zeros(points.path.size, dtype=bool), *reasons.values()])
     for why, which in reasons.items():
@@ -31,11 +33,35 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     if status is Status.COMPLETE:
         return "", nowhere
     broken = next((path for path in branches.paths if path.status is status), None)
-    why = _would_do(system, status)
     if broken is None:
-        return f"{status.value}{why}", nowhere
-    end = float(in_unit(broken.parameter[-1], scene.frequency_unit))
-    return f"stopped at {end:.8g} {scene.frequency_unit}: {status.value}{why}", nowhere
+        return f"{status.value}{_would_do(system, status)}", nowhere
+    end = float(broken.parameter[-1])
+    why = f"{status.value}{_would_do(system, status)}"
+    if status is Status.STALLED:
+        why = _resonant(system, end) or why
+    return f"stopped at {in_unit(end, unit):.8g} {unit}: {why}", nowhere
+
+
+def _resonant(system: System, omega: float) -> str:
+    """Which harmonic of a frequency [rad/s] meets a resonance of a body on its closed contacts that nothing
+    damps, and what would; empty if none does, or modes are damped.
+
+    There the harmonic has no limit, and the curve may turn back on the spot.
+    """
+    linear, unit = system.linear, system.scene.frequency_unit
+    if linear.natural.all() or (linear.natural * linear.damping).any():
+        return ""
+    met = linear.stiffened(system.springs(stuck=True))
+    for h in system.harmonics:
+        near = met[np.abs(met - h * omega) < RESONANT * met]
+        if near.size:
+            at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SOFT))
+            return (
+                f"no further point could be found: harmonic {h} meets a resonance on the closed contacts, "
+                f"at {at:.6g} {unit}, that nothing damps, as rigid-body modes have no damping ratio: "
+                f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
+            )
+    return ""
 
 
 def _would_do(system: System, status: Status) -> str:
