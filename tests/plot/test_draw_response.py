@@ -54,6 +54,19 @@ def test_axes_say_what_and_in_which_unit(unit, label):
     np.testing.assert_array_equal(axes.lines[0].get_ydata().max(), 9.0 / 4)
 
 
+def test_of_many_degrees_of_freedom_that_of_the_greatest_peak_is_drawn():
+    """Displacements before rotations, whose numbers are radians; of the few of a small scene the first."""
+    peaks = {"1x": 1.0, "1y": np.nan, "2x": 3.0, "2y": 5.0, "2rz": 9.0}
+    curves = [DrawnCurve({}, FREQUENCY, np.outer(np.ones(201), [*peaks.values()]) * k) for k in (1.0, 2.0)]
+    (axes,) = draw_response(DrawnResponse(tuple(peaks), "rad/s", tuple(curves))).axes
+    assert axes.get_ylabel() == "Amplitude of 2y" and axes.lines[0].get_ydata().max() == 5.0
+    (axes,) = draw_response(DrawnResponse(tuple(peaks), "rad/s", tuple(curves)), dof="1x").axes
+    assert axes.get_ylabel() == "Amplitude of 1x"
+    few = [replace(curve, amplitude=curve.amplitude[:, [0, 1, 2, 3]]) for curve in curves]
+    (axes,) = draw_response(DrawnResponse(tuple(peaks)[:4], "rad/s", tuple(few))).axes
+    assert axes.get_ylabel() == "Amplitude of 1x"
+
+
 def test_curves_carry_what_was_swept_at_their_peaks():
     (axes,) = draw_response(three()).axes
     assert names(axes) == ["$n_{0}$ = 100 (stuck)", "10", "−60 (open)"]

@@ -12,7 +12,10 @@ from fcm.cli.messages import Messages, pass_messages
 
 @click.command()
 @draws_file("-peak.png")
-@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option(
+    "--dof", metavar="NAME",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
+)  # fmt: skip
 @click.option("--against", metavar="KEY", help="The swept quantity of the axis.  [default: the first]")
 @click.option("--folds", is_flag=True, help="The folds, of --track folds: where there are several solutions.")
 @pass_messages

@@ -41,7 +41,10 @@ def plot() -> None:
 
 @click.command()
 @draws_file(".png")
-@click.option("--dof", metavar="NAME", help="The degree of freedom to draw.  [default: the first]")
+@click.option(
+    "--dof", metavar="NAME",
+    help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
+)  # fmt: skip
 @click.option(
     "--log/--linear", default=None,
     help="Amplitude axis.  [default: logarithmic if the peaks span more than a decade]",

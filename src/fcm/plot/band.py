@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.plot.curve_names import name_at_side
-from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, with_unit
 from fcm.plot.read import LEVEL, DrawnResponse, wide
@@ -25,8 +24,8 @@ _FAINT = 0.28  # opacity of a band, so that those of several curves are seen thr
 
 
 def banded_column(response: DrawnResponse, dof: str | None) -> int:
-    """The degree of freedom whose bands can be drawn, the first by default; errors say why there are none."""
-    column = column_of(response.dofs, dof)
+    """The degree of freedom whose bands can be drawn; errors say why there are none."""
+    column = response.column(dof)
     if not response.drawn:
         raise PlotError("nothing was drawn at random in this sweep, so that it has no bands")
     if response.frequency_unit == LEVEL:

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fcm.plot.errors import PlotError
+import numpy as np
+import numpy.typing as npt
 
+from fcm.plot.errors import PlotError
+from fcm.rotation import is_rotation
+
+FEW = 4  # degrees of freedom, of which the first is drawn; a run's table of peaks has no more of them
 MOST_NAMED = 12  # degrees of freedom in a message
 
 
@@ -27,3 +32,19 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
     more = f", ... ({len(dofs)} in all)" if len(dofs) > MOST_NAMED else ""
     listed = f"{whose} {', '.join(dofs[:MOST_NAMED])}{more}"
     raise PlotError(f"no degree of freedom {dof!r}; {listed}{suggestion(dof, dofs)}")
+
+
+def leading_column(dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray[np.float64]) -> int:
+    """As `column_of`, but by default of more than a few that of the greatest of amplitudes (any, dof).
+
+    Displacements come before rotations, which are of another unit.
+
+    >>> leading_column(["1x", "2x"], None, np.array([[1.0, 2.0]]))
+    0
+    >>> leading_column(["1x", "1y", "1rx", "2x", "2y"], None, np.array([[1.0, 2.0, 9.0, 7.0, np.nan]]))
+    3
+    """
+    if dof is not None or len(dofs) <= FEW:
+        return column_of(dofs, dof)
+    height = np.fmax.reduce(amplitudes, axis=0, initial=0.0)
+    return min(range(len(dofs)), key=lambda d: (is_rotation(dofs[d]), -height[d]))

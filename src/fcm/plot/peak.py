@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from fcm.plot.dof import column_of
+from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
@@ -66,8 +66,10 @@ def read_peaks(path: Path) -> Peaks:
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
-    """The figure of one degree of freedom against one swept quantity, by default the first of each."""
-    column, key = column_of(peaks.dofs, dof), _key(peaks, against)
+    """The figure of one degree of freedom (by default see `leading_column`) against one swept quantity, by
+    default the first."""
+    column = leading_column(peaks.dofs, dof, peaks.amplitude[peaks.complete])
+    key = _key(peaks, against)
     known = np.isfinite(peaks.amplitude[:, column]) & peaks.complete
     if not known.any():
         raise PlotError("the file holds no complete curve")

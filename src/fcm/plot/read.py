@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 
 FloatArray = npt.NDArray[np.float64]
@@ -48,6 +49,11 @@ class DrawnResponse:
     length: str = ""  # unit of displacements, if the file says it
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
+
+    def column(self, dof: str | None) -> int:
+        """The place of a degree of freedom; by default that of `leading_column`."""
+        none = np.empty((0, len(self.dofs)))
+        return leading_column(self.dofs, dof, np.concatenate([none, *(c.amplitude for c in self.curves)]))
 
 
 def ends(curves: Sequence[DrawnCurve]) -> tuple[float, float]:

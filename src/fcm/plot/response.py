@@ -9,7 +9,6 @@ import numpy as np
 
 from fcm.plot.colour_bar import MOST_NAMES, colour_bar
 from fcm.plot.curve_names import label_at_peaks
-from fcm.plot.dof import column_of
 from fcm.plot.error_panel import (
     HEIGHT,
     SHARES,
@@ -52,13 +51,13 @@ def draw_response(
     errors: bool = True,
     points: DrawnPoints | None = None,
 ) -> Figure:
-    """The figure of one degree of freedom (the first by default); unstable parts are dashed, those of which
-    that is not told dotted.
+    """The figure of one degree of freedom (by default see `leading_column`); unstable parts are dashed, those
+    of which that is not told dotted.
 
     Errors that the file knows have a panel below the curves, unless errors is false. Points of the exact
     motion are drawn over the curves.
     """
-    column = column_of(response.dofs, dof)
+    column = response.column(dof)
     curves = _drawable(response, column, bool(log))
     with house_style():
         figure, axes, below = _panels(errors and has_errors(curves))
