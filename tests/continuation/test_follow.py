@@ -301,6 +301,19 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
     assert sorted(found[:, 0]) == pytest.approx([3.0 - np.sqrt(3.0), 3.0 + np.sqrt(3.0)], abs=1e-10)
 
 
+@pytest.mark.parametrize("step", STEPS)
+@pytest.mark.parametrize("forward", [True, False])
+@pytest.mark.parametrize("beside", [-1e-3, 1e-3])
+def test_a_closed_loop_ends_at_a_station_where_it_began_and_not_at_the_next_one(step, forward, beside):
+    """The last step passes both; going around once is an angle of 2 pi."""
+    begin = start(3.0 - np.sqrt(3.0), 3.0)
+    path = follow(circle(), begin, (-1.0, 5.0), forward, step, stations=[3.0, 3.0 + beside])
+    assert path.status is Status.CLOSED
+    around = np.unwrap(np.arctan2(path.parameter - 2.0, path.z[:, 0] - 3.0))
+    assert abs(around[-1] - around[0]) == pytest.approx(2.0 * np.pi, abs=1e-9)
+    assert np.all(np.diff(around) * (-1.0 if forward else 1.0) > 0.0)  # no point twice
+
+
 def test_a_curve_that_is_lost_to_a_closed_one_goes_around_it_once():
     """A straight line up to x = 5, p = 2 becomes the circle, which comes back to it in a gap of 1e-4."""
     loop = circle().f

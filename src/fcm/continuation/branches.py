@@ -107,8 +107,6 @@ def through(
     other = along(new_problem(), z, span, False, max_step, stations, progress)
     if other.z.shape[0] == 0:
         return path
-    if other.status is Status.CLOSED:  # of which the first may have gone around and not have seen that
-        return other
     if other.status not in (Status.COMPLETE, Status.RETURNED):
         path, other = other, path
     whole = other.backwards().then(path)

@@ -88,8 +88,8 @@ class Passage:
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def been(self) -> cython.bint:
-        """Whether the last point, at a station, was passed before in its direction, with folds in between: a
-        step that ends there may keep it, and the next one once more."""
+        """Whether the last point, at a station, was passed before in its direction, or the curve began there,
+        with folds in between: a step that ends there may keep it, and the next one once more."""
         trail: Trail = self.trail
         n: cython.Py_ssize_t = self.n
         last: cython.Py_ssize_t = trail.count - 1
@@ -99,7 +99,8 @@ class Passage:
         while fold >= 0 and trail.direction[fold, n] * rise > 0.0:
             fold -= 1
         for i in range(fold):
-            again: cython.bint = trail.mark[i] & STATION and trail.z[i, n] == trail.z[last, n]
+            stopped: cython.bint = i == 0 or trail.mark[i] & STATION
+            again: cython.bint = stopped and trail.z[i, n] == trail.z[last, n]
             if again and trail.direction[i, n] * rise > 0.0 and trail.same(i, last, SAME):
                 return True
         return False
@@ -148,6 +149,10 @@ class Passage:
 
     def end(self) -> Status:
         """The status of a curve that has left its range, or comes around."""
+        if self.around and self.interior and self.trail.same(0, self.trail.count - 1, SAME):
+            self.trail.drop()
+            self.trail.close()
+            return Status.CLOSED
         if self.around:
             return Status.AROUND
         back = not self.interior and self.trail.last()[self.n] == self.first[self.n]
