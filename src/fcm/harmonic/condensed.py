@@ -61,9 +61,7 @@ class Condensed:
         parts, rank = self.parts, self.parts * self.modes
         self.b, self.row, self.rho = by[self.place], row[self.place], float(row[-1])
         self.ordered = self.tangent[:, self.order[:, None], self.order]
-        by_mode, blocks, product = (
-            self.kept
-        )  # of this size, memory of its own takes longer to have than to fill
+        by_mode, blocks, product = self.kept  # to have this much memory anew takes longer than to fill it
         np.matmul(self.ordered.reshape(self.contacts, -1, 2), self.pairs, out=by_mode)
         sorted_by_part = by_mode.reshape(self.contacts, parts, 2, rank).transpose(1, 0, 2, 3)
         blocks.reshape(parts, self.contacts, 2, rank)[:] = sorted_by_part
