@@ -9,7 +9,7 @@ from fcm.harmonic.peak import Kind
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude, jacobian_of
 from fcm.response.optimum import optimise
-from fcm.response.sensitivity import add_sensitivities
+from fcm.response.sensitivity import add_sensitivities, remarks
 from fcm.response.sweep import trace
 from fcm.scene import load_scene, scene_from_dict
 from fcm.scene.model import Aim, Optimum
@@ -120,6 +120,15 @@ def test_a_group_of_contacts_is_one_number():
     numbers = found.curves[0].sensitivity.numbers
     assert "contact.platform.gap" in numbers and "contact.platform.n_0" not in numbers
     assert len(set(numbers)) == len(numbers)
+
+
+def test_nothing_is_said_of_peaks_that_are_not_reported():
+    """Of which none are computed: as of the displacement that the motion of a base works on."""
+    scene = replace(oscillator({"contact.c.n_0": 10.0})[0], reported=("v",))
+    found = run(scene, 1)
+    add_sensitivities(found, scene)
+    assert found.curves[0].sensitivity.kind == (Kind.UNKNOWN, Kind.SMOOTH)
+    assert remarks(found, scene) == []
 
 
 def test_at_an_optimum_they_are_those_of_the_scene_with_the_numbers_chosen():

@@ -29,5 +29,5 @@ def added(messages: Messages, response: Response, scene: Scene) -> None:
 
     add_sensitivities(response, scene, messages.progress)
     messages.clear()
-    for remark in remarks(response):
+    for remark in remarks(response, scene):
         messages.info(remark)

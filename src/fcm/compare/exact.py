@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fcm.compare.lines import Line, line_of
+from fcm.compare.lines import Line, amplitude, line_of
 from fcm.motion import SimulationError, State
 from fcm.orbit import harmonic_state, periodic
 from fcm.response.exact import trace_exact
@@ -35,12 +35,16 @@ def exact_lines(scene: Scene, progress: Progress | None = None) -> list[Line]:
 
 def _line(scene: Scene, curve: Curve) -> Line:
     if curve.orbits is None or curve.points == 0:
-        return line_of(curve)
-    amplitude = curve.amplitude
-    peaks = {name: _peak(scene, curve, amplitude[:, j], j) for j, name in enumerate(scene.modal.dofs)}
+        return line_of(curve, scene)
+    peaks = {
+        dof: _peak(scene, curve, curve.amplitude[:, j], j)
+        for j, dof in enumerate(scene.modal.dofs)
+        if scene.reports(dof)
+    }
     return Line(
-        curve.frequency, amplitude, peaks, curve.folds, curve.complete, curve.reason, {}, curve.orbits.periods
-    )
+        curve.frequency, amplitude(curve, scene), peaks, curve.folds, curve.complete, curve.reason, {},
+        curve.orbits.periods,
+    )  # fmt: skip
 
 
 def _peak(scene: Scene, curve: Curve, amplitude: np.ndarray, dof: int) -> tuple[float, float]:

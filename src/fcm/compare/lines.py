@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.results.result import Curve
+from fcm.scene.model import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -42,15 +43,17 @@ class Line:
         return [(w, a) for w, a in known if w.size]
 
 
-def line_of(curve: Curve) -> Line:
-    """A curve of harmonic balance."""
-    estimate = {dof: peak.error for dof, peak in curve.peaks.items()}
+def line_of(curve: Curve, scene: Scene) -> Line:
+    """A curve of harmonic balance, at the degrees of freedom that its scene reports."""
+    shown = {dof: peak for dof, peak in curve.peaks.items() if scene.reports(dof)}
+    heights = {dof: (peak.amplitude, peak.frequency) for dof, peak in shown.items()}
+    estimate = {dof: peak.error for dof, peak in shown.items()}
     return Line(
-        curve.frequency, curve.amplitude, heights(curve), curve.folds, curve.complete, curve.reason,
+        curve.frequency, amplitude(curve, scene), heights, curve.folds, curve.complete, curve.reason,
         estimate, curve.evaluations,
     )  # fmt: skip
 
 
-def heights(curve: Curve) -> dict[str, tuple[float, float]]:
-    """Peaks without their errors."""
-    return {dof: (peak.amplitude, peak.frequency) for dof, peak in curve.peaks.items()}
+def amplitude(curve: Curve, scene: Scene) -> FloatArray:
+    """Of the degrees of freedom that a curve's scene reports: (point, dof)."""
+    return curve.amplitude[:, [scene.reports(dof) for dof in curve.peaks]]

@@ -77,12 +77,12 @@ def solve(
     if not method.corrected:
         wanted = Wanted(table=method.table, corrected=False)
         curves = [traced_curve(curve, wanted) for curve in lighter.each_curve()]
-        return [line_of(curve) for curve in curves]
+        return [line_of(curve, scene) for curve in curves]
     kind = "closed-form" if method.table is None else "table"
     response = trace(scene, kind, method.table, harmonics=1, tolerance=tolerance)
     if response.interrupted:
         raise KeyboardInterrupt
-    return [line_of(curve) for curve in response.curves]
+    return [line_of(curve, scene) for curve in response.curves]
 
 
 def _lighter(scene: Scene, tolerance: float | None) -> Scene:

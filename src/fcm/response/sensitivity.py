@@ -35,7 +35,7 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
 
 
 def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:
-    reported = [d for d, dof in enumerate(curve.peaks) if not scene.reported or dof in scene.reported]
+    reported = [d for d, dof in enumerate(curve.peaks) if scene.reports(dof)]
     peaks = [_peak(curve, scene, d) for d in reported if curve.amplitude[:, d].any()]
     return sensitivities(scene, curve.harmonics, [one for one in peaks if one is not None], len(curve.peaks))
 
@@ -51,7 +51,7 @@ def _peak(curve: Curve, scene: Scene, dof: int) -> tuple[int, FloatArray, bool] 
     return dof, unknowns(curve, scene, np.array([i]), curve.harmonics)[0], edge
 
 
-def remarks(response: Response) -> list[str]:
+def remarks(response: Response, scene: Scene) -> list[str]:
     """What to know of peaks whose derivatives are not those of a smooth curve."""
     found = []
     for kind, what in REMARKS.items():
@@ -60,7 +60,7 @@ def remarks(response: Response) -> list[str]:
             for number, curve in enumerate(response.curves)
             if curve.sensitivity is not None
             for dof, own in zip(curve.peaks, curve.sensitivity.kind, strict=True)
-            if own is kind and curve.peaks[dof].amplitude > 0.0
+            if own is kind and scene.reports(dof) and curve.peaks[dof].amplitude > 0.0
         ]
         if of:
             number, dof = of[0]

@@ -110,15 +110,9 @@ def conditions_of(scene: Scene, what: str) -> list[Condition]:
     if what == "folds":
         return [Condition(Kind.FOLD)]
     if what == "peaks":
-        return [
-            Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if _is_shown(scene, name)
-        ]
+        return [Condition(Kind.PEAK, dof) for dof, name in enumerate(scene.modal.dofs) if scene.reports(name)]
     assert what in ONSETS
     return [Condition(Kind.ONSET, i, what) for i in range(len(scene.contacts))]
-
-
-def _is_shown(scene: Scene, name: str) -> bool:
-    return not scene.reported or name in scene.reported
 
 
 def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:

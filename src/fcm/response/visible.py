@@ -26,7 +26,7 @@ def check_solvable(scene: Scene) -> None:
 
 def visible(response: Response, scene: Scene) -> Response:
     """The response at the degrees of freedom that the scene reports."""
-    shown = np.isin(response.dofs, scene.reported) if scene.reported else np.ones(len(response.dofs), bool)
+    shown = np.array([scene.reports(dof) for dof in response.dofs])
     if shown.all():
         return response
     dofs = tuple(name for name, one in zip(response.dofs, shown, strict=True) if one)

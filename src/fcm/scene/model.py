@@ -149,6 +149,10 @@ class Scene:
         """The swept keys whose values are random draws."""
         return () if self.draft is None else tuple(one.key for one in self.draft.swept if one.drawn)
 
+    def reports(self, dof: str) -> bool:
+        """Whether results have a degree of freedom; others only carry loads and contacts."""
+        return not self.reported or dof in self.reported
+
     def holding(self, held: Sequence[Held]) -> Scene:
         """The scene with some of its contacts held."""
         places = {one.place for one in held}
