@@ -122,6 +122,43 @@ def test_a_group_of_contacts_is_one_number():
     assert len(set(numbers)) == len(numbers)
 
 
+def pushed(phase=0.5, load=0.4):
+    """A force whose phase against a moving base counts, and a static load that presses the contact."""
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v"], "frequency": [1.0, 10.0], "damping": [0.01, 0.01],
+                "shapes": [[0.707, 0.707], [1.0, -0.5]], "participation": [0.5, 0.2],
+            },
+            "base": {"acceleration": 1.0},
+            "contact": [
+                {"name": "c", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+            ],
+            "force": [{"dof": "u", "amplitude": 1.0, "phase": phase}],
+            "load": [{"dof": "v", "force": load}],
+            "response": {"frequency": [0.7, 1.7]},
+        }
+    )  # fmt: skip
+
+
+def test_phases_against_a_base_and_static_loads():
+    found, step = run(pushed(), 1), 1e-4
+    add_sensitivities(found, pushed())
+    own = found.curves[0].sensitivity
+    assert "base.phase" not in own.numbers  # it is what the other phases are counted from
+    for key, moved in {
+        "force.u.phase": [pushed(phase=0.5 + step), pushed(phase=0.5 - step)],
+        "load.v.force": [pushed(load=0.4 + step), pushed(load=0.4 - step)],
+    }.items():
+        more, less = (run(one, 1).curves[0].peaks["u"] for one in moved)
+        by, n = (more.amplitude - less.amplitude) / (2.0 * step), own.numbers.index(key)
+        assert abs(by) > 0.1
+        assert own.height[0, n] == pytest.approx(by, rel=1e-5)
+        assert own.frequency[0, n] == pytest.approx(
+            (more.frequency - less.frequency) / (2.0 * step), rel=1e-3
+        )
+
+
 def test_nothing_is_said_of_peaks_that_are_not_reported():
     """Of which none are computed: as of the displacement that the motion of a base works on."""
     scene = replace(oscillator({"contact.c.n_0": 10.0})[0], reported=("v",))

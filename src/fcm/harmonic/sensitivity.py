@@ -12,8 +12,9 @@ delta: its derivatives are differences of the fourth order, and hold as long as 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +38,7 @@ class Sensitivities:
 
 
 def numbers_of(scene: Scene) -> list[Number]:
-    """The numbers of a scene by which peaks have derivatives: contacts, forces, modes.
+    """The numbers of a scene by which peaks have derivatives: contacts, forces, loads, modes.
 
     Contacts of one group are moved together. The scene is that of one curve, `settled`.
     """
@@ -49,16 +50,21 @@ def numbers_of(scene: Scene) -> list[Number]:
         for name, draft in zip(contacts, parts["contact"], strict=True)
     }
     keys = [f"contact.{name}.{key}" for name in load for key in ("mu", "k_u", "k_v", load[name])]
-    names = [draft["name"] for draft in parts["force"]]
-    forces = [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
+    forces, bases = _names(parts["force"]), len(parts["base"])
     keys += [f"force.{name}.amplitude" for name in forces]
-    keys += [f"force.{name}.phase" for name in forces[1:]]
-    keys += ["base.acceleration"] * len(parts["base"])
+    keys += (["base.phase"] * bases + [f"force.{name}.phase" for name in forces])[1:]  # relative to the first
+    keys += ["base.acceleration"] * bases + [f"load.{name}.force" for name in _names(parts["load"])]
     own = scene.modal.mass.size - scene.modal.added  # not the flexibility of the modes left out
     keys += [f"modal.{key}.{i}" for key in ("frequency", "damping") for i in range(own)]
     known = Addresses(parts)
     found = (number_of(scene, key) for key in keys if known.numbers.get(key) or key.startswith("contact."))
     return [number for number in found if number is not None]
+
+
+def _names(drafts: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Of forces or loads, as in key paths: by number where a name is not the only one."""
+    names = [draft["name"] for draft in drafts]
+    return [name if name and names.count(name) == 1 else str(i) for i, name in enumerate(names)]
 
 
 def settled(scene: Scene) -> Scene:
