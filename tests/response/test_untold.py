@@ -148,3 +148,17 @@ def test_all_that_is_known_to_be_unstable_is_no_doubt():
     w = np.array([1.0, 2.0, 3.0])
     found = swept(w, w[:, None], np.zeros(3))
     assert found.jumps == found.untold == []
+
+
+@pytest.mark.parametrize("begin", range(8))
+def test_where_a_closed_curve_begins_there_is_no_jump(begin):
+    """A stable closed curve above another, wherever along it the first of its points is the last again."""
+    angle = np.linspace(0.0, -2.0 * np.pi, 9)[:-1]
+    closed = np.stack((2.0 + np.cos(angle), 5.0 + np.sin(angle), np.where(np.sin(angle) > -1e-9, 1.0, 0.0)))
+    closed = np.roll(closed, -begin, axis=1)
+    closed = np.concatenate((closed, closed[:, :1]), axis=1)
+    below = np.array([[0.0, 1.5, 1.75, 4.0], [1.0, 1.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0]])  # lost at 1.5
+    w, a, stable = np.concatenate((below, np.full((3, 1), np.nan), closed), axis=1)
+    up = [one for one in swept(w, a[:, None], stable).jumps if one.sweep == "up"]
+    assert [one.frequency for one in up] == [1.5, 3.0]
+    assert np.isnan(up[1].after)  # of the lower curve, beyond 1.75, no stable segment is left at 3

@@ -98,7 +98,8 @@ def _sweep(
     frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, at: int, sweep: str, found: Swept
 ) -> None:
     """Walk from a point along stable segments in the direction of the sweep, and jump where they end."""
-    rises = np.diff(frequency) * (1.0 if sweep == "up" else -1.0)
+    sign = 1.0 if sweep == "up" else -1.0
+    rises = np.diff(sign * frequency)
     bears = stable != 0.0
     usable = bears[:-1] & bears[1:] & (rises != 0.0) & np.isfinite(rises)
     onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
@@ -114,13 +115,17 @@ def _sweep(
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
             return
-        onto = _landing(frequency, usable, at)
-        if onto is None:
+        there = _others(sign * frequency, usable, at)
+        if not there.size:
             found.jumps.append(Jump(sweep, here, before, np.full_like(before, np.nan)))
             return
-        share = (here - frequency[onto]) / (frequency[onto + 1] - frequency[onto])
-        after = amplitude[onto] + share * (amplitude[onto + 1] - amplitude[onto])
-        found.jumps.append(Jump(sweep, here, before, after))
+        share = (here - frequency[there]) / (frequency[there + 1] - frequency[there])
+        landed = amplitude[there] + share[:, None] * (amplitude[there + 1] - amplitude[there])
+        same = np.isclose(landed, before, rtol=SAME, atol=SAME * float(before.max())).all(axis=1)
+        which = int(same.argmax())  # where the beginning of a closed curve is its end, it goes on
+        onto, after = int(there[which]), landed[which]
+        if not same[which]:
+            found.jumps.append(Jump(sweep, here, before, after))
         start, told = (here, after), bool((stable[onto : onto + 2] == 1.0).all())
         at = onto + 1 if rises[onto] > 0.0 else onto
 
@@ -161,13 +166,11 @@ def _note_untold(
             found.untold.append(Untold(sweep, begin, float(frequency[last]), before))
 
 
-def _landing(frequency: FloatArray, usable: BoolArray, at: int) -> int | None:
-    """Another stable segment at the same frequency: the next along the curve, else any."""
-    start, end = frequency[:-1], frequency[1:]
-    holds = usable & ((frequency[at] - start) * (frequency[at] - end) <= 0.0)
+def _others(onwards: FloatArray, usable: BoolArray, at: int) -> npt.NDArray[np.intp]:
+    """Other stable segments that lead on from the same frequency, which grows in the direction of the sweep:
+    the next along the curve first, or without one the last."""
+    ends = np.sort((onwards[:-1], onwards[1:]), axis=0)
+    holds = usable & (ends[0] <= onwards[at]) & (onwards[at] < ends[1])
     holds[max(at - 1, 0) : at + 1] = False
-    candidates = np.flatnonzero(holds)
-    if candidates.size == 0:
-        return None
-    later = candidates[candidates > at]
-    return int(later[0] if later.size else candidates[-1])
+    found = np.flatnonzero(holds)
+    return np.concatenate((found[found > at], found[found < at][::-1]))
