@@ -162,3 +162,12 @@ def test_where_a_closed_curve_begins_there_is_no_jump(begin):
     up = [one for one in swept(w, a[:, None], stable).jumps if one.sweep == "up"]
     assert [one.frequency for one in up] == [1.5, 3.0]
     assert np.isnan(up[1].after)  # of the lower curve, beyond 1.75, no stable segment is left at 3
+
+
+def test_sweeps_begin_with_a_stable_motion():
+    """Of several at an end of the range, and further in where there is none: nothing jumps before."""
+    w = np.array([1.0, 2.0, np.nan, 1.0, 2.0, 3.0, 4.0])
+    a = np.array([1.0, 1.0, np.nan, 5.0, 6.0, 7.0, 8.0])
+    stable = np.array([0.0, 0.0, np.nan, 1.0, 1.0, 1.0, 0.0])
+    jumps = swept(w, a[:, None], stable).jumps
+    assert [(one.sweep, one.frequency, one.before.item()) for one in jumps] == [("up", 3.0, 7.0)]

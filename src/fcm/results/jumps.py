@@ -61,7 +61,8 @@ class Swept:
 def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> Swept:
     """What slow sweeps meet along a curve; amplitude (point, dof), stable 1, 0, or NaN where it is not known.
 
-    A sweep stays on what is not known to be unstable, and says where it did not know.
+    A sweep begins at the first frequency with a motion that is not known to be unstable, stays on such
+    motions, and says where it did not know.
 
     >>> w = np.array([1.0, 2.0, 3.0, 2.5, 2.0, 3.0, 4.0])
     >>> found = swept(w, w[:, None] + [[0], [0], [0], [1], [2], [2], [2]], np.ones(7))
@@ -75,12 +76,9 @@ def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> S
     [('up', 1.0, 3.0), ('down', 3.0, 1.0)]
     """
     frequency, amplitude, stable = _once(frequency, amplitude, stable)
-    known = np.flatnonzero(np.isfinite(frequency))
     found = Swept([], [])
-    if (stable[known] != 0.0).any():  # else there is no motion that could be lost
-        first, last = known[frequency[known].argmin()], known[frequency[known].argmax()]
-        _sweep(frequency, amplitude, stable, int(first), "up", found)
-        _sweep(frequency, amplitude, stable, int(last), "down", found)
+    for sweep in ("up", "down"):
+        _sweep(frequency, amplitude, stable, sweep, found)
     return found
 
 
@@ -95,14 +93,19 @@ def _once(
 
 
 def _sweep(
-    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, at: int, sweep: str, found: Swept
+    frequency: FloatArray, amplitude: FloatArray, stable: FloatArray, sweep: str, found: Swept
 ) -> None:
-    """Walk from a point along stable segments in the direction of the sweep, and jump where they end."""
+    """Walk along stable segments in the direction of the sweep, and jump where they end."""
     sign = 1.0 if sweep == "up" else -1.0
     rises = np.diff(sign * frequency)
     bears = stable != 0.0
     usable = bears[:-1] & bears[1:] & (rises != 0.0) & np.isfinite(rises)
     onwards = np.where(usable, np.sign(rises), 0.0).tolist()  # a walk over single numbers of an array is slow
+    if not usable.any():  # there is no motion that could be lost
+        return
+    lowest = np.where(usable, np.minimum(sign * frequency[:-1], sign * frequency[1:]), np.inf)
+    begin = int(lowest.argmin())
+    at = begin if rises[begin] > 0.0 else begin + 1
     unsure = bool(np.isnan(stable).any())
     visited: set[int] = set()
     start, told = (float(frequency[at]), amplitude[at]), bool(stable[at] == 1.0)
