@@ -125,6 +125,9 @@ def test_curves_say_after_how_many_periods_a_point_repeats():
     assert curve.complete and curve.orbits.repeats.tolist() == [0, 0]
     data = fcm.respond(IRREGULAR, "exact", at=[1.3])
     assert (data.repeats == 0).all() and (data.cycle_least < data.cycle_greatest).all()
+    # neighbouring motions part, and a longer look may find higher cycles: neither is claimed
+    assert data.stable.isnull().all() and data.peak_stable.isnull().all()
+    assert data.error.isnull().all() and data.peak_error.isnull().all()
 
 
 def test_the_residual_of_several_periods():

@@ -116,7 +116,9 @@ def _curve(
     regime = _regimes(points, len(scene.contacts))
     stuck = stuck_beside(scene, [] if search.over else rows, frequency, regime, others)
     told = everywhere | np.isfinite(others.whole)
-    stable = np.array([np.nan if p is None else float(p.stable) for p in points])
+    # of a motion that does not repeat neither its multipliers nor how far it ranges in the long run are known
+    repeated = np.array([np.nan if p is None or p.repeats == 0 else 1.0 for p in points])
+    stable = repeated * [p is not None and p.stable for p in points]
     at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
@@ -131,11 +133,13 @@ def _curve(
         cycle=_borne(points, empty),
         stable=stable,
         table_error=zero,
-        error=np.repeat(zero[:, None], amplitude.shape[1], axis=1),
+        error=np.repeat(0.0 * repeated[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
         loose=int((loose(scene, regime) & ~told).sum()),
-        peaks={d: _peak(amplitude[:, i], frequency, at_top[i]) for i, d in enumerate(empty.peaks)},
+        peaks={
+            d: _peak(amplitude[:, i], frequency, 0.0 * repeated, at_top[i]) for i, d in enumerate(empty.peaks)
+        },
         orbits=_orbits(points, empty, others, stuck),
     )
 
@@ -201,8 +205,8 @@ def _short(states: str) -> str:
     return states if len(states) <= LONGEST_REGIME else states[: LONGEST_REGIME - 3] + "..."
 
 
-def _peak(amplitude: FloatArray, frequency: FloatArray, stable: float) -> Peak:
+def _peak(amplitude: FloatArray, frequency: FloatArray, error: FloatArray, stable: float) -> Peak:
     if not np.isfinite(amplitude).any():
         return Peak(np.nan, np.nan)
     at = int(np.nanargmax(amplitude))
-    return Peak(float(amplitude[at]), float(frequency[at]), 0.0, stable)
+    return Peak(float(amplitude[at]), float(frequency[at]), float(error[at]), stable)

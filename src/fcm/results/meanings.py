@@ -26,7 +26,8 @@ EXACT = {  # meanings that differ where the curves are of exact periodic solutio
     "S separation",
     "table_error": "0: no table was used",
     "truncation_error": "0: no harmonic was left out",
-    "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle",
+    "stable": "1 where small disturbances die out: no Floquet multiplier of a period beyond the unit circle; "
+    "nan where repeats is 0",
 }
 ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that only these have
     "closure_error": (
