@@ -69,4 +69,25 @@ def test_a_change_of_stability_takes_few_periods(crossed):
     again = OrbitProblem(problem.scene)
     for k in steps:
         crossing(again, path, k)
-    assert again.periods < 45 * len(steps)
+    assert again.periods < 30 * len(steps)
+
+
+def test_a_place_beside_known_ones_is_the_same_and_takes_fewer_periods(crossed):
+    """The curve at a part of the way is one, whatever it was looked for from."""
+    problem, path, _, steps = crossed
+    again, parts, alone, beside = OrbitProblem(problem.scene), (0.7, 0.3, 0.5, 0.4, 0.45, 0.425), 0, 0
+    for k in steps:
+        among = Between(again, path, k)
+        for part in parts:
+            assert among.put(part)
+        found, fresh = among.z, OrbitProblem(problem.scene)
+        by_itself = Between(fresh, path, k)
+        before = fresh.periods
+        assert by_itself.put(parts[-1])
+        problem.measure(found)
+        assert (np.abs(found - by_itself.z) < 1e-10 * np.asarray(problem.scale)).all()
+        alone += fresh.periods - before
+        before = again.periods
+        assert among.put(0.5 * (parts[-1] + parts[-2]))
+        beside += again.periods - before
+    assert beside < 0.8 * alone

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fcm.continuation import Between, Path
+from fcm.continuation.secants import Secants
 from fcm.continuation.soft import TOUCHED
 from fcm.orbit.periodic import STABLE
 from fcm.orbit.problem import OrbitProblem
@@ -18,7 +19,6 @@ from fcm.scene.model import FloatArray
 
 LOOKS = 60  # at most
 SURE = 0.01 * STABLE  # by which a multiplier may differ from where stability ends, to be there
-FALLEN = 0.5  # of the excess at an end of the bracket: a secant that leaves more has met no smooth change
 
 
 class Place(NamedTuple):
@@ -34,6 +34,12 @@ class Place(NamedTuple):
         """Whether stability ends there, as far as can be told."""
         return abs(self.excess) <= 0.5 * SURE
 
+    @property
+    def flat(self) -> bool:
+        """Whether the greatest multiplier is a 1 that stays, beside one that is still smaller: a secant from
+        there leads nowhere."""
+        return abs(self.excess + STABLE) <= SURE
+
 
 def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     """The last place of the stable side between a point of a path and the next; None if it is not found.
@@ -42,32 +48,20 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     change of label is.
     """
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
-    between, jumps = Between(problem, path, first), False
+    sides = Secants(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
+    between, stable = Between(problem, path, first), min(ends, key=lambda place: place.excess)
     for _ in range(LOOKS):
-        low, high = ends
-        stable = min(ends, key=lambda place: place.excess)
-        if stable.there or (high.part - low.part) * between.length < TOUCHED:
+        if stable.there or sides.width * between.length < TOUCHED:
             return stable
-        part = _next(low, high, jumps)
-        if not between.put(part):
-            if jumps:
-                break
-            jumps = True
-            continue
+        tried = sides.at, 0.5 * (sides.low + sides.high)
+        part = next((at for at in (tried[::-1] if stable.flat else tried) if between.put(at)), None)
+        if part is None:
+            break
         new = _place(problem, part, between.z, between.direction)
-        side = 0 if (new.excess < 0.0) == (low.excess < 0.0) else 1
-        jumps = abs(new.excess) > FALLEN * abs(ends[side].excess)
-        if new.there:
-            return new
-        ends[side] = new
-    stable = min(ends, key=lambda place: place.excess)
+        sides.saw(part, new.excess)
+        if new.excess < 0.0 or new.there:
+            stable = new
     return stable if 0.0 < stable.part < 1.0 else None
-
-
-def _next(low: Place, high: Place, jumps: bool) -> float:
-    """The part of the way at which is looked next."""
-    share = 0.5 if jumps else low.excess / (low.excess - high.excess)
-    return low.part + share * (high.part - low.part)
 
 
 def _place(problem: OrbitProblem, part: float, z: FloatArray, direction: FloatArray) -> Place:
