@@ -121,14 +121,18 @@ def take(front: Front, length: cython.double, go: cython.bint) -> cython.int:
 def cross_softly(front: Front, past: cython.double) -> cython.bint:
     """Turn, where a label changes, into the direction that the curve has a length past it.
 
-    The labels are those beyond, even if no curve is found.
+    The labels are those beyond, even if no curve is found. The next place is looked for from as far beyond:
+    a curve that nearly goes back is else found on the side that it came from.
     """
     i: cython.Py_ssize_t
     aim(front, past)
     front.problem.bound(front.newton.z)
     front.here.margin[:] = front.problem.margin
+    front.aside[:] = 0.0
     if not onwards(front, past):
         return False
+    for i in range(front.guess.shape[0]):
+        front.aside[i] = past * front.here.tangent[i]
     front.here.tangent[:] = front.newton.tangent
     for i in range(front.guess.shape[0]):
         front.guess[i] = front.newton.scale[i] * front.here.tangent[i]

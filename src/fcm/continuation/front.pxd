@@ -7,6 +7,7 @@ cdef class Front(Step):
     cdef public int which
     cdef public Prediction prediction
     cdef double past
+    cdef public double[::1] aside
     cpdef int begin(self, double[::1] z, double[::1] row) except -1
     cpdef bint go(self, double step) except -1
     cpdef int accept(self, Place place, double length) except -1

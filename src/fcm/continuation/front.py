@@ -6,6 +6,7 @@ The next place is predicted, then corrected; see `step` for the places between.
 from __future__ import annotations
 
 import cython
+import numpy as np
 from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation import sharp
@@ -36,6 +37,8 @@ class Front(Step):
         self.missed, self.strayed = 0.0, 0.0
         self.which = -1  # the margin of which a change of sign was found last ahead of here
         self.past = 0.0  # up to here the margins beyond a corner are taken as known
+        # from the prediction to where the next place is looked for, scaled: to the far side of a corner here
+        self.aside = np.zeros(problem.unknowns + 1)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -68,6 +71,8 @@ class Front(Step):
         n: cython.Py_ssize_t = self.problem.unknowns
         missed: cython.double = 0.0
         self.prediction.put(self.here, self.newton.scale, step, self.guess)
+        for i in range(self.guess.shape[0]):
+            self.guess[i] += self.newton.scale[i] * self.aside[i]
         self.newton.z[:] = self.guess
         self.newton.row[:] = self.here.tangent
         if not self.sought(step) or not self.exactly():
@@ -133,6 +138,7 @@ class Front(Step):
         self.newton.scale[:] = self.problem.scale
         self.here.like(place, unit)
         self.past = 0.0
+        self.aside[:] = 0.0
         return 0
 
     @cython.ccall

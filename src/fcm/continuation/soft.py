@@ -27,12 +27,15 @@ GENTLY = 0.5  # cosine of the turn of a step
 ASTRAY = 0.5  # of its length, by which a step may miss the curve
 SHORTER, REFUSED, LONGER = 0.3, (0.1, 0.5), 3.0  # of a step to the next, to the one in its place: limits
 WARY = 1.0  # and to the one after a shortened one
-STRAIGHT = 0.999  # cosine beyond which a change of orientation is a branch point and not a way back
+# cosine beyond which a change of orientation is a branch point and not a way back, and what was taken for a
+# corner is none: labels leave out what is short, so that it is further on
+STRAIGHT = 0.999
 SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends before it
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
 TOUCHED = 1e-8  # a change of label this near is met: less than BEYOND
 MET = 1e-6  # and this near, where no curve is found up to there
 LOOKS = 5  # looks beyond one place, each ten times as far
+AWAY = 10.0  # times as far from the corner is the next place, at least: its guess is beyond by as much
 AROUND = 16  # directions in which a way out of a corner is sought at last,
 REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
 BACK = -0.99  # cosine below which a curve goes back on the way that it came, unless its label there is new:
@@ -174,8 +177,14 @@ class Soft:
             follower.leave(front.here, 0.0, past)
             new = np.array(front.here.tangent)
             front.problem.bound(np.asarray(front.here.z) + past * np.asarray(front.newton.scale) * new)
-            if self.leads_on(float(new @ self.came)):
+            cosine = float(new @ self.came)
+            if self.leads_on(cosine) and (cosine < STRAIGHT or self.repeated == LOOKS):
+                if cosine > BACK:  # it is found from here
+                    np.asarray(front.aside)[:] = 0.0
+                else:
+                    follower.aim(AWAY * past, True)
                 return None
+        np.asarray(front.aside)[:] = 0.0
         return None if self.sought(follower) else Status.STALLED
 
     def leads_on(self, cosine: float) -> bool:

@@ -19,6 +19,7 @@ class Stage(NamedTuple):
     scale: FloatArray  # (n + 1,)
     tangent: FloatArray  # (n + 1,) in units of the scale
     bend: FloatArray  # (n + 1,)
+    aside: FloatArray  # (n + 1,) of the next place, beyond a corner
     cubic: tuple[FloatArray, FloatArray, bool, bool]  # second and third derivative; known, taken
     margin: FloatArray
     output: FloatArray
@@ -46,7 +47,7 @@ def state_of(front: Front) -> dict[str, Any]:
     """What of a stage the front knows."""
     copies = {name: np.array(getattr(front.here, name)) for name in _OF_PLACE}
     way = front.prediction
-    more = {"scale": np.array(front.newton.scale), "bend": np.array(way.bend)}
+    more = {"scale": np.array(front.newton.scale), "bend": np.array(way.bend), "aside": np.array(front.aside)}
     cubic = np.array(way.second), np.array(way.third), bool(way.known), bool(way.cubic)
     return {
         **copies,
@@ -65,5 +66,6 @@ def put_back(front: Front, stage: Stage) -> None:
     np.asarray(front.newton.scale)[:] = stage.scale
     way = front.prediction
     np.asarray(way.bend)[:] = stage.bend
+    np.asarray(front.aside)[:] = stage.aside
     np.asarray(way.second)[:], np.asarray(way.third)[:], way.known, way.cubic = stage.cubic
     front.newton.evaluations = stage.evaluations
