@@ -21,6 +21,7 @@ from fcm.harmonic.inserted import Crossing
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
+from fcm.harmonic.verdicts import EITHER
 
 FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
 FIRST = 0.5
@@ -74,7 +75,11 @@ class _Beside:
         self.frequency = math.nan  # of the place that was looked at last
 
     def growth(self, place: float) -> float:
-        """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known."""
+        """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
+
+        The finer motion of so many harmonics tells it: to balance its own as well would be dear, and is done
+        only where it does not tell.
+        """
         k = min(int(place), len(self.path.z) - 2)
         z, direction = self.path.z[k], self.path.direction[k]
         if place != k:
@@ -85,7 +90,9 @@ class _Beside:
         if not self.lifted.beside(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
             return math.nan
         self.frequency = float(self.lifted.newton.z[-1])
-        return max(self.multipliers.verdict(np.array(self.lifted.newton.z)).growth, LEAST)
+        z = np.array(self.lifted.newton.z)
+        alone = self.multipliers.verdict(z, enough=EITHER).growth
+        return max(self.multipliers.verdict(z).growth if math.isnan(alone) else alone, LEAST)
 
     def crossing(self, one: Crossing, fine: float) -> float:
         """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
