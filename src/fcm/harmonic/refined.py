@@ -43,7 +43,7 @@ class Refined:
         """
         here = padded(z, self.harmonics, self.more)
         self.balance.measure(here)
-        self.balance.evaluate(here)
+        self.balance.probe(here)
         self.homotopy.removed[:] = np.where(self.balanced, self.balance.residual, 0.0)
         newton = self.newton
         newton.z[:-1], newton.z[-1] = x, z[-1]

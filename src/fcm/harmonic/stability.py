@@ -34,7 +34,8 @@ SPAN = 16  # points between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
-FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO
+FINE = 1e-7  # of a step: a crossing is known to this where the growth jumps, otherwise to a growth of ZERO;
+BETWEEN = 1e-4  # to this where verdicts are confirmed: the jump may be from one motion to a finer one
 ZERO = 1e-10
 LOOKS = 60  # at a crossing
 EDGE = 0.3  # of a step: between places nearer than this the edge of a window is not looked for
@@ -197,9 +198,10 @@ class _Along:
         before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
         kind = self.verdicts[a if before > 0.0 else b].kind
         sides = Secants(a - first, b - first, before, after, may_jump=True)
+        fine = FINE if enough else BETWEEN
         for _ in range(LOOKS):
             at = sides.at
-            if sides.width < FINE or not curve.put(at):
+            if sides.width < fine or not curve.put(at):
                 break
             verdict = self.verdicts.judge(curve.z, enough)
             now = max(verdict.growth, ENOUGH)
