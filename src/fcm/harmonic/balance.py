@@ -63,7 +63,7 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
-        self.probe(z)
+        self.pushed(z, True)
         slope(self.seen, self.force, self.load, self.by_frequency)
         for i in range(self.unknowns):
             self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
@@ -76,11 +76,17 @@ class Balance(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def probe(self, z: cython.double[::1]) -> cython.int:
+        return self.pushed(z, False)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def pushed(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
+        """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         first: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
-        self.contact_forces(z)
+        self.contact_forces(z, tangents)
         times_forces(self.seen, self.force, self.residual)
         for p in range(2 * self.contacts):
             first = (p // 2) * self.width + p % 2
@@ -95,8 +101,8 @@ class Balance(Problem):
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
-    def contact_forces(self, z: cython.double[::1]) -> cython.int:
-        """Forces and tangents of the contacts, without those counted to the structure."""
+    def contact_forces(self, z: cython.double[::1], tangents: cython.bint) -> cython.int:
+        """Forces of the contacts, and tangents, without those counted to the structure."""
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -104,13 +110,17 @@ class Balance(Problem):
         for c in range(self.contacts):
             law: Law = self.laws[c]
             first = c * self.width
-            law.evaluate(z, first)
+            if not tangents:
+                law.probe(z, first)
+            else:
+                law.evaluate(z, first)
+                for i in range(self.width):
+                    for k in range(self.width):
+                        self.tangent[c, i, k] = law.tangent[i, k]
+                self.tangent[c, 1, 1] -= self.counted[c]
             for i in range(self.width):
                 self.force[first + i] = law.force[i]
-                for k in range(self.width):
-                    self.tangent[c, i, k] = law.tangent[i, k]
             self.force[first + 1] -= self.counted[c] * z[first + 1]
-            self.tangent[c, 1, 1] -= self.counted[c]
         return 0
 
     @cython.ccall

@@ -14,5 +14,6 @@ cdef class Law:
     cdef public int[::1] kind
     cdef public double[::1] angle
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int refine(self, bint exact) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1

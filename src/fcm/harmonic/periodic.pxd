@@ -5,3 +5,4 @@ from fcm.harmonic.law cimport Law
 cdef class Periodic(Law):
     cdef public PeriodicContact kernel
     cdef public Margins bounds
+    cdef int forces(self, double[::1] x, Py_ssize_t first, bint tangent) except -1

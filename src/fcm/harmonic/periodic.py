@@ -18,8 +18,8 @@ else:
 
 @cython.cclass
 class Periodic(Law):
-    """Forces of a periodic motion with their derivatives; contacts may share the kernel, which is a
-    workspace."""
+    """Forces of a periodic motion with their derivatives; contacts may share the kernel, a workspace, whose
+    array the tangent is."""
 
     def __init__(
         self,
@@ -31,13 +31,26 @@ class Periodic(Law):
     ) -> None:
         self.kernel, self.bounds = kernel, Margins(kernel.cycle)
         Law.__init__(self, kernel.unknowns, self.bounds.most, mu, k_u, k_v, n_0)
+        self.tangent = kernel.jacobian
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
-        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, True)
-        self.force[:] = self.kernel.forces
-        self.tangent[:, :] = self.kernel.jacobian
+        return self.forces(x, first, True)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def probe(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        return self.forces(x, first, False)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def forces(self, x: cython.double[::1], first: cython.Py_ssize_t, tangent: cython.bint) -> cython.int:
+        """And their tangent, if that is wanted."""
+        i: cython.Py_ssize_t
+        self.kernel.evaluate(x, first, self.mu, self.k_u, self.k_v, self.n_0, 0.0, tangent)
+        for i in range(self.width):
+            self.force[i] = self.kernel.forces[i]
         self.force[1] -= max(self.n_0, 0.0)
         self.mixed = self.kernel.kind == MIXED
         return 0

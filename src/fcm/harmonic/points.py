@@ -41,7 +41,7 @@ class Points:
         j: cython.Py_ssize_t
         for i in range(z.shape[0]):
             b.load = level[i]
-            b.probe(z[i])
+            b.pushed(z[i], True)
             b.report(z[i], direction[i])
             for d in range(b.shown.dofs):
                 self.mean[i, d], self.amplitude[i, d] = b.shown.mean[d], b.shown.amplitude[d]
