@@ -738,28 +738,57 @@ def test_a_margin_is_the_same_only_within_its_group():
     assert [front.here.margin_at(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
 
 
-def test_where_places_are_dear_the_last_step_takes_the_derivatives_from_before():
+class Counted(Planar):
+    """How often it was evaluated, and how often without its derivatives."""
+
+    evaluated = probed = 0
+
+    def evaluate(self, z):
+        self.evaluated += 1
+        return super().evaluate(z)
+
+    def probe(self, z):
+        self.probed += 1
+        return super().evaluate(z)
+
+
+def corrected(f, x, p, dear=False, close=1e-13):
+    """Newton's method from x at the parameter p."""
+    newton = Newton(Counted(f))
+    newton.problem.dear, newton.close = dear, close
+    newton.z[:], newton.scale[:] = start(x, p), 1.0
+    newton.row[:] = np.array([0.0, 0.0, 1.0])
+    assert newton.correct(1.0)
+    return newton, (newton.problem.evaluated, newton.problem.probed)
+
+
+def rooted(x, p):
+    """x + |x| ** 1.5 = p, whose derivative changes as a root."""
+    return x + abs(x) ** 1.5 - p, 1.0 + 1.5 * np.sqrt(abs(x)), -1.0
+
+
+@pytest.mark.parametrize("dear", [False, True])
+def test_the_last_step_takes_the_derivatives_from_before_where_they_hardly_change(dear):
     """The point is as exact as with those there, the direction to what the step before was long."""
+    newton, counts = corrected(circle().f, 3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5), dear)
+    assert counts == (3, 1)
+    x, p = newton.z[0], newton.z[2]
+    assert x == pytest.approx(3.0 + np.sqrt(4.0 - (p - 2.0) ** 2), rel=1e-15)
+    assert newton.tangent[2] / newton.tangent[0] == pytest.approx(-(x - 3.0) / (p - 2.0), rel=1e-4)
 
-    class Counted(Planar):
-        evaluated = probed = 0
 
-        def evaluate(self, z):
-            self.evaluated += 1
-            return super().evaluate(z)
+def test_where_derivatives_change_as_a_root_the_last_step_takes_its_own():
+    """Unless places are dear: the direction is then off by the root of the step before."""
+    for dear, off in ((False, 1e-9), (True, 1e-4)):
+        newton, (_, probed) = corrected(rooted, 1e-3, 1e-6 + 1e-9, dear)
+        assert newton.z[0] == pytest.approx(1e-6, rel=1e-9)
+        assert probed == int(dear)
+        assert newton.tangent[2] / newton.tangent[0] == pytest.approx(1.0015, rel=off)
 
-        def probe(self, z):
-            self.probed += 1
-            return super().evaluate(z)
 
-    newton = Newton(Counted(circle().f))
-    for dear, counts in ((False, (4, 0)), (True, (3, 1))):
-        newton.problem.evaluated = newton.problem.probed = 0
-        newton.problem.dear = dear
-        newton.z[:], newton.scale[:] = start(3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5)), 1.0
-        newton.row[:] = np.array([0.0, 0.0, 1.0])
-        assert newton.correct(1.0)
-        assert (newton.problem.evaluated, newton.problem.probed) == counts
-        x, p = newton.z[0], newton.z[2]
-        assert x == pytest.approx(3.0 + np.sqrt(4.0 - (p - 2.0) ** 2), rel=1e-15)
-        assert newton.tangent[2] / newton.tangent[0] == pytest.approx(-(x - 3.0) / (p - 2.0), rel=1e-4)
+def test_a_point_that_need_not_be_close_takes_fewer_evaluations():
+    x, p = 3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5)
+    rough, few = corrected(circle().f, x, p, close=1e-9)
+    exact, many = corrected(circle().f, x, p)
+    assert sum(few) < sum(many)
+    assert 1e-15 < abs(rough.z[0] - exact.z[0]) < 1e-9

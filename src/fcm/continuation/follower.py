@@ -20,13 +20,17 @@ from fcm.continuation.stage import Stage, put_back, state_of
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.ahead import ahead
+    from cython.cimports.fcm.continuation.front import PRELIMINARY
     from cython.cimports.fcm.continuation.leaving import before_corner
     from cython.cimports.fcm.continuation.margins import crosses, detour, dip, turning
+    from cython.cimports.fcm.continuation.newton import CLOSE
     from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
 else:
     from fcm.continuation.ahead import ahead
+    from fcm.continuation.front import PRELIMINARY
     from fcm.continuation.leaving import before_corner
     from fcm.continuation.margins import crosses, detour, dip, turning
+    from fcm.continuation.newton import CLOSE
     from fcm.continuation.step_rule import clear, extent, good, next_step
 
 FIRST = cython.declare(cython.double, 1e-3)  # the first step
@@ -78,6 +82,7 @@ class Follower:
     ) -> None:
         self.problem, self.front = problem, front or Front(problem)
         self.front.newton.evaluations = 0
+        self.front.close = PRELIMINARY if hasty else CLOSE
         self.max_step, self.progress, self.hasty = max_step, progress, hasty
         self.near = max_step if hasty or problem.dear else NEAR
         self.passage = Passage(self.front, span, stations)
@@ -184,6 +189,7 @@ class Follower:
     @cython.exceptval(-1, check=False)
     def hidden(self) -> cython.double:
         """Length at which the step passes by something that both its ends tell of; 0 if they do not."""
+        self.front.incline()
         at: cython.double = dip(self.front)
         return at if at > 0.0 else detour(self.front, self.passage.most)
 

@@ -16,13 +16,17 @@ from fcm.continuation.step import Step
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.bordered import ROUNDINGS
+    from cython.cimports.fcm.continuation.newton import CLOSE
     from cython.cimports.fcm.continuation.prediction import Prediction, along
 else:
     from fcm.continuation.bordered import ROUNDINGS
+    from fcm.continuation.newton import CLOSE
     from fcm.continuation.prediction import Prediction, along
 
 NAN = cython.declare(cython.double, float("nan"))
 ASTRAY = cython.declare(cython.double, 0.3)  # of a step: approximate equations that move it further mislead
+# error of a place that is corrected once more, or from which the next is looked for and nothing else
+PRELIMINARY = cython.declare(cython.double, 1e-9)
 SHARP = cython.declare(cython.double, sharp.SHARP)
 MISLED = cython.declare(cython.double, 0.5)  # of a step of a soft problem: one that misses by more is refused
 
@@ -36,6 +40,7 @@ class Front(Step):
         self.prediction = Prediction(problem.unknowns + 1)
         self.missed, self.strayed = 0.0, 0.0
         self.which = -1  # the margin of which a change of sign was found last ahead of here
+        self.close = CLOSE  # to the curve, where a step ends
         self.past = 0.0  # up to here the margins beyond a corner are taken as known
         # from the prediction to where the next place is looked for, scaled: to the far side of a corner here
         self.aside = np.zeros(problem.unknowns + 1)
@@ -57,6 +62,7 @@ class Front(Step):
         if not self.newton.correct(1.0):
             return 0
         self.record(self.here, True, True)
+        self.here.inclined = True
         self.prediction.straighten()
         return 1
 
@@ -86,8 +92,17 @@ class Front(Step):
         self.strayed = max(strayed - rounding, 0.0) / step
         self.cosine = along(self.here.tangent, self.newton.tangent)
         self.record(self.there, True, True)
-        self.there.incline(self.problem, self.newton.scale, self.guess)
         return True
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def incline(self) -> cython.int:
+        """Give the margins here and there their slopes, if they have none yet."""
+        if not self.there.inclined:
+            self.there.incline(self.problem, self.newton.scale, self.guess)
+        if not self.here.inclined:
+            self.here.incline(self.problem, self.newton.scale, self.guess)
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -106,24 +121,43 @@ class Front(Step):
     @cython.cfunc
     @cython.exceptval(-1, check=False)
     def sought(self, step: cython.double) -> cython.bint:
-        """Correct the place there, with the approximate equations first if there are any.
-
-        What the exact ones then change is its shift; NaN where the approximate ones had no solution.
-        """
-        near: cython.bint = False
-        if self.problem.coarse:
-            self.problem.refine(False)
-            near = self.newton.correct(step) and self.newton.moved < ASTRAY * step
-            self.problem.refine(True)
-            near = near and self.newton.correct(step) and self.newton.moved < ASTRAY * step
-            if near:
-                self.there.shift = self.newton.moved
-                return True
-            self.newton.z[:] = self.guess
-            self.there.shift = NAN
+        """Correct the place there, with the approximate equations first if there are any."""
         if self.problem.soft and step > SHARP:
             return self.newton.correct(step, MISLED * step)
-        return self.newton.correct(step)
+        if self.problem.coarse and self.twice(step):
+            return True
+        return self.roughly(step, self.close)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def roughly(self, step: cython.double, close: cython.double) -> cython.bint:
+        """Correct the place there, so that it is as close to the curve as that."""
+        self.newton.close = close
+        found: cython.bint = self.newton.correct(step)
+        self.newton.close = CLOSE
+        return found
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def twice(self, step: cython.double) -> cython.bint:
+        """Correct the place there with the approximate equations, then with the exact ones.
+
+        What those change is its shift; NaN where the approximate ones had no solution. Where both are the
+        same there is nothing to change; whether they are is as it was where they were evaluated last, mostly.
+        """
+        close: cython.double = PRELIMINARY if self.problem.differs() else CLOSE
+        self.problem.refine(False)
+        near: cython.bint = self.roughly(step, close) and self.newton.moved < ASTRAY * step
+        self.problem.refine(True)
+        self.there.shift = 0.0
+        if near and close == CLOSE and not self.problem.differs():
+            return True
+        if near and self.newton.correct(step) and self.newton.moved < ASTRAY * step:
+            self.there.shift = self.newton.moved if self.problem.differs() else 0.0
+            return True
+        self.newton.z[:] = self.guess
+        self.there.shift = NAN
+        return False
 
     @cython.ccall
     @cython.exceptval(-1, check=False)

@@ -1,6 +1,9 @@
 from fcm.continuation.bordered cimport Bordered
 
+cdef double CLOSE
+
 cdef class Newton(Bordered):
+    cdef public double close
     cdef public double unsure
     cpdef bint correct(self, double reach, double most=*) except -1
     cdef bint chords(self, double before) except -1

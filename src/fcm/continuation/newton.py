@@ -18,7 +18,7 @@ else:
     from fcm.continuation.bordered import FAR, ROUNDINGS
 
 ITERATIONS = cython.declare(cython.int, 8)  # Newton steps before a guess is judged too far away
-CLOSE = cython.declare(cython.double, 1e-13)  # error of a point, estimated from the convergence
+CLOSE = cython.declare(cython.double, 1e-13)  # `close` where nothing else is said
 SMALL = cython.declare(cython.double, 1e-12)  # a step after which there is no further one
 EXACT = cython.declare(cython.double, 1e-11)  # a step that is not worth another evaluation
 ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, though the way was long
@@ -36,10 +36,14 @@ COARSEST = cython.declare(cython.double, 1e-6)  # a longer step is none that rou
 
 @cython.cclass
 class Newton(Bordered):
-    """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation."""
+    """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
+
+    close: the error that a point may have, estimated from the convergence.
+    """
 
     def __init__(self, problem: Problem) -> None:
         Bordered.__init__(self, problem)
+        self.close = CLOSE
         self.unsure = 0.0  # length of the last step of `correct`, if rounding made it
 
     @cython.ccall
@@ -49,7 +53,7 @@ class Newton(Bordered):
 
         reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
         than the most, or the second neither slight nor half as long, it is given up; moved is then the first.
-        Converged is what has an error below CLOSE, for convergence of the order 1.5, that of a force whose
+        Converged is what is close, for convergence of the order 1.5, that of a force whose
         slope changes as a root.
         """
         count: cython.int
@@ -78,12 +82,14 @@ class Newton(Bordered):
                     return self.direct()
                 before = step
                 continue
-            if (count > 0 and step * ratio * sqrt(ratio) < CLOSE) or step < SMALL:
+            if (count > 0 and step * ratio * sqrt(ratio) < self.close) or step < SMALL:
                 return self.direct()
             if noise:
                 self.unsure = step
                 return self.direct()
-            if self.problem.dear and count > 0 and step < SHORT and _again(self, step):
+            # the Jacobian hardly changes along a step that is shorter than the square of the one before
+            steady: cython.bint = count > 0 and (self.problem.dear or step < before * before)
+            if steady and step < SHORT and _again(self, step):
                 return self.direct()
             before = step
         return False
@@ -144,7 +150,7 @@ def _again(newton: Newton, before: cython.double) -> cython.bint:
     taken. What it leaves is less by as much again."""
     newton.problem.probe(newton.z)
     step: cython.double = newton.step()
-    if not step * step < CLOSE * before:
+    if not step * step < newton.close * before:
         return False
     _move(newton)
     return True

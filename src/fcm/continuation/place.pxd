@@ -12,6 +12,7 @@ cdef class Place:
     cdef public double[::1] growth
     cdef public double orientation
     cdef public double shift
+    cdef bint inclined
     cdef int bounded(self, Problem problem) except -1
     cdef int like(self, Place other, double unit) except -1
     cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2

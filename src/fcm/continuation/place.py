@@ -28,6 +28,7 @@ class Place:
         self.slope = np.zeros(problem.margins)  # of the margins, along a unit of length
         self.output, self.growth = np.zeros(problem.outputs), np.zeros(problem.outputs)
         self.orientation, self.shift, self.group = 0.0, 0.0, problem.group
+        self.inclined = False  # whether the slopes are those there
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -43,7 +44,7 @@ class Place:
     def like(self, other: Place, unit: cython.double) -> cython.int:
         """Take everything but the shift from another place, whose unit of length is so many of the new."""
         i: cython.Py_ssize_t
-        self.orientation = other.orientation
+        self.orientation, self.inclined = other.orientation, other.inclined
         for i in range(other.z.shape[0]):
             self.z[i], self.tangent[i] = other.z[i], other.tangent[i]
         for i in range(other.slope.shape[0]):
@@ -92,6 +93,7 @@ class Place:
         """The slopes of the margins along the tangent, from differences to a point that is put beside."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
+        self.inclined = True
         if problem.margins == 0 or problem.soft:
             return 0
         for i in range(beside.shape[0]):

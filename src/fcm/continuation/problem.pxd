@@ -24,6 +24,7 @@ cdef class Problem:
     cpdef int measure(self, double[::1] z) except -1
     cpdef int bound(self, double[::1] z) except -1
     cpdef int refine(self, bint exact) except -1
+    cpdef bint differs(self) except -1
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
     cpdef int condense(self, double[::1] row, double[:, ::1] matrix) except -1
     cpdef int shorten(self, double[::1] right, double[::1] out) except -1

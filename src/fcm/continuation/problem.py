@@ -83,6 +83,12 @@ class Problem:
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
+    def differs(self) -> cython.bint:
+        """Whether the approximate equations are others than these, where either was evaluated last."""
+        return True
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def report(self, z: cython.double[::1], direction: cython.double[::1]) -> cython.int:
         """What is reported of z, positive numbers, and their growth along a direction (n + 1,)."""
         return 0

@@ -109,7 +109,7 @@ class Step:
     def record(self, place: Place, margins: cython.bint, outputs: cython.bint) -> cython.int:
         """The corrector's result as a place, with its margins, its outputs."""
         i: cython.Py_ssize_t
-        place.orientation = self.newton.orientation
+        place.orientation, place.inclined = self.newton.orientation, False
         for i in range(place.z.shape[0]):
             place.z[i], place.tangent[i] = self.newton.z[i], self.newton.tangent[i]
         if margins and self.problem.margins:

@@ -212,6 +212,17 @@ class Balance(Problem):
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
+    def differs(self) -> cython.bint:
+        """Whether a contact slips or separates: coefficients are of these alone."""
+        c: cython.Py_ssize_t
+        for c in range(self.contacts):
+            law: Law = self.laws[c]
+            if law.mixed:
+                return True
+        return False
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
     def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
         by = np.asarray(self.jacobian)[:, 0]
         assert self.condensed is not None
