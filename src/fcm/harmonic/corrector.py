@@ -17,7 +17,7 @@ from fcm.scene.model import FloatArray
 LARGE = cython.declare(cython.double, 0.05)  # a change of an amplitude, from which it is corrected once more
 ENOUGH = 0.1  # of a displacement: when Newton's last step was less than this, what is left is far less
 ROUNDS = 4  # of more and more harmonics, until a corrected point settles,
-SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole
+SETTLED = 0.05  # which it has when a round changes it by less than this part of the whole, or would
 # evaluations times the square of the unknowns, some half second of work, for points that are not found
 FRUITLESS = cython.declare(cython.double, 4e7)
 MOST = 16  # balances, and correctors, that are kept for the next system,
@@ -200,15 +200,16 @@ class Corrector:
 
     def settled(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> FloatArray:
         """Frequency and amplitudes (1 + dof,) of a point displaced again and again, each time with the
-        harmonics that would do most, until that changes the amplitudes (dof,) no more. NaN where that leads
-        nowhere.
+        harmonics that would do most, until that changes the amplitudes (dof,) no more, or would not without
+        feedback. NaN where that leads nowhere.
         """
         harmonics, now, frequency = self.system.harmonics, amplitude, z[-1]
         for _ in range(ROUNDS):
             corrector = self.of(harmonics)
             corrector.further.at(z, now)
             more = corrector.ranking.most()
-            if more == harmonics:
+            rest = np.asarray(corrector.further.share).sum() * now
+            if more == harmonics or (rest <= SETTLED * np.abs(now - amplitude)).all():
                 break
             lifted = corrector.lifted(more)
             if not lifted.beside(z, direction):
