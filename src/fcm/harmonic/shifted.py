@@ -93,6 +93,9 @@ class Beside:
         low: cython.double = 0.0
         high: cython.double = 1.0
         rising: cython.bint = after > before
+        if wanted == before:  # as where the curves are the same
+            self.at = 0.0
+            return True
         for _ in range(HALVINGS):
             self.at = 0.5 * (low + high)
             now: cython.double = cubic(

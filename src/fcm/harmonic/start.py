@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -83,10 +84,11 @@ def _followed(system: System, omega: float, linear: float, top: float) -> Found:
 
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
     path = _hasty(system, omega, linear, top, (1.0,))
-    found = tuple(np.append(path.z[i, :-1], omega) for i in np.flatnonzero(path.parameter == 1.0))
+    found = path.z[path.parameter == 1.0]
+    found[:, -1] = omega
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
     reach, turns = _reach(path.status, path.parameter), turns_of(path, omega)
-    return Found(omega, system.harmonics, found, complete, reach, turns)
+    return Found(omega, system.harmonics, tuple(found), complete, reach, turns)
 
 
 def _shared(system: System, omega: float, top: float) -> Found | None:
@@ -128,8 +130,8 @@ def _hasty(system: System, omega: float, linear: float, top: float, stations: tu
 
 def _lost(path: Path, stations: tuple[float, ...]) -> bool:
     """Whether a curve leads across one of its stations without a point there."""
-    offs = [path.parameter - one for one in stations]
-    return any(bool((off[:-1] * off[1:] < 0.0).any()) for off in offs)
+    levels = path.parameter.tolist()
+    return any((a - one) * (b - one) < 0.0 for one in stations for a, b in pairwise(levels))
 
 
 def few_of(system: System) -> int:

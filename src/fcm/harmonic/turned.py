@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -44,12 +45,12 @@ class Turn(NamedTuple):
 
 def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
     """Where a curve of levels at a frequency turns; its displacements and levels are multiples of a unit."""
-    levels = unit * path.parameter
-    rises = levels[1:] > levels[:-1]
+    levels = (unit * path.parameter).tolist()
+    rises = [after > before for before, after in pairwise(levels)]
     found = []
-    for i in np.flatnonzero(rises[:-1] != rises[1:]) + 1:
+    for i in (i for i in range(1, len(rises)) if rises[i] != rises[i - 1]):
         z, direction = np.append(unit * path.z[i, :-1], omega), np.append(path.direction[i, :-1], 0.0)
-        found.append(Turn(float(levels[i]), z, direction, bool((levels[i] < 1.0) == rises[i - 1])))
+        found.append(Turn(levels[i], z, direction, (levels[i] < 1.0) == rises[i - 1]))
     return tuple(found)
 
 

@@ -115,7 +115,8 @@ def _curve(followed: _Followed) -> Curve:
     system, paths = found.system, found.traced.branches.paths
     points, rounding = with_digits(system, recorded(system, paths, found.shown))
     scene, first = system.scene, system.harmonics.index(1)
-    rows = np.insert(np.arange(points.path.size), np.flatnonzero(np.diff(points.path)) + 1, -1)
+    ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
+    rows = np.insert(rows, ends, -1) if ends.size else rows
     words, borne = cycles(system, points.z)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
