@@ -8,6 +8,7 @@ import pytest
 
 import fcm
 from fcm import fourier_coefficients, hysteresis_loop, periodic_forces, periodic_loop
+from fcm.contact.periodic.forces import PeriodicContact
 
 from ..program import python
 from .cases import points
@@ -197,3 +198,23 @@ def test_the_sources_run_as_python(tmp_path):
         loop = periodic_loop(x, y, *case.arguments()[2:])
         here = [np.ravel(part) for part in G] + [[loop.dissipation, loop.greatest_force, len(loop.sequence)]]
         np.testing.assert_allclose(row, np.concatenate(here), rtol=1e-13, atol=1e-14 * (1.0 + size(case)))
+
+
+@pytest.mark.parametrize("few", [[1], [1, 3]])
+def test_few_harmonics_among_many_are_as_alone_and_a_fundamental_takes_its_own_nodes(few):
+    many, outputs = [1, 2, 3, 7, 12], [1, 2, 3, 7, 12, 15]
+    alone, among = PeriodicContact(few, outputs), PeriodicContact(many, outputs)
+    columns = [0, 1, *(2 + 4 * many.index(h) + i for h in few for i in range(4))]
+    rng, slipped = np.random.default_rng(3), 0
+    for _ in range(50):
+        x, law = rng.standard_normal(len(columns)), (0.5, 1.0, 1.3, rng.uniform(-1.0, 2.0))
+        padded = np.zeros(2 + 4 * len(many))
+        padded[columns] = x
+        among.at(rng.standard_normal(padded.size), *law)  # one that moves in all comes before
+        assert alone.at(x, *law) == among.at(padded, *law)
+        slipped += bool(np.abs(alone.forces)[-4:].any())  # a harmonic that the motion has not
+        np.testing.assert_allclose(among.forces, alone.forces, rtol=0.0, atol=1e-12)
+        mine = np.asarray(among.jacobian)[:, columns]
+        np.testing.assert_allclose(mine, alone.jacobian, rtol=0.0, atol=1e-9)
+    assert slipped > 30
+    assert among.motion.nodes == (5 if few == [1] else 49)

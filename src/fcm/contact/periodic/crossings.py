@@ -35,7 +35,7 @@ class Crossings:
         self.capacity = 4 * motion.highest + 4  # twice as many zeros as harmonics, and as many extremes
         self.angle = np.empty(self.capacity)
         self.kind = np.empty(self.capacity, dtype=np.intc)
-        self.open = np.zeros(self.motion.nodes, dtype=np.intc)
+        self.open = np.zeros(motion.at.shape[1], dtype=np.intc)
         self.stack = np.empty((DEEPEST + 2, 3))
         self.count = self.row = self.rising = self.falling = self.sign = 0
         self.curvature = self.fourth = self.noise = 0.0
@@ -58,7 +58,7 @@ class Crossings:
         self.bounds()
         self.sign = 0
         start: cython.int = self.definite_node()
-        if self.motion.highest == 1 and row != LOAD:
+        if self.motion.alone and row != LOAD:
             _of_one(self, self.motion, self.motion.first + start * self.motion.step)
             return
         for j in range(start, start + self.motion.nodes):
@@ -75,7 +75,7 @@ class Crossings:
             self.noise = self.motion.limit_bound[order] + self.motion.limit_bound[order + 1]
         self.noise = EPSILON * (4.0 * self.noise + 2.0 * fabs(self.motion.mean[self.row]))
         self.curvature = self.fourth = 0.0
-        for k in range(self.motion.count):
+        for k in range(self.motion.moving):
             amplitude = fabs(self.motion.re[self.row, k]) + fabs(self.motion.im[self.row, k])
             amplitude *= self.motion.order[k] * self.motion.order[k]
             self.curvature += amplitude

@@ -57,7 +57,7 @@ class Events:
         h: cython.int = 1
         k: cython.int
         e: cython.int = self.events
-        for k in range(self.motion.count):
+        for k in range(self.motion.moving):
             while h < self.motion.number[k]:
                 turned = c * c_1 - s * s_1
                 s = s * c_1 + c * s_1

@@ -146,7 +146,7 @@ class Integrals:
             f: float = start
             limit: float = reach
             self.grow(-2.0 * half * half, sin(y))
-            for k in range(self.motion.count):
+            for k in range(self.motion.moving):
                 h = self.motion.number[k]
                 a = self.power_cos[begin, h] * self.grow_re[h] - self.power_sin[begin, h] * self.grow_im[h]
                 b = self.power_sin[begin, h] * self.grow_re[h] + self.power_cos[begin, h] * self.grow_im[h]
@@ -186,7 +186,7 @@ class Integrals:
         s: float
         re: float = self.motion.mean[row] * self.cos_sum[which, h]
         im: float = -self.motion.mean[row] * self.sin_sum[which, h]
-        for k in range(self.motion.count):
+        for k in range(self.motion.moving):
             d, p = h - self.motion.number[k], h + self.motion.number[k]
             a, b = 0.5 * self.motion.re[row, k], 0.5 * self.motion.im[row, k]
             if d >= 0:

@@ -1,13 +1,15 @@
+from fcm.contact.periodic.nodes cimport Nodes
+
 cdef int LOAD, LOAD_RATE, LOWER, LOWER_RATE, UPPER, UPPER_RATE, FORCE, FORCE_RATE, REACH
 cdef int OPEN, CLOSED, MIXED, UNKNOWN
 cdef double EPSILON
 
-cdef class Motion:
-    cdef readonly int count, highest, nodes
-    cdef readonly double step, first, scale, load_scale, ratio, preload
+cdef class Motion(Nodes):
+    cdef readonly int count, moving
+    cdef readonly double scale, load_scale, ratio, preload
     cdef readonly int[::1] number
     cdef readonly double[::1] order, mean, load_bound, limit_bound
-    cdef readonly double[:, ::1] re, im, node_cos, node_sin, at
+    cdef readonly double[:, ::1] re, im, at
     cdef bint taken, sampled
     cdef int load(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
     cdef void fill(self, double[::1] x, Py_ssize_t first, double k_u, double k_v) noexcept nogil

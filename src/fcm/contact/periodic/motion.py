@@ -14,6 +14,8 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import cos, fabs, floor, hypot, isfinite, sin
 
+from fcm.contact.periodic.nodes import Nodes
+
 # Rows of coefficients and of samples. The row after one is its derivative.
 LOAD = cython.declare(cython.int, 0)
 LOAD_RATE = cython.declare(cython.int, 1)
@@ -37,38 +39,28 @@ LEAST = cython.declare(cython.double, 1e-290)  # what is smaller counts as nothi
 FAINT = cython.declare(
     cython.double, 1e-150
 )  # motion that is smaller than its mean by that counts as nothing
-# Nodes lie beside the multiples of pi / 2, where symmetric motions have their events.
-FIRST_NODE = cython.declare(cython.double, 0.1171)
-NODES_PER_HARMONIC = cython.declare(cython.int, 4)  # at first: where that proves nothing it is halved
 
 
 @cython.cclass
-class Motion:
+class Motion(Nodes):
     """u and n_0 + k_v v with given harmonics; `load` takes one contact, `sample` fills the nodes.
 
+    moving: the harmonics after so many are nothing, as where few are looked at among more.
     taken: whether a cycle remembers the motion that is loaded; see `Cycle.take`. sampled: whether the nodes
     are those of that motion.
     """
 
     def __init__(self, harmonics: list[int]) -> None:
-        numbers = np.array(harmonics, dtype=np.intc)
-        self.count = len(harmonics)
-        self.highest = max(harmonics, default=0)
-        self.number = numbers
-        self.order = numbers.astype(np.float64)
-        self.nodes = NODES_PER_HARMONIC * max(self.highest, 1) + 1
-        self.step = 2.0 * np.pi / self.nodes
-        self.first = FIRST_NODE * self.step
-        angle = np.outer(self.first + self.step * np.arange(self.nodes), np.arange(self.highest + 1))
-        self.node_cos = np.ascontiguousarray(np.cos(angle)[:, numbers])
-        self.node_sin = np.ascontiguousarray(np.sin(angle)[:, numbers])
+        Nodes.__init__(self, harmonics)
+        numbers, self.count = np.array(harmonics, dtype=np.intc), len(harmonics)
+        self.number, self.order = numbers, numbers.astype(np.float64)
         self.re = np.zeros((ROWS, max(self.count, 1)))
         self.im = np.zeros((ROWS, max(self.count, 1)))
         self.mean = np.zeros(ROWS)
         self.scale = self.load_scale = self.ratio = self.preload = 0.0
         self.taken = self.sampled = False
         self.load_bound, self.limit_bound = np.zeros(POWERS), np.zeros(POWERS)
-        self.at = np.zeros((REACH, self.nodes))
+        self.at = np.zeros((REACH, self.many))
 
     def load(
         self,
@@ -81,13 +73,16 @@ class Motion:
     ) -> cython.int:
         """Take a contact; OPEN, CLOSED or MIXED over the cycle, UNKNOWN where a number is not finite."""
         self.taken = self.sampled = False
+        self.moving = 0
         k: cython.int
         i: cython.Py_ssize_t = first + 2
         motion: float = 0.0
         variation: float = 0.0
-        for k in range(self.count):  # noqa: B007
+        for k in range(self.count):
             motion = max(motion, fabs(x[i]), fabs(x[i + 1]))
             variation = max(variation, fabs(x[i + 2]), fabs(x[i + 3]))
+            if not x[i] == x[i + 1] == x[i + 2] == x[i + 3] == 0.0:
+                self.moving = k + 1
             # max passes over what is not a number
             if not (isfinite(x[i]) and isfinite(x[i + 1]) and isfinite(x[i + 2]) and isfinite(x[i + 3])):
                 return UNKNOWN
@@ -101,6 +96,7 @@ class Motion:
             return UNKNOWN
         self.ratio = mu * (self.load_scale / self.scale)
         self.fill(x, first + 2, k_u, k_v)
+        self.take_nodes(self.moving)
         self.mean[LOAD] = self.preload / self.load_scale
         self.mean[REACH] = self.ratio * self.mean[LOAD]
         self.mean[LOWER] = -self.mean[REACH]
@@ -181,8 +177,12 @@ class Motion:
             y: float = 0.0
             y_1: float = 0.0
             y_2: float = 0.0
-            for k in range(self.count):
-                order, c, s = self.order[k], self.node_cos[j, k], self.node_sin[j, k]
+            for k in range(self.moving):
+                order, c, s = (
+                    self.order[k],
+                    self.node_cos[self.before + j, k],
+                    self.node_sin[self.before + j, k],
+                )
                 real = self.re[FORCE, k] * c - self.im[FORCE, k] * s
                 imag = self.re[FORCE, k] * s + self.im[FORCE, k] * c
                 u += real
@@ -218,7 +218,7 @@ class Motion:
         value: float = self.mean[other]
         h: cython.int = 1
         k: cython.int
-        for k in range(self.count):
+        for k in range(self.moving):
             while h < self.number[k]:
                 turned = c * c_1 - s * s_1
                 s = s * c_1 + c * s_1
@@ -236,7 +236,7 @@ class Motion:
         bend: float = 0.0
         h: cython.int = 1
         k: cython.int
-        for k in range(self.count):
+        for k in range(self.moving):
             while h < self.number[k]:
                 turned = c * c_1 - s * s_1
                 s = s * c_1 + c * s_1
