@@ -11,7 +11,7 @@ from fcm.continuation import Mark, Status
 from fcm.harmonic.autonomous import Autonomous
 from fcm.harmonic.mode import ModeError, linear_modes, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, resonances, resonant_level
-from fcm.harmonic.record import cycles
+from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene.load import scene_from_dict
@@ -83,7 +83,9 @@ def test_negative_damping_gives_what_friction_and_damping_take(harmonics):
     scene = load_scene("yang1998-n5").in_use()
     system = System(scene, harmonics)
     mode = nonlinear_mode(system, 1, (1.0, 30.0), 0.05)
-    taken = cycles(system, mode.contacts)[1][:, 0, 3]  # an integral over the cycle, not Fourier coefficients
+    taken = cycles(system, mode.contacts, loops(system, mode.contacts))[1][
+        :, 0, 3
+    ]  # an integral over the cycle, not Fourier coefficients
     w, D = mode.omega[:, None, None], mode.damping[:, None, None]
     h = np.array(harmonics)[:, None]
     rate = 2.0 * D * w - 2.0 * system.linear.damping * system.linear.natural

@@ -7,7 +7,7 @@ import pytest
 
 import fcm
 from fcm.harmonic.multipliers import multipliers, multipliers_of
-from fcm.harmonic.record import amplitudes_at, cycles
+from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.stability import stability
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
@@ -47,7 +47,7 @@ def test_solutions_of_a_sector_solve_the_ring(sectors, order, contacts, harmonic
         found = ring_X.reshape(len(harmonics), sectors, 3).swapaxes(0, 1)
         assert found == pytest.approx(expected, rel=1e-9, abs=1e-11 * np.abs(X).max())
         assert ring_mean == pytest.approx(np.tile(mean[:3], sectors), rel=1e-9, abs=1e-11 * np.abs(X).max())
-        assert "P" in cycles(one, z[None])[0][0, 0]  # it slips
+        assert "P" in cycles(one, z[None], loops(one, z[None]))[0][0, 0]  # it slips
 
 
 def test_static_loads_and_forces_that_grow_with_the_speed_act_on_every_sector():

@@ -80,12 +80,12 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
 
 def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
     """Whether a path has a point that is the solution z, at the same value of the parameter."""
-    at = np.flatnonzero(path.parameter == z[-1])
-    if at.size == 0:
+    off = path.z[path.parameter == z[-1]] - z
+    if not off.size:
         return False
     problem.measure(z)
-    off = (path.z[at] - z)[:, :-1] / np.asarray(problem.scale)[:-1]
-    return bool((np.sqrt((off * off).sum(axis=1)) < SAME).any())
+    off /= np.asarray(problem.scale)
+    return bool((off * off).sum(axis=1).min() < SAME * SAME)
 
 
 def through(

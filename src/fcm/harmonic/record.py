@@ -95,12 +95,12 @@ def loops(system: System, z: FloatArray) -> FloatArray:
     return out
 
 
-def cycles(system: System, z: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
+def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray[np.str_], FloatArray]:
     """What each contact does over a cycle, such as "SPEN", (point, contact), and bears, (point, contact, 4).
 
     A contact without friction has no loop: it is closed, "E", open, "S", or one after the other, "SE". What
     it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
-    takes.
+    takes. loop: theirs, as of `loops`.
     """
     contacts, harmonics = system.scene.contacts, system.harmonics
     kernel, z = periodic_contact(harmonics, harmonics), np.ascontiguousarray(z)
@@ -111,7 +111,12 @@ def cycles(system: System, z: FloatArray) -> tuple[npt.NDArray[np.str_], FloatAr
         law, first = np.array([c.mu, c.k_u, c.k_v, c.n_0]), i * (2 + 4 * len(harmonics))
         state[:] = NONE
         cycles_of(kernel, measures, z, first, law, state, borne[i])
-        words.append(_single(c, x) if harmonics == (1,) else _spelt(state))
+        if harmonics != (1,):
+            words.append(_spelt(state))
+        elif c.mu * c.k_u == 0.0:
+            words.append(_without_friction(c, x))
+        else:
+            words.append(sequences(*loop[:, i, :3].T))
     each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
     return each, borne.swapaxes(0, 1)
 
@@ -124,13 +129,10 @@ def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
     return words
 
 
-def _single(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
-    U, V = x[:, 2] + 1j * x[:, 3], x[:, 4] + 1j * x[:, 5]
-    load, variation = contact.n_0 + contact.k_v * x[:, 1], contact.k_v * np.abs(V)
-    if contact.mu * contact.k_u == 0.0:
-        return np.where(np.abs(load) < variation, "SE", np.where(load > 0.0, "E", "S"))
-    ratio = contact.mu / (contact.k_u * np.maximum(np.abs(U), SMALLEST))
-    return sequences(ratio * load, ratio * variation, np.angle(V * np.conj(U)))
+def _without_friction(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
+    """Words (point,) of a contact that has no loop."""
+    load, variation = contact.n_0 + contact.k_v * x[:, 1], contact.k_v * np.hypot(x[:, 4], x[:, 5])
+    return np.where(np.abs(load) < variation, "SE", np.where(load > 0.0, "E", "S"))
 
 
 def _blocks(system: System, z: FloatArray) -> FloatArray:

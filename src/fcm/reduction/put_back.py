@@ -49,7 +49,8 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
     system, z = System(scene), unknowns(curve, scene, at, (1,))
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
-    loop[at], (regime[at], cycle[at]) = loops(system, z), cycles(system, z)
+    loop[at] = loops(system, z)
+    regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
     curve.loop, curve.regime, curve.cycle = loop, regime, cycle
 

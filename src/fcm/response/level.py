@@ -140,7 +140,8 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     stable = stable_at_levels(system, z, even)
     known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
-    words, borne = cycles(system, z)
+    loop = loops(system, z)
+    words, borne = cycles(system, z, loop)
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,
@@ -149,7 +150,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "phase": np.angle(first),
         "mean": mean,
         "regime": words,
-        "loop": loops(system, z),
+        "loop": loop,
         "cycle": borne,
         "stable": stable,
         "table_error": np.zeros(level.size),

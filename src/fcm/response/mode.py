@@ -129,7 +129,8 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
     X, mean = mode.displacements()
     amplitude = half_peak_to_peak(X, system.harmonics)
     X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
-    whole, (words, borne) = path.status is Status.COMPLETE, cycles(system, mode.contacts)
+    whole, loop = path.status is Status.COMPLETE, loops(system, mode.contacts)
+    words, borne = cycles(system, mode.contacts, loop)
     return replace(
         empty,
         frequency=mode.omega,
@@ -138,7 +139,7 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         phase=np.angle(X[:, first]),
         mean=mean,
         regime=pick(words, rows),
-        loop=loops(system, mode.contacts),
+        loop=loop,
         cycle=borne,
         stable=unknown,
         table_error=unknown,

@@ -117,7 +117,8 @@ def _curve(followed: _Followed) -> Curve:
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
-    words, borne = cycles(system, points.z)
+    loop = loops(system, points.z)
+    words, borne = cycles(system, points.z, loop)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
@@ -133,7 +134,7 @@ def _curve(followed: _Followed) -> Curve:
         phase=pick(np.angle(X[:, first]), rows),
         mean=pick(points.mean, rows),
         regime=pick(words, rows),
-        loop=pick(loops(system, points.z), rows),
+        loop=pick(loop, rows),
         cycle=pick(borne, rows),
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
