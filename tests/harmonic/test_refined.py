@@ -68,6 +68,13 @@ def test_a_pair_about_to_meet_at_minus_one_is_not_called_stable():
     assert verdict.stable != 1.0
 
 
+def test_a_decay_that_further_harmonics_make_a_growth_is_not_called_stable():
+    """Ten harmonics have a multiplier of -0.96, twenty by their own forces -0.98; the exact motion flips."""
+    verdict, true = judged(FOUR_MODES, 0.76054, 10)
+    assert not true
+    assert verdict.stable != 1.0
+
+
 def test_a_verdict_in_doubt_is_that_of_forces_of_another_level():
     of, twice = (system(scene, 4) for scene in (ONE_MODE, _doubled(ONE_MODE)))
     z = only(_doubled(ONE_MODE), 1.129, 4)

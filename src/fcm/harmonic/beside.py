@@ -73,7 +73,7 @@ def _stable(of: Multipliers, around: Iterator[tuple[int, FloatArray]]) -> FloatA
     for away, z in around:
         if judged and judged < away < 2 * judged:
             continue
-        if of.verdict(z).stable == 1.0:
+        if of.verdict(z, enough=(1.0,)).stable == 1.0:
             return z
         judged = max(away, 1)
     return None

@@ -33,10 +33,10 @@ ComplexArray = npt.NDArray[np.complex128]
 FEW = 24  # modes; with more, those far above the excitation follow without delay
 SMALL = 16  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
 SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
-FAR = 6.0  # times the excitation, and FURTHER times the highest harmonic
-FURTHER = 1.5
+FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
-SHIFT = 4.0  # if it is also this many times what further harmonics add to the motion
+LIGHT = 100.0  # if it is also this many times what further harmonics add: light impacts make that of it
+SLIGHT = 4.0  # the same of a growth that truncation may have made
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
@@ -110,7 +110,7 @@ class Multipliers:
         which may be the last.
         """
         alone = fine.verdict(turning)
-        safe = alone.growth < -max(SAFE, SHIFT * self.finer.shift)
+        safe = alone.growth < -max(SAFE, LIGHT * self.finer.shift)
         if not fine.odd and (safe or alone.stable in enough):
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
@@ -125,12 +125,12 @@ class Multipliers:
         untold = found._replace(stable=math.nan)
         if self.last:
             return untold if doubtful(found, fine, plain, 1.0) else found
-        slight = 0.0 < found.growth < max(SAFE, SHIFT * self.finer.shift)
-        if slight or doubtful(found, fine, plain, SHIFT):
-            return self._refined(z) or untold
+        slight = 0.0 < found.growth < max(SAFE, SLIGHT * self.finer.shift)
+        if slight or doubtful(found, fine, plain, SLIGHT):
+            return self._refined(z, persistent=found.stable == 1.0) or untold
         return found
 
-    def _refined(self, z: FloatArray) -> Verdict | None:
+    def _refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
         if self.further is None:
             refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]))
@@ -139,7 +139,7 @@ class Multipliers:
         if refined.fewer is not self.system:
             refined.take(self.system)
             judge.take(refined.system)
-        there = refined.beside(z, self.finer.x)
+        there = refined.beside(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)
 
     def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:

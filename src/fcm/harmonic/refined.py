@@ -13,6 +13,8 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 FAR = 0.5  # of a solution's size: what lies further away is another one
+PARTS = (0.1, 0.25, 0.45, 0.7, 1.0)  # of the further harmonics' equations, where all at once are too much
+DEAR = 240  # unknowns, from which on they are not tried by parts
 
 
 class Refined:
@@ -35,18 +37,30 @@ class Refined:
         self.balance.laws = self.system.laws()
         self.balance.largest[:] = 0.0
 
-    def beside(self, z: FloatArray, x: FloatArray) -> FloatArray | None:
+    def beside(self, z: FloatArray, x: FloatArray, persistent: bool = False) -> FloatArray | None:
         """The solution (unknown of more + 1,) for z (unknown + 1,), sought from the finer motion x.
 
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
-        where Newton's method finds nothing near.
+        where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself.
         """
         here = padded(z, self.harmonics, self.more)
         self.balance.measure(here)
         self.balance.probe(here)
-        self.homotopy.removed[:] = np.where(self.balanced, self.balance.residual, 0.0)
-        newton = self.newton
+        newton, lack = self.newton, np.array(self.balance.residual)
         newton.z[:-1], newton.z[-1] = x, z[-1]
         newton.scale[:] = self.balance.scale
-        found = settle(newton, FAR)
-        return np.array(newton.z) if found and newton.moved <= FAR else None
+        if self._settled(lack, 1.0) or (persistent and len(lack) < DEAR and self._by_parts(here, lack)):
+            return np.array(newton.z)
+        return None
+
+    def _settled(self, lack: FloatArray, part: float) -> bool:
+        """Whether Newton's method leads to a solution near, of a part of the further harmonics' equations."""
+        self.homotopy.removed[:] = np.where(self.balanced, lack, (1.0 - part) * lack)
+        return settle(self.newton, FAR) and self.newton.moved <= FAR
+
+    def _by_parts(self, here: FloatArray, lack: FloatArray) -> bool:
+        """The same from where all of them are lacking, to a solution that is near that, too."""
+        self.newton.z[:] = here
+        if not all(self._settled(lack, part) for part in PARTS):
+            return False
+        return bool(np.linalg.norm((self.newton.z - here) / self.balance.scale) <= FAR)

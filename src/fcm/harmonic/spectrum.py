@@ -138,16 +138,19 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
 def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> bool:
     """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
 
-    That is so where it is none, of a growth that is less than some times its change, and where a pair turns
-    so fast towards -1 that it may meet there, of which one multiplier leaves by a flip.
+    That is so where it is none, of a decay that is less than its change, of a growth that is less than some
+    times that, and where a pair turns so fast towards -1 that it may meet there, of which one multiplier
+    leaves by a flip; and of what decays but for a multiplier that is taken to be far on the wrong side of 1.
     """
     if math.isnan(found.stable):
         return True
     one, other = fine.verdict(fine.odd), plain.verdict(plain.odd)
-    if found.stable == 1.0:
-        turned = abs(one.before_flip - other.before_flip)
-        return found.before_flip < min(FLIP_NEAR, SHIFTED * turned)
-    return found.growth < times * abs(one.growth - other.growth)
+    change = abs(one.growth - other.growth)
+    if found.stable != 1.0:
+        return found.growth < times * change
+    turned = abs(one.before_flip - other.before_flip)
+    flips = found.before_flip < min(FLIP_NEAR, SHIFTED * turned)
+    return flips or -found.growth < change or (fine.odd and abs(fine.nearest) > SURELY)
 
 
 def either(one: Verdict, other: Verdict) -> Verdict:

@@ -72,7 +72,7 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
         newton.row[:] = along / np.linalg.norm(along)
         if _came(balance, newton, turn.level):
             of = of or multipliers_of(system, system.scene.frequency_range[1])
-            yield from (z for z in _beside(newton) if of.verdict(z).stable == 1.0)
+            yield from (z for z in _beside(newton) if of.verdict(z, enough=(1.0,)).stable == 1.0)
 
 
 def _came(balance: Balance, newton: Newton, level: float) -> bool:
