@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import numpy.typing as npt
 
@@ -21,6 +23,7 @@ UNSETTLED = 1e-7  # a displacement at a top, relative, worth to be settled: all 
 TOGETHER = 8  # points, within which tops of degrees of freedom lie together
 ALONE = 0  # the same where to settle them is cheap: each has other harmonics that do most
 EFFORT = 8e7  # evaluations times the square of the unknowns, some second of work, for what is followed
+LOOKS = 2  # at a fold with more and more harmonics, which move it to and fro less and less
 BESIDE = (1, 2, 4, 8)  # points from a corner at which it is looked for what happens at the corner,
 NEXT = (1, 2)  # and where that is a top, which a longer stretch may be higher than
 
@@ -137,6 +140,14 @@ class Corrected:
         if not np.isfinite(found).all():
             return None
         return np.append(found[0] / z[-1] - 1.0, (found[1:] - now) / self.unit[place])
+
+    def farthest(self, fold: int, side: float) -> float:
+        """The frequency on one side (-1 or 1) of a fold that this comes farthest to with more harmonics."""
+        rounds = self.corrector.rounds(self.path.z[fold], self.path.direction[fold], self.amplitude[fold])
+        found = [float(one[0]) for one in itertools.islice(rounds, LOOKS) if np.isfinite(one[0])]
+        here = float(self.path.parameter[fold])
+        found.append(here * (1.0 + float(self.change[fold, 0])))
+        return max(found, key=lambda frequency: side * frequency)
 
     def shares(self, places: Indices, size: FloatArray) -> FloatArray:
         """Greatest share (harmonic,), at some points, of sizes (dof,)."""

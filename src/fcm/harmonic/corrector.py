@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
 
 import cython
 import numpy as np
@@ -203,22 +204,30 @@ class Corrector:
         harmonics that would do most, until that changes the amplitudes (dof,) no more, or would not without
         feedback. NaN where that leads nowhere.
         """
-        harmonics, now, frequency = self.system.harmonics, amplitude, z[-1]
+        found = np.append(z[-1], amplitude)
+        for following in self.rounds(z, direction, amplitude):
+            more, found = np.abs(following - found)[1:], following
+            if (more <= SETTLED * np.abs(found[1:] - amplitude)).all():
+                break
+        return found
+
+    def rounds(self, z: FloatArray, direction: FloatArray, amplitude: FloatArray) -> Iterator[FloatArray]:
+        """The same (1 + dof,) after each time; NaN, and no more, where that leads nowhere."""
+        harmonics, now = self.system.harmonics, amplitude
         for _ in range(ROUNDS):
             corrector = self.of(harmonics)
             corrector.further.at(z, now)
             more = corrector.ranking.most()
             rest = np.asarray(corrector.further.share).sum() * now
             if more == harmonics or (rest <= SETTLED * np.abs(now - amplitude)).all():
-                break
+                return
             lifted = corrector.lifted(more)
             if not lifted.beside(z, direction):
-                return np.full(1 + len(now), np.nan)
+                yield np.full(1 + len(amplitude), np.nan)
+                return
             z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
-            before, now, harmonics, frequency = now, np.array(lifted.found[1:]), more, z[-1]
-            if (np.abs(now - before) <= SETTLED * np.abs(now - amplitude)).all():
-                break
-        return np.append(frequency, now)
+            now, harmonics = np.array(lifted.found[1:]), more
+            yield np.append(z[-1], now)
 
 
 class _Kept(threading.local):

@@ -17,6 +17,7 @@ from fcm.continuation import Mark, Path
 from fcm.harmonic.abreast import with_those_abreast
 from fcm.harmonic.corrected import Corrected, Indices
 from fcm.harmonic.crest import crests, rise_beside, settling_at_ends
+from fcm.harmonic.ended import without_ended
 from fcm.harmonic.further import HIGHEST
 from fcm.harmonic.points import Points
 from fcm.harmonic.ranking import COVERED
@@ -113,7 +114,7 @@ def errors_along(system: System, path: Path, shown: Reported | None = None) -> E
     unit, growth = corrected.unit, shown.growth
     shift = shifted(corrected.place, path.z, path.direction, shown.amplitude, growth, unit, change)
     shift[np.isnan(change).any(axis=1)] = np.nan  # the corrected curve is missed there
-    shift = with_those_abreast(corrected, shift)
+    shift = without_ended(corrected, with_those_abreast(corrected, shift))
     error = _of_points(corrected, shown, change, shift)
     error[folds] = np.nan  # the corrected curve has two amplitudes at that frequency, or none
     inside = (tops > 0) & (tops < len(path.z) - 1)
