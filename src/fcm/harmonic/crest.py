@@ -9,7 +9,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.believed import runs
 from fcm.harmonic.corrected import TOGETHER, Corrected, Indices
 from fcm.harmonic.shifted import rises
-from fcm.harmonic.stretch import heights
+from fcm.harmonic.stretch import TRIES, heights
 from fcm.scene.model import FloatArray
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
@@ -60,12 +60,35 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
         rivals = (may | ((first <= tops) & (tops < end))) & ~unknown
         if rivals.any():
             followed = heights(corrected, first - 1, end)
-            if followed is None:
+            more = None if followed is None else _settling(corrected, (first - 1, end))
+            if followed is None or more is None:
                 unknown |= rivals
             else:
-                greatest = np.maximum(greatest, followed)
+                greatest = np.maximum(greatest, followed * (1.0 + more))
     known: FloatArray = np.where(unknown, np.nan, greatest)
     return known
+
+
+def _settling(corrected: Corrected, ends: tuple[int, int]) -> FloatArray | None:
+    """By how much (dof,) amplitudes beside a stretch change, relative, until they settle: of both ends, or
+    of points near them, which is more. None where more harmonics lead nowhere at an end: with those that the
+    stretch is followed with, it is of no branch that others have, too. Not looked for where that is dear."""
+    path, found = corrected.path, [np.zeros(corrected.amplitude.shape[1])]
+    if not corrected.corrector.ranking.cheap:
+        return found[0]
+    for end, way in zip(ends, (-1, 1), strict=True):
+        places = [i for i in range(end, end + way * TRIES, way) if 0 <= i < len(path.z)]
+        corrected.find(np.array(places, dtype=np.intp))
+        for i in places:
+            settled = corrected.corrector.settled(path.z[i], path.direction[i], corrected.amplitude[i])
+            if np.isfinite(settled + corrected.change[i]).all():
+                once = corrected.amplitude[i] + corrected.unit[i] * corrected.change[i, 1:]
+                found.append((settled[1:] - once) / corrected.unit[i])
+                break
+        else:
+            if places:
+                return None
+    return max(found, key=lambda change: float(np.abs(change).max()))
 
 
 def _highest(corrected: Corrected, change: FloatArray) -> tuple[FloatArray, Indices]:

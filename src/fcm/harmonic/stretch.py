@@ -109,7 +109,7 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
         if begin is None:
             continue
         piece = _followed(balance, budget, begin, end, span, begin.rises == (begin is before))
-        if piece is None:
+        if piece is None or not piece.greatest.any():  # not a point of it was found
             return None
         if piece.arrived:
             return piece.greatest
