@@ -58,8 +58,8 @@ def carried(system: System, before: Found) -> Found | None:
         return None
     known: list[FloatArray] = []
     for z in before.solutions:
-        there = _beside(system, padded(z, before.harmonics, system.harmonics), CLOSE)
-        if there is None or any(_same(there, other) for other in known):
+        there = at_its_frequency(system, padded(z, before.harmonics, system.harmonics), CLOSE)
+        if there is None or any(same(there, other) for other in known):
             return None
         known.append(there)
     turns = tuple(turn.padded(before.harmonics, system.harmonics) for turn in before.turns)
@@ -71,16 +71,17 @@ def _with_led(system: System, found: Found, before: Found) -> Found:
     known = list(found.solutions)
     for z in before.solutions:
         there = _led(system, padded(z, before.harmonics, system.harmonics))
-        if there is not None and not any(_same(there, other) for other in known):
+        if there is not None and not any(same(there, other) for other in known):
             known.append(there)
     return replace(found, solutions=tuple(known))
 
 
-def _same(one: FloatArray, other: FloatArray) -> bool:
+def same(one: FloatArray, other: FloatArray) -> bool:
+    """Whether two solutions at a frequency are one."""
     return bool(np.abs(one - other)[:-1].max() < APART * np.abs(one[:-1]).max())
 
 
-def _beside(system: System, z: FloatArray, far: float) -> FloatArray | None:
+def at_its_frequency(system: System, z: FloatArray, far: float = FAR) -> FloatArray | None:
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
     balance, newton = system.afresh(), system.front.newton
     newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
@@ -91,7 +92,7 @@ def _beside(system: System, z: FloatArray, far: float) -> FloatArray | None:
 
 def _led(system: System, z: FloatArray) -> FloatArray | None:
     """The solution that a guess z leads to at its frequency, by one step or by a way of many."""
-    near = _beside(system, z, FAR)
+    near = at_its_frequency(system, z)
     if near is not None:
         return near
     way, left = _Way(system.afresh(), z), REPORTS

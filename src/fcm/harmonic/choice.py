@@ -104,11 +104,12 @@ def _after(before: Outline | None, system: System, progress: Progress | None = N
     return outlined(system, progress, before.traced.found, near(before, system.harmonics))
 
 
-def judged(outline: Outline, accuracy: float) -> Accurate:
-    """A response with its errors."""
+def judged(outline: Outline, accuracy: float, known: tuple[Errors, ...] = ()) -> Accurate:
+    """A response with its errors, of which those of its first branches may be known."""
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
-    errors = tuple(errors_along(system, path, one) for path, one in zip(paths, shown, strict=True))
+    rest = list(zip(paths, shown, strict=True))[len(known) :]
+    errors = (*known, *(errors_along(system, path, one) for path, one in rest))
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)
         return Accurate(system, response, shown, outline.seconds, errors, none, np.nan, np.nan, False)

@@ -52,6 +52,19 @@ def traced(
     return Traced(_steady(system, branches), found)
 
 
+def with_further(
+    system: System, before: Traced, found: Sequence[Found], starts: Sequence[FloatArray]
+) -> Traced:
+    """With what was found at further frequencies, and the branches through further solutions, after those
+    that were traced before."""
+    span, known = system.scene.frequency_range, before.branches
+    step, along = system.scene.max_step, _along(system)
+    branches = all_branches(system.afresh, starts, span, step, None, along, known.paths)
+    further = (path for path in branches.paths[len(known.paths) :] if not _nowhere(system, path))
+    branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
+    return Traced(branches, (*before.found, *found))
+
+
 def _along(system: System) -> Follow:
     """Follows the balance that a system looks with, on the one front that it has for that."""
     front, places = system.front, narrow(system)
@@ -78,12 +91,15 @@ def _steady(system: System, branches: Branches) -> Branches:
     friction pushes along such a mode does not balance it.
     """
     paths = branches.paths
-    if len(paths) < 2 or system.linear.natural.min(initial=1.0) > 0.0:
+    if len(paths) < 2:
         return branches
     kept = tuple(path for path in paths if not _nowhere(system, path))
     return replace(branches, paths=kept) if kept else branches
 
 
 def _nowhere(system: System, path: Path) -> bool:
+    """Whether it is such a branch."""
+    if system.linear.natural.min(initial=1.0) > 0.0:
+        return False
     points = recorded(system, [path])
     return bool(undetermined(system, points.z, points.force).get("pushed", np.zeros(1, bool)).all())

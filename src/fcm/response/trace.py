@@ -17,6 +17,7 @@ from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.rest import RestError
+from fcm.harmonic.restless import with_missed
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
@@ -154,28 +155,37 @@ def _curve(followed: _Followed) -> Curve:
 
 
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
-    """A response with points where stability changes between folds, and whether each point is stable.
+    """A response with its stability, and with branches that were missed where nothing was stable."""
+    followed = _with_stability(_Followed(found, [], []), accuracy)
+    more = with_missed(followed.found, followed.stable, np.inf if accuracy is None else accuracy)
+    return followed if more is followed.found else _with_stability(replace(followed, found=more), accuracy)
+
+
+def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
+    """With points where stability changes between folds, and whether each point is stable, for the branches
+    of which that is not known yet.
 
     With an accuracy, and how far it is from where more harmonics have these; not of a curve that has not come
     to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
     """
-    short = accuracy is not None and not found.reached
-    paths, shown, errors, stable = [], [], [], []
-    lost: list[Lost] = []
-    for path, known, error in zip(found.traced.branches.paths, found.shown, found.errors, strict=True):
+    found, stable, lost = followed.found, list(followed.stable), list(followed.lost)
+    short, known = accuracy is not None and not found.reached, len(stable)
+    every = found.traced.branches.paths
+    paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
+    for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
         judged = stability(found.system, path, astray(error.truncation) if short else None)
         inserted = judged.inserted
         if accuracy is not None and not short:
             lost += lost_along(found.system, path, judged.crossings, accuracy)
         if not inserted:
             paths.append(path)
-            shown.append(known)
+            shown.append(seen)
             errors.append(error)
             stable.append(judged.stable)
             continue
         after = np.array([one.after for one in inserted], dtype=np.intp)
         paths.append(with_points(path, inserted))
-        shown.append(_with_reported(found.system, known, inserted, after))
+        shown.append(_with_reported(found.system, seen, inserted, after))
         errors.append(
             replace(
                 error,

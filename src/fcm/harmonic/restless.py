@@ -1,0 +1,100 @@
+"""Where no motion that was found is stable, and the stable ones that the level of the forces tells of there.
+
+The structure does something at every frequency. Where it can stay at none of the motions found, it moves in a
+way that the balance has no solution for, as in one that repeats after two periods or never, or a branch was
+missed. So there the level of the forces is followed once more. What it passes that is stable is on no branch
+that was found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.continuation import Path
+from fcm.harmonic.carried import at_its_frequency, found_at, same
+from fcm.harmonic.choice import Accurate, judged
+from fcm.harmonic.error import reported
+from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.outline import Outline
+from fcm.harmonic.start import Found
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import with_further
+from fcm.harmonic.work import TooLongError
+from fcm.scene.model import FloatArray
+
+LOOKS = 3  # stretches in whose middle the level is followed, the widest first,
+SHARE = 0.2  # as long as that takes no more of the work before
+
+Stretch = tuple[float, float]
+
+
+def with_missed(found: Accurate, stable: Sequence[FloatArray], accuracy: float) -> Accurate:
+    """A response with stable branches that were missed; itself if none is found.
+
+    stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known.
+    """
+    system, paths = found.system, found.traced.branches.paths
+    stretches = restless(paths, stable, system.scene.frequency_range)
+    looked = _looked(system, stretches) if stretches else []
+    missed = list(_missed(system, looked, paths)) if looked else []
+    if not missed:
+        return found
+    traced = with_further(system, found.traced, looked, missed)
+    further = traced.branches.paths[len(paths) :]
+    shown = (*found.shown, *(reported(system, path) for path in further))
+    every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
+    return replace(every, further=found.further, begun=found.begun)
+
+
+def restless(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stretch) -> list[Stretch]:
+    """From where to where all motions of paths are known to be unstable, the widest stretch first."""
+    borne = [ends for path, known in zip(paths, stable, strict=True) for ends in _borne(path, known)]
+    reached, found = span[0], []
+    for low, high in [*sorted(borne), (span[1], span[1])]:
+        if low > reached:
+            found.append((reached, low))
+        reached = max(reached, high)
+    return sorted(found, key=lambda ends: ends[0] - ends[1])
+
+
+def _borne(path: Path, stable: FloatArray) -> Iterator[Stretch]:
+    """From where to where a motion may stay, along each part of a path."""
+    may = np.concatenate(([False], stable != 0.0, [False]))
+    ends = np.flatnonzero(may[1:] != may[:-1]).tolist()
+    for first, end in zip(ends[::2], ends[1::2], strict=True):
+        part = path.parameter[first:end]
+        yield float(part.min()), float(part.max())
+
+
+def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
+    """What the level passes in the middle of stretches."""
+    found = list[Found]()
+    with system.work.up_to((1.0 + SHARE) * system.work.seconds):
+        for low, high in stretches[:LOOKS]:
+            try:
+                found += found_at(system, (0.5 * (low + high),))
+            except TooLongError:
+                break
+    return found
+
+
+def _missed(system: System, looked: Sequence[Found], paths: Sequence[Path]) -> Iterator[FloatArray]:
+    """The solutions that are stable, and that no path passes, as in a window of stability unseen."""
+    of = multipliers_of(system, system.scene.frequency_range[1])
+    for z in (z for one in looked for z in one.solutions):
+        if of.verdict(z, enough=(1.0,)).stable == 1.0 and not any(_passes(system, one, z) for one in paths):
+            yield z
+
+
+def _passes(system: System, path: Path, z: FloatArray) -> bool:
+    """Whether the solution z lies between two points of a path."""
+    w = path.parameter - z[-1]
+    for i in np.flatnonzero((w[:-1] * w[1:] <= 0.0) & (w[:-1] != w[1:])).tolist():
+        guess = path.z[i] + w[i] / (w[i] - w[i + 1]) * (path.z[i + 1] - path.z[i])
+        there = at_its_frequency(system, guess)
+        if there is not None and same(there, z):
+            return True
+    return False
