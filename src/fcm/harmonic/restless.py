@@ -14,12 +14,12 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Path
-from fcm.harmonic.carried import at_its_frequency, found_at, same
+from fcm.harmonic.carried import at_its_frequency, same
 from fcm.harmonic.choice import Accurate, judged
 from fcm.harmonic.error import reported
 from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.outline import Outline
-from fcm.harmonic.start import Found
+from fcm.harmonic.start import NEAR, Found, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import with_further
 from fcm.harmonic.work import TooLongError
@@ -70,12 +70,13 @@ def _borne(path: Path, stable: FloatArray) -> Iterator[Stretch]:
 
 
 def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
-    """What the level passes in the middle of stretches."""
+    """What the level passes in the middle of stretches, up to where few curves come back from: that takes
+    half as long as to its end."""
     found = list[Found]()
     with system.work.up_to((1.0 + SHARE) * system.work.seconds):
         for low, high in stretches[:LOOKS]:
             try:
-                found += found_at(system, (0.5 * (low + high),))
+                found.append(solutions(system, 0.5 * (low + high), NEAR))
             except TooLongError:
                 break
     return found
