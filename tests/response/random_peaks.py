@@ -111,6 +111,8 @@ def main(count: int = 200, at_once: int = 2) -> None:
     for contacts in sorted({peak.contacts for peak in found}):
         print(f"{contacts:8d} {shares([peak for peak in found if peak.contacts == contacts])}")
     print(f"     all {shares(found)}")
+    error = np.array([peak.error for peak in found if np.isfinite(peak.estimate + peak.error)])
+    print(f"within the accuracy of those whose error is told: {_percent(error <= ACCURACY)}")
     worst = sorted(
         (p for p in found if p.error > 3.0 * p.estimate and p.error > SMALLEST), key=lambda p: -p.error
     )
