@@ -117,8 +117,8 @@ def _curve(
     stuck = stuck_beside(scene, [] if search.over else rows, frequency, regime, others)
     told = everywhere | np.isfinite(others.whole)
     # of a motion that does not repeat neither its multipliers nor how far it ranges in the long run are known
-    repeated = np.array([np.nan if p is None or p.repeats == 0 else 1.0 for p in points])
-    stable = repeated * [p is not None and p.stable for p in points]
+    error = np.array([np.nan if p is None or p.repeats == 0 else 0.0 for p in points])
+    stable = error + [p is not None and p.stable for p in points]
     at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
     return replace(
@@ -133,13 +133,11 @@ def _curve(
         cycle=_borne(points, empty),
         stable=stable,
         table_error=zero,
-        error=np.repeat(0.0 * repeated[:, None], amplitude.shape[1], axis=1),
+        error=np.repeat(error[:, None], amplitude.shape[1], axis=1),
         truncation_error=zero,
         complete=not reason,
         loose=int((loose(scene, regime) & ~told).sum()),
-        peaks={
-            d: _peak(amplitude[:, i], frequency, 0.0 * repeated, at_top[i]) for i, d in enumerate(empty.peaks)
-        },
+        peaks={d: _peak(amplitude[:, i], frequency, error, at_top[i]) for i, d in enumerate(empty.peaks)},
         orbits=_orbits(points, empty, others, stuck),
     )
 
