@@ -6,8 +6,9 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from fcm.continuation import Path, Status
-from fcm.harmonic.restless import restless
+from fcm.harmonic import restless
+from fcm.harmonic.start import solutions
+from fcm.harmonic.unstable import unstable_stretches
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
@@ -15,26 +16,20 @@ from fcm.scene import load_scene
 MARCHED = (1.6231, 7.0014, 6.7749, 3.7635)
 
 
-def points(frequencies):
-    w = np.array(frequencies)
-    return Path(
-        z=w[:, None],
-        direction=np.ones((w.size, 1)),
-        orientation=np.ones(w.size),
-        mark=np.zeros(w.size, dtype=np.intp),
-        shift=np.zeros(w.size),
-        status=Status.COMPLETE,
-        evaluations=0,
-    )
-
-
 def test_stretches_where_nothing_stays_are_told_the_widest_first():
-    """A motion between 3 and 4 whose stability is not known may stay, and one falls back from 6 to 5."""
-    rising, falling = points([1.0, 2.0, 3.0, 4.0, 7.0, 8.0]), points([6.5, 6.0, 5.0])
-    stable = [np.array([1.0, 1.0, np.nan, np.nan, 0.0, 0.0]), np.array([0.0, 1.0, 1.0])]
-    assert restless([rising, falling], stable, (1.0, 8.0)) == [(6.0, 8.0), (4.0, 5.0)]
-    assert restless([rising], [np.ones(6)], (1.0, 8.0)) == []
-    assert restless([], [], (1.0, 8.0)) == [(1.0, 8.0)]
+    """A motion between 3 and 4 whose stability is not known may stay, and one falls back from 6 to 5. One
+    point alone, as at 7, is where two stretches meet."""
+    rising, falling = np.array([1.0, 2.0, 3.0, 4.0, 7.0, 8.0]), np.array([6.5, 6.0, 5.0])
+    known = [np.array([1.0, 1.0, np.nan, np.nan, 0.0, 0.0]), np.array([0.0, 1.0, 1.0])]
+    alone = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+    found = unstable_stretches([(rising, known[0]), (falling, known[1])], (1.0, 8.0))
+    assert found == [(6.0, 8.0), (4.0, 5.0)]
+    assert unstable_stretches([(rising, np.ones(6))], (1.0, 8.0)) == []
+    assert (
+        unstable_stretches([(rising, alone)], (1.0, 8.0))
+        == unstable_stretches([], (1.0, 8.0))
+        == [(1.0, 8.0)]
+    )
 
 
 def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable():
@@ -47,3 +42,13 @@ def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable()
     part = off[i] / (off[i] - off[i + 1])
     there = (1.0 - part) * curve.amplitude[i] + part * curve.amplitude[i + 1]
     assert curve.complete and there == pytest.approx(MARCHED, rel=2e-2)
+
+
+def test_a_look_that_does_not_come_to_its_end_leaves_branches_unsure(monkeypatch):
+    """Without a preload nothing is stable around 0.75 rad/s, where the motion repeats after two periods."""
+    (scene,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == 0.0)
+    assert traced_curve(scene).complete and traced_curve(scene).unsure == []
+    monkeypatch.setattr(restless, "solutions", lambda *args: replace(solutions(*args), complete=False))
+    (at,) = traced_curve(scene).unsure
+    ((low, high),) = traced_curve(scene).summary()["no_stable_motion"]
+    assert low < at < high

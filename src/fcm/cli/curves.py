@@ -168,41 +168,6 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
     )
 
 
-def short_of_accuracy(summary: Mapping[str, Any]) -> str:
-    """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
-    short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
-    if not short:
-        return ""
-    count = len(summary["curves"])
-    which = "the curve has" if count == 1 else f"{len(short)} of {count} curves have"
-    return f"{which} not the accuracy that was asked for: {short[0]}"
-
-
-def branches_unsure(summary: Mapping[str, Any]) -> str:
-    """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
-    unsure = [curve["branches_unsure_at"] for curve in summary["curves"] if curve.get("branches_unsure_at")]
-    if not unsure:
-        return ""
-    count = len(summary["curves"])
-    which = "" if count == 1 else f"of {len(unsure)} of {count} curves "
-    at = f"{unsure[0][0]:.5g} {summary['frequency_unit']}"
-    return (
-        f"other branches {which}may be missing: at {at} the level of the forces was not followed to its end"
-    )
-
-
-def maybe_not_unique(summary: Mapping[str, Any]) -> str:
-    """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
-    count = sum(curve.get("may_not_be_unique", 0) for curve in summary["curves"])
-    if not count:
-        return ""
-    how = "--at" if summary["method"] == "exact" else "--method exact --at"
-    return (
-        f"points at which a contact never slips while another changes its state, or feels it: {count}; its "
-        f"residual friction may decide which of many motions that is: {how} F tells how far they range"
-    )
-
-
 def incomplete(summary: Mapping[str, Any]) -> str:
     """How many curves stopped early; empty if none."""
     curves = summary["curves"]

@@ -7,14 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli import schedule, track
-from fcm.cli.curves import (
-    all_lost_to_defects,
-    branches_unsure,
-    cost_and_error,
-    incomplete,
-    maybe_not_unique,
-    short_of_accuracy,
-)
+from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
+from fcm.cli.doubts import branches_unsure, maybe_not_unique, nothing_stable, short_of_accuracy
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
@@ -50,6 +44,8 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str]) -> Non
         messages.info(f"{len(result['tracked']['curves'])} tracked curves in {result['seconds']:.2f} s")
     if many := maybe_not_unique(result):
         messages.info(many)
+    if nothing := nothing_stable(result):
+        messages.info(nothing)
     if short := short_of_accuracy(result):
         messages.warning(short)
     if unsure := branches_unsure(result):

@@ -22,26 +22,27 @@ from fcm.harmonic.outline import Outline
 from fcm.harmonic.start import NEAR, Found, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import with_further
+from fcm.harmonic.unstable import Stretch, unstable_stretches
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
 LOOKS = 3  # stretches in whose middle the level is followed, the widest first,
 SHARE = 0.2  # as long as that takes no more of the work before
 
-Stretch = tuple[float, float]
-
 
 def with_missed(found: Accurate, stable: Sequence[FloatArray], accuracy: float) -> Accurate:
-    """A response with stable branches that were missed; itself if none is found.
+    """A response with stable branches that were missed; itself if none is found, and each look came to its
+    end.
 
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known.
     """
     system, paths = found.system, found.traced.branches.paths
-    stretches = restless(paths, stable, system.scene.frequency_range)
+    parts = [(path.parameter, known) for path, known in zip(paths, stable, strict=True)]
+    stretches = unstable_stretches(parts, system.scene.frequency_range)
     looked = _looked(system, stretches) if stretches else []
     missed = list(_missed(system, looked, paths)) if looked else []
     if not missed:
-        return found
+        return found if all(one.complete for one in looked) else _having(found, looked)
     traced = with_further(system, found.traced, looked, missed)
     further = traced.branches.paths[len(paths) :]
     shown = (*found.shown, *(reported(system, path) for path in further))
@@ -49,24 +50,9 @@ def with_missed(found: Accurate, stable: Sequence[FloatArray], accuracy: float) 
     return replace(every, further=found.further, begun=found.begun)
 
 
-def restless(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stretch) -> list[Stretch]:
-    """From where to where all motions of paths are known to be unstable, the widest stretch first."""
-    borne = [ends for path, known in zip(paths, stable, strict=True) for ends in _borne(path, known)]
-    reached, found = span[0], []
-    for low, high in [*sorted(borne), (span[1], span[1])]:
-        if low > reached:
-            found.append((reached, low))
-        reached = max(reached, high)
-    return sorted(found, key=lambda ends: ends[0] - ends[1])
-
-
-def _borne(path: Path, stable: FloatArray) -> Iterator[Stretch]:
-    """From where to where a motion may stay, along each part of a path."""
-    may = np.concatenate(([False], stable != 0.0, [False]))
-    ends = np.flatnonzero(may[1:] != may[:-1]).tolist()
-    for first, end in zip(ends[::2], ends[1::2], strict=True):
-        part = path.parameter[first:end]
-        yield float(part.min()), float(part.max())
+def _having(found: Accurate, looked: Sequence[Found]) -> Accurate:
+    """A response that says where else its branches were looked for."""
+    return replace(found, traced=replace(found.traced, found=(*found.traced.found, *looked)))
 
 
 def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:

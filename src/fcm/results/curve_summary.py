@@ -30,6 +30,8 @@ def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
         out["short_of_accuracy"] = curve.short_of
     if curve.unsure:
         out["branches_unsure_at"] = in_unit(curve.unsure, unit).tolist()
+    if gist.unstable:
+        out["no_stable_motion"] = in_unit(sorted(gist.unstable), unit).tolist()
     if curve.loose:
         out["may_not_be_unique"] = curve.loose
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
+from fcm.harmonic.unstable import Stretch, unstable_stretches
 from fcm.results.jumps import Swept
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ class Gist:
     points: int
     ends: tuple[float, float]  # [rad/s] lowest and highest frequency sought; of one point, or none, NaN
     stable: bool | None  # whether all of the curve is; None where that is not known
+    unstable: tuple[Stretch, ...]  # [rad/s] where nothing that was found is, the widest stretch first
     swept: Swept  # of a slow upward and a slow downward sweep
     table_error: float | None  # the largest that is known
     truncation_error: float | None
@@ -40,6 +42,7 @@ def gist_of(curve: Curve) -> Gist:
         points=known.size,
         ends=_ends(curve, known),
         stable=_stable(curve),
+        unstable=tuple(_unstable(curve)),
         swept=curve.swept(),
         table_error=worst(curve.table_error),
         truncation_error=worst(curve.truncation_error),
@@ -73,3 +76,15 @@ def _stable(curve: Curve) -> bool | None:
     if (stable == 0.0).any():
         return False
     return True if stable.size and (stable == 1.0).all() else None
+
+
+def _unstable(curve: Curve) -> list[Stretch]:
+    """Where no motion that was found is stable, of a curve that has all of its range."""
+    orbits = curve.orbits
+    partly = orbits is not None and (orbits.swept is not None or orbits.span is not None)
+    if not curve.complete or partly or curve.level is not None or curve.mode is not None:
+        return []
+    there = np.isfinite(curve.frequency)
+    span = _ends(curve, curve.frequency[there])
+    between = np.where(there, curve.stable, 0.0)  # nothing is between two branches
+    return unstable_stretches([(curve.frequency, between)], span)

@@ -1,0 +1,69 @@
+"""What may be missing in curves that are complete, or lacking in what they tell: a sentence on each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+_MOST_STRETCHES = 3  # of frequencies in a sentence
+
+
+def short_of_accuracy(summary: Mapping[str, Any]) -> str:
+    """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
+    short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
+    if not short:
+        return ""
+    count = len(summary["curves"])
+    which = "the curve has" if count == 1 else f"{len(short)} of {count} curves have"
+    return f"{which} not the accuracy that was asked for: {short[0]}"
+
+
+def branches_unsure(summary: Mapping[str, Any]) -> str:
+    """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
+    unsure = [curve["branches_unsure_at"] for curve in summary["curves"] if curve.get("branches_unsure_at")]
+    if not unsure:
+        return ""
+    count = len(summary["curves"])
+    which = "" if count == 1 else f"of {len(unsure)} of {count} curves "
+    at = f"{unsure[0][0]:.5g} {summary['frequency_unit']}"
+    return (
+        f"other branches {which}may be missing: at {at} the level of the forces was not followed to its end"
+    )
+
+
+def nothing_stable(summary: Mapping[str, Any]) -> str:
+    """Between which frequencies no motion that was found is stable, the widest; empty if nowhere."""
+    curves, unit = summary["curves"], summary["frequency_unit"]
+    found = [curve for curve in curves if curve.get("no_stable_motion")]
+    if not found:
+        return ""
+    every = found[0]["no_stable_motion"]
+    widest = sorted(sorted(every, key=lambda ends: ends[0] - ends[1])[:_MOST_STRETCHES])
+    ways = ", ".join(f"{low:.6g} and {high:.6g}" for low, high in widest)
+    more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
+    given = ", ".join(f"{key} = {value:.6g}" for key, value in found[0]["parameters"].items())
+    which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
+    shows = f"; {how} shows it" if (how := _how(summary)) else ""
+    return (
+        f"no stable motion was found between {ways} {unit}{more}{which}: what is approached there repeats "
+        f"after several periods or never, or is on a branch that was not found{shows}"
+    )
+
+
+def maybe_not_unique(summary: Mapping[str, Any]) -> str:
+    """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
+    count = sum(curve.get("may_not_be_unique", 0) for curve in summary["curves"])
+    if not count:
+        return ""
+    tells = f": {how} tells how far they range" if (how := _how(summary)) else ""
+    return (
+        f"points at which a contact never slips while another changes its state, or feels it: {count}; its "
+        f"residual friction may decide which of many motions that is{tells}"
+    )
+
+
+def _how(summary: Mapping[str, Any]) -> str:
+    """By which option the exact motion is visited at a frequency F; empty where it is not, of a ring."""
+    if any(note.startswith("cyclic:") for note in summary.get("notes", ())):
+        return ""
+    return "--at F" if summary["method"] == "exact" else "--method exact --at F"

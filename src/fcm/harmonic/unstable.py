@@ -1,0 +1,36 @@
+"""From where to where every motion that was found is unstable."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from fcm.scene.model import FloatArray
+
+Stretch = tuple[float, float]
+
+
+def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Stretch) -> list[Stretch]:
+    """Where within span all motions are known to be unstable, or there are none, the widest stretch first.
+
+    parts: of each path its frequencies (point,), and stable (point,): 1 where the motion is, 0 where it is
+    not, NaN where that is not known, so that it may be.
+    """
+    borne = [ends for frequency, stable in parts for ends in _borne(frequency, stable)]
+    reached, found = span[0], []
+    for low, high in [*sorted(borne), (span[1], span[1])]:
+        if low > reached:
+            found.append((reached, low))
+        reached = max(reached, high)
+    return sorted(found, key=lambda ends: ends[0] - ends[1])
+
+
+def _borne(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
+    """From where to where a motion may stay, along each part of a path; a point by itself is no such part."""
+    may = np.concatenate(([False], stable != 0.0, [False]))
+    ends = np.flatnonzero(may[1:] != may[:-1]).tolist()
+    for first, end in zip(ends[::2], ends[1::2], strict=True):
+        part = frequency[first:end]
+        if end > first + 1:
+            yield float(part.min()), float(part.max())

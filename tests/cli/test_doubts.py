@@ -1,0 +1,51 @@
+"""What may be missing in curves that are complete: what a run says of it."""
+
+import json
+from pathlib import Path
+
+import netCDF4
+import pytest
+
+from fcm.cli.doubts import nothing_stable
+from fcm.response.exact import trace_exact
+from fcm.scene import load_scene
+
+SCENE = Path(__file__).parents[1] / "orbit/scenes/two_periods.toml"
+
+
+def test_where_nothing_that_was_found_is_stable_the_run_says_so(fcm, tmp_path):
+    """Sweeps of the exact motion end there, and there alone, on one that repeats after two periods."""
+    scene = tmp_path / "a.toml"
+    scene.write_text(SCENE.read_text().replace("[0.75, 2.4593]", "[1.97, 2.08]"))
+    run = fcm("respond", scene, "--harmonics", "3", "--json", "-o", "a.nc")
+    (curve,) = json.loads(run.out)["curves"]
+    ((low, high),) = curve["no_stable_motion"]
+    assert f"no stable motion was found between {low:.6g} and {high:.6g} rad/s: what is approached" in run.err
+    at = [0.5 * (low + high), high + 0.02]
+    visited = trace_exact(load_scene(scene), at).curves[0]
+    assert visited.orbits.repeats.tolist() == [2, 1, 1, 2] and visited.complete
+    assert "no_stable_motion" not in visited.summary()
+    with netCDF4.Dataset(tmp_path / "a.nc") as data:
+        assert json.loads(data.summary)["curves"][0]["no_stable_motion"] == [[low, high]]
+
+
+def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
+    ways = [[1.0, 1.5], [2.0, 2.1], [3.0, 3.2], [4.0, 4.3], [5.0, 5.05]]
+    curves = [
+        {"parameters": {"contact.a.n_0": 7.0}},
+        {"parameters": {"contact.a.n_0": 0.5}, "no_stable_motion": ways},
+    ]
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    assert "between 1 and 1.5, 3 and 3.2, 4 and 4.3 Hz and in 2 narrower ranges" in said
+    assert "(contact.a.n_0 = 0.5; on 1 of 2 curves)" in said and said.endswith(
+        "--method exact --at F shows it"
+    )
+    ring = nothing_stable(
+        {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "notes": ["cyclic: so"]}
+    )
+    assert ring.endswith("not found")  # the exact motion of a ring is not visited
+
+
+@pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])
+def test_nothing_is_said_where_something_is_stable_throughout(curves):
+    assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"}) == ""
