@@ -144,6 +144,8 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     if one["between"]:
         ends = "{:.6g} and {:.6g}".format(*one["between"])
         kind += f"; known by trials alone, between {ends}, as not all peaks could be followed"
+    elif one["kind"] == "trials":  # of several numbers
+        kind = "; along each number known by trials alone, as not all peaks could be followed"
     at = " and ".join(
         f"{plain(place['dof'])} at {place['frequency']:.6g} {unit}{_mark(place)}" for place in one["at"]
     )

@@ -69,7 +69,7 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
         else:
-            found = _downhill(task, chosen)
+            found = _downhill(task, chosen, before)
         if harmonics:
             break
         more, taken = _enough(task, found[0], chosen, seconds)
@@ -137,9 +137,10 @@ def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
-def _downhill(task: Task, harmonics: tuple[int, ...]) -> Found:
-    """Of several numbers."""
-    found = descend(Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets))
+def _downhill(task: Task, harmonics: tuple[int, ...], before: Optimal | None) -> Found:
+    """Of several numbers; from what was found with fewer harmonics."""
+    valley = Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets)
+    found = descend(valley, None if before is None else np.array(list(before.values.values())))
     if found is None:
         raise ResponseError(_nothing(task))
     return _optimal(task, found[0], found[1], harmonics), []

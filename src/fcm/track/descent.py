@@ -5,16 +5,19 @@ With the peaks A_i(q), each followed along straight lines in the numbers q, the 
     minimise t  subject to  A_i(q) <= t,  bounds on q
 
 is smooth, kinks of equal peaks included; its derivatives are those of the extended system of each peak. It
-is solved by sequential quadratic programming. At its end the response is traced anew, and what is higher
-than the peaks that were followed joins them. Where a contact sticks throughout, its friction changes
+is solved by sequential quadratic programming. At its end the response is traced anew: where other peaks than
+were followed are higher than where the way began, it is traced half of the way back, until it is lower; the
+way goes on with the peaks that are there. Where a contact sticks throughout, its friction changes
 nothing and no way leads down. So the least peak is then sought along the whole range of each number alone,
-as of one number, and the way down is taken again from there as long as that finds less.
+as of one number, by trials where not all peaks can be followed, and the way down is taken again from there as
+long as that finds less.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -28,11 +31,13 @@ from fcm.track.lowest import Search
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
+from fcm.track.trials import by_trials
 from fcm.track.varied import Line
 
 LEVELS = (0.1, 0.5, 0.9)  # of each range, at which the first responses are traced
 STARTS = 2  # of the lowest of them, from which the way leads down
 ROUNDS = 6  # of descending and tracing anew
+HALVES = 8  # of a way at whose end other peaks are higher
 ITERATIONS = 20  # of one descent, after which the responses are traced anew: at some kinks it goes to and fro
 FURTHER = 1e-5  # relative: less of it along a single number is worth another way down
 COUNTS = 1e-6  # relative: what is higher than this has not been followed
@@ -41,6 +46,14 @@ ROUNDING = 1e-12  # of a range
 BOUND = 1e-6  # of a range: a number nearer to its end is there
 
 Member = tuple[Condition, int, FloatArray]  # what is tracked, the degree of freedom, z = (x, omega)
+
+
+class OnLine(NamedTuple):
+    """The least over the range of one number, scaled; and whether all higher peaks could be followed."""
+
+    q: FloatArray
+    value: float
+    followed: bool
 
 
 class LeftRangeError(Exception):
@@ -115,23 +128,21 @@ class Valley:
         return value, slopes
 
 
-def descend(valley: Valley) -> tuple[FloatArray, Least] | None:
-    """The optimum: the numbers, and what is least there; None where nothing has a peak."""
-    count = len(valley.numbers)
-    tried = []
-    for q in map(np.array, product(LEVELS, repeat=count)):
-        members = valley.peaks(q)
-        if members:
-            tried.append((max(valley.height(one, q)[0] for one in members), tuple(q)))
-    found = [_from(valley, np.array(q)) for _, q in sorted(tried)[:STARTS]]
+def descend(valley: Valley, near: FloatArray | None = None) -> tuple[FloatArray, Least] | None:
+    """The optimum: the numbers, and what is least there; None where nothing has a peak.
+
+    With numbers near it, as fewer harmonics find them, the way leads down from there.
+    """
+    found = [downhill(valley, q) for q in _starts(valley, near)]
     if not found:
         return None
     q, value, members = min(found, key=lambda one: one[1])
     for _ in range(ROUNDS):
-        beside = min((_along(valley, q, k) for k in range(count)), key=lambda one: one[1])
-        if not beside[1] < value * (1.0 - FURTHER):
+        lines = [_along(valley, q, k) for k in range(q.size)]
+        followed, beside = all(line.followed for line in lines), min(lines, key=lambda line: line.value)
+        if not beside.value < value * (1.0 - FURTHER):
             break
-        again = _from(valley, beside[0])
+        again = downhill(valley, beside.q)
         if not again[1] < value:
             break
         q, value, members = again
@@ -141,30 +152,52 @@ def descend(valley: Valley) -> tuple[FloatArray, Least] | None:
         if height >= value * (1.0 - 1e2 * EQUAL):
             active.append(Height(height, 0.0, np.append(member[2], np.nan), member[1]))
     edge = bool(((q < BOUND) | (q > 1.0 - BOUND)).any())
-    kind = "kink" if len(active) > 1 else "bound" if edge else "smooth"
+    kind = "trials" if not followed else "kink" if len(active) > 1 else "bound" if edge else "smooth"
     return valley.low + q * valley.width, Least(np.nan, value, tuple(active), kind)
 
 
-def _along(valley: Valley, q: FloatArray, k: int) -> tuple[FloatArray, float]:
+def _starts(valley: Valley, near: FloatArray | None) -> list[FloatArray]:
+    """Numbers from which the way leads down: the lowest of a coarse grid where none are known."""
+    if near is not None:
+        return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
+    grid = map(np.array, product(LEVELS, repeat=len(valley.numbers)))
+    tried = [(_traced(valley, q)[0], tuple(q)) for q in grid]
+    return [np.array(q) for value, q in sorted(tried)[:STARTS] if value < np.inf]
+
+
+def _traced(valley: Valley, q: FloatArray) -> tuple[float, list[Member]]:
+    """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
+    members = valley.peaks(q)
+    return max((valley.height(one, q)[0] for one in members), default=np.inf), members
+
+
+def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
     """The least over the range of one number, the others as they are."""
     origin, direction = np.array(q), np.eye(q.size)[k]
     origin[k] = 0.0
-    best = Search(valley.system, valley.line(origin, direction), (0.0, 1.0), valley.targets).run().best
-    return (q, np.inf) if best is None else (origin + best.s * direction, best.value)
+    search = Search(valley.system, valley.line(origin, direction), (0.0, 1.0), valley.targets)
+    found = search.run()
+    best = found.best if found.checked else by_trials(search)
+    if best is None:
+        return OnLine(q, np.inf, found.checked)
+    return OnLine(origin + best.s * direction, best.value, found.checked)
 
 
-def _from(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
-    """Down from q until a new tracing finds nothing higher."""
-    best: tuple[FloatArray, float, list[Member]] | None = None
+def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
+    """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
+    value, members = _traced(valley, q)
     for _ in range(ROUNDS):
-        members = valley.peaks(q)
-        value = max((valley.height(one, q)[0] for one in members), default=np.inf)
-        if best is not None and value >= best[1] * (1.0 - COUNTS):
-            return best
-        best = (q, value, members)
-        q = _minimax(valley, q, members, value)
-    assert best is not None
-    return best
+        end = _minimax(valley, q, members, value)
+        for _ in range(HALVES):
+            there = _traced(valley, end)
+            lower = there[0] < value * (1.0 - COUNTS)
+            if lower or there[0] <= value * (1.0 + COUNTS):
+                break
+            end = 0.5 * (q + end)
+        if not lower:
+            break
+        q, (value, members) = end, there
+    return q, value, members
 
 
 def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) -> FloatArray:

@@ -15,6 +15,7 @@ from fcm.track.lowest import Search
 EVEN = 5  # values over the range, both ends among them
 CLOSER = 4  # values about the lowest of those
 NEAR = 1e-4  # of the range: nearer to it none is tried
+NONE = 10.0  # of the highest: what a response without a peak counts as
 
 
 def by_trials(search: Search) -> Least | None:
@@ -40,7 +41,7 @@ def _greatest(search: Search, value: float) -> float:
     """The greatest at a value; where there is no peak, none that could be least."""
     if value not in search.seen:
         search.look(value)
-    return search.seen[value].value or np.inf
+    return search.seen[value].value or NONE * max(height.value for height in search.seen.values())
 
 
 def _lowest(search: Search) -> float:

@@ -1,0 +1,64 @@
+"""The way down over several numbers, where the peaks are functions that are known."""
+
+import numpy as np
+import pytest
+
+from fcm.cli.track import as_table
+from fcm.results.tracked import Optimal
+from fcm.track.descent import downhill
+from fcm.track.envelope import Height
+from fcm.track.trials import by_trials
+
+EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
+
+
+class Known:
+    """A valley whose peaks are a slope along the first number and a parabola along the second."""
+
+    def peaks(self, q):
+        return ["slope", "higher"] if q[0] < EDGE else ["slope"]
+
+    def moved(self, member, q, to):
+        return member
+
+    def height(self, member, q):
+        if member == "higher":
+            return 3.0, np.zeros(2)
+        return 1.0 + q[0] + (q[1] - 0.8) ** 2, np.array([1.0, 2.0 * (q[1] - 0.8)])
+
+
+def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
+    """It stayed where it began: at the end of the way is a higher peak. (Along the edge leads no way.)"""
+    q, value, members = downhill(Known(), np.array([0.9, 0.1]))
+    assert EDGE <= q[0] < EDGE + 0.01 and members == ["slope"]
+    assert value == pytest.approx(1.0 + q[0] + (q[1] - 0.8) ** 2)
+    assert abs(q[1] - 0.8) < 0.5
+
+
+class Tried:
+    """Responses to a number from 0 to 1, of which some have no peak: in the order in which they are looked at."""
+
+    span = (0.0, 1.0)
+
+    def __init__(self, *heights):
+        self.heights, self.seen = list(heights), {}
+
+    def look(self, value):
+        self.seen[value] = Height(self.heights.pop(0), 0.0, np.zeros(0), 0)
+
+
+def test_trials_where_some_responses_have_no_peak():
+    """The bracket was sought with infinite heights, and numpy warned of their differences."""
+    search = Tried(3.0, 2.0, 2.0, 1.0, 2.0, 2.0, 0.0, 0.0, 1.5, 1.4)
+    search.look(np.float64(0.4))
+    found = by_trials(search)
+    assert (found.s, found.value) == (0.5, 1.0)
+
+
+def test_least_peaks_of_several_numbers_by_trials_say_so():
+    found = Optimal(
+        {}, {"contact.c.n_0": 1.0, "contact.c.k_u": 2.0}, ("peak.u",), 3.0, (("u", 1.2),), "trials", (1,),
+        stable=(1.0,),
+    )  # fmt: skip
+    shown = as_table({"optimum": [found.summary("rad/s")], "tracked": {"what": "optimum"}}, "rad/s")
+    assert "contact.c.k_u = 2; along each number known by trials alone" in shown
