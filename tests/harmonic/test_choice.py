@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from fcm.continuation import follow
+from fcm.continuation.branches import contains
 from fcm.harmonic import choice, outline, start, trace
 from fcm.harmonic.choice import accurate, enlarged, estimated, judged
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.outline import Outline, foretold, outlined
 from fcm.harmonic.system import System
+from fcm.harmonic.work import TooLongError
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 
@@ -102,6 +104,62 @@ def test_an_outline_has_the_harmonics_that_are_foreseen_and_estimates_no_error(m
     assert known.reached and found.system.harmonics == known.system.harmonics
     ahead = found.ahead(1e-2)
     assert ahead.told and ahead.change <= 1e-2 < outlined(System(scene("yang1998", 5))).ahead(1e-2).change
+
+
+def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed(monkeypatch):
+    """The rounds between go on from the branches of fewer harmonics; every solution is on a branch."""
+    followed, passes = [], []
+    found_at, led = trace.found_at, outline.traced_from
+    monkeypatch.setattr(
+        trace, "found_at", lambda one, *a: followed.append(one.harmonics) or found_at(one, *a)
+    )
+    monkeypatch.setattr(outline, "traced_from", lambda one, *a: passes.append(one.harmonics) or led(one, *a))
+    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    last = found.system.harmonics
+    assert found.reached and len(passes) == 2 and passes[-1] == last
+    assert followed == [(1,), last]
+    for omega in start.looked_at(found.system):
+        for z in start.solutions(found.system, omega).solutions:
+            assert any(contains(path, z, found.system.balance()) for path in found.traced.branches.paths)
+
+
+def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last(monkeypatch):
+    """As if there were no other way to a closed branch: that is another to be chosen for, too."""
+    known = accurate(System(scene("isola")), 1e-2)
+    led, ahead = outline.traced_from, Outline.ahead
+    asked: list[int] = []
+
+    def the_first_alone(*args):
+        response = led(*args)
+        asked.clear()
+        return replace(response, branches=replace(response.branches, paths=response.branches.paths[:1]))
+
+    monkeypatch.setattr(outline, "traced_from", the_first_alone)
+    monkeypatch.setattr(Outline, "ahead", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a))
+    found = accurate(System(scene("isola")), 1e-2)
+    assert asked == [1, 2] and len(known.shown) == 2
+    assert found.reached and found.system.harmonics == known.system.harmonics
+    assert found.peak == pytest.approx(known.peak, rel=1e-3)
+    assert sorted(one.amplitude.max() for one in found.shown) == pytest.approx(
+        sorted(one.amplitude.max() for one in known.shown), rel=1e-6
+    )
+
+
+def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so(monkeypatch):
+    system = System(scene("yang1998", 5))
+    last = accurate(system, 1e-4).system.harmonics
+
+    def too_long(one, before):
+        if one.harmonics == last:
+            raise TooLongError
+        return with_levels(one, before)
+
+    with_levels = outline.with_levels
+    monkeypatch.setattr(outline, "with_levels", too_long)
+    found = accurate(System(system.scene), 1e-4)
+    assert found.further == last and found.begun and not found.reached
+    assert {1} < set(found.system.harmonics) < set(last)
+    assert all(one.harmonics == found.system.harmonics for one in found.traced.found)
 
 
 def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):

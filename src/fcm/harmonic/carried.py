@@ -11,12 +11,12 @@ followed again. With a few it always is: branches come to be up to the seventh h
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Status, follow
+from fcm.continuation import Path, Status, follow
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.further import padded
 from fcm.harmonic.linear_contacts import foresee
@@ -74,6 +74,28 @@ def _with_led(system: System, found: Found, before: Found) -> Found:
         if there is not None and not any(same(there, other) for other in known):
             known.append(there)
     return replace(found, solutions=tuple(known))
+
+
+def led(
+    system: System, fewer: Sequence[int], paths: Sequence[Path], frequencies: Sequence[float]
+) -> Iterator[FloatArray]:
+    """Solutions that the points of paths of fewer harmonics at some frequencies lead to."""
+    for path in paths:
+        for z in path.z[np.isin(path.parameter, frequencies)]:
+            there = _led(system, padded(z, fewer, system.harmonics))
+            if there is not None:
+                yield there
+
+
+def passes(system: System, path: Path, z: FloatArray) -> bool:
+    """Whether the solution z lies between two points of a path."""
+    w = path.parameter - z[-1]
+    for i in np.flatnonzero((w[:-1] * w[1:] <= 0.0) & (w[:-1] != w[1:])).tolist():
+        guess = path.z[i] + w[i] / (w[i] - w[i + 1]) * (path.z[i + 1] - path.z[i])
+        there = at_its_frequency(system, guess)
+        if there is not None and same(there, z):
+            return True
+    return False
 
 
 def same(one: FloatArray, other: FloatArray) -> bool:

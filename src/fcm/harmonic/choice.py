@@ -12,7 +12,7 @@ from fcm.harmonic.crest import RIVAL
 from fcm.harmonic.error import Errors, errors_along
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, needed
 from fcm.harmonic.nearby import with_a_window
-from fcm.harmonic.outline import ROUNDS, Outline, near, outlined, with_more
+from fcm.harmonic.outline import ROUNDS, Outline, enough, foreseen_whole, near, outlined, with_more
 from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -44,17 +44,20 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
 
     Traced first with one harmonic; as long as a peak of a degree of freedom, or a fold, may be further from
     its true place than the accuracy (relative), the harmonics are added that it takes, as far as that can be
-    foreseen, and all is traced again, from starts of its own: a branch of few harmonics may not exist with
-    more. What is beside its stable peaks with more is a start, too, as the level of the forces may not lead
-    to it. Only what is foreseen to be enough has its errors estimated point by point. What would take longer,
-    with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer is given up.
+    foreseen, and all is traced again: from what the branches before, and their stable peaks, lead to with
+    more. Only with what is foreseen to be enough the level of the forces is followed, which may lead to
+    branches that fewer harmonics do not have, and for which it is not. Then errors are estimated point by
+    point. What would take longer, with all before it, than anyone waits is not begun, see `PATIENCE`, and
+    what does take longer is given up.
     Whether the branches are complete is another question, see their status.
     """
-    found, further, begun = outlined(system, progress), tuple[int, ...](), False
+    found, further, begun, sure = outlined(system, progress), tuple[int, ...](), False, None
     for _ in range(ROUNDS - 1):
-        ahead, sure = found.ahead(accuracy), None
-        more = ahead.harmonics
-        if ahead.told and ahead.change <= accuracy:
+        found, ahead = foreseen_whole(found, accuracy)
+        if found.further:
+            break
+        more, sure = ahead.harmonics, None
+        if enough(ahead, accuracy):
             sure = judged(found, accuracy)
             if sure.reached or (sure.told <= accuracy and not np.isnan(sure.peak).any()):
                 # folds that cannot be told do not come to be by more harmonics, but windows do
@@ -66,7 +69,10 @@ def accurate(system: System, accuracy: float, progress: Progress | None = None) 
         then, further, begun = with_more(found, ahead, more, accuracy, progress)
         if then is None:
             break
-        found = then
+        found, sure = then, None
+    found = found.whole()
+    if found.further:
+        further, begun = found.further, found.begun
     return replace(sure or judged(found, accuracy), further=further, begun=begun)
 
 

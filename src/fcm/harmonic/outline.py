@@ -1,10 +1,17 @@
-"""A balance's response whose errors are not known, and that with more harmonics, as long as nobody waits."""
+"""A balance's response whose errors are not known, and that with more harmonics, as long as nobody waits.
+
+To see which harmonics it takes the branches will do that those of fewer lead to. The levels of the forces,
+which take about as long as these, are followed at last, with the harmonics that are enough (`Outline.whole`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.harmonic.beside import beside
 from fcm.harmonic.cost import PATIENCE, seconds_of
@@ -12,7 +19,7 @@ from fcm.harmonic.error import Reported, reported
 from fcm.harmonic.foreseen import LOW, Foreseen, foreseen
 from fcm.harmonic.start import Found
 from fcm.harmonic.system import System
-from fcm.harmonic.trace import Traced, traced
+from fcm.harmonic.trace import Traced, traced, traced_from, with_levels
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
@@ -25,7 +32,8 @@ class Outline:
     """A response whose errors are not known yet; shown (path,) belongs to the branches' paths.
 
     seconds: about what following its levels and branches took. further: the harmonics that would do more but
-    take too long, if any, and whether that was seen only when they had been begun.
+    take too long, if any, and whether that was seen only when they had been begun. before: the response of
+    fewer harmonics that its branches come of, as long as no level was followed with its own, see `whole`.
     """
 
     system: System
@@ -34,14 +42,19 @@ class Outline:
     seconds: float
     further: tuple[int, ...] = field(default=(), kw_only=True)
     begun: bool = field(default=False, kw_only=True)
+    before: Outline | None = field(default=None, kw_only=True)
 
     def seconds_with(self, harmonics: tuple[int, ...]) -> float:
         """About what following its levels and branches with other harmonics takes."""
+        return self._grown(self.seconds, harmonics)
+
+    def _grown(self, seconds: float, harmonics: tuple[int, ...]) -> float:
+        """What takes some seconds, with other harmonics."""
         few, many = len(self.system.harmonics), len(harmonics)
-        if not self.seconds:  # nothing was to be followed
+        if not seconds:  # nothing was to be followed
             return 0.0
         grown = seconds_of(self.system, 1, many) / seconds_of(self.system, 1, few)
-        return self.seconds * grown * many / few
+        return seconds * grown * many / few
 
     def within(self, seconds: float, more: tuple[int, ...]) -> tuple[int, ...]:
         """More harmonics without the highest of those that are new, until following them takes no longer.
@@ -53,6 +66,38 @@ class Outline:
             highest = max(set(more) - least)
             more = tuple(h for h in more if h != highest)
         return more
+
+    def led(
+        self, harmonics: tuple[int, ...], near: Sequence[FloatArray], progress: Progress | None
+    ) -> Outline:
+        """The response with more harmonics: the branches that its own lead to, and those through solutions
+        near. Where these are none, what the level of the forces leads to."""
+        system = self.system.with_harmonics(harmonics)
+        begin = system.work.seconds
+        response = traced_from(system, self.system.harmonics, self.traced, near, progress)
+        if response is None or not response.branches.paths:
+            return outlined(system, progress, self.traced.found, near)
+        levels = self._grown(self.traced.work, harmonics)  # are still to be followed
+        response, seconds = replace(response, work=levels), system.work.seconds - begin + levels
+        return Outline(system, response, _shown(system, response.branches.paths), seconds, before=self)
+
+    def whole(self, most: float = PATIENCE) -> Outline:
+        """With the branches that the level of the forces leads to and those of fewer harmonics do not.
+
+        Where all comes to more seconds than the most, the response of fewer harmonics, which says so.
+        """
+        if self.before is None:
+            return self
+        system, known = self.system, len(self.shown)
+        begin = system.work.seconds
+        try:
+            with system.work.up_to(most):
+                response = with_levels(system, self.traced)
+        except TooLongError:
+            return replace(self.before.whole(np.inf), further=system.harmonics, begun=True)
+        shown = (*self.shown, *_shown(system, response.branches.paths[known:]))
+        seconds = self.seconds - self.traced.work + system.work.seconds - begin
+        return Outline(system, response, shown, seconds)
 
     def ahead(self, accuracy: float) -> Foreseen:
         """What more harmonics would do, and those that an accuracy takes."""
@@ -71,8 +116,12 @@ def outlined(
     """The response of a system; fewer and near as of `traced`."""
     before = system.work.seconds
     response = traced(system, progress, fewer, near)
-    shown = tuple(reported(system, path) for path in response.branches.paths)
+    shown = _shown(system, response.branches.paths)
     return Outline(system, response, shown, system.work.seconds - before)
+
+
+def _shown(system: System, paths: Sequence[Path]) -> tuple[Reported, ...]:
+    return tuple(reported(system, path) for path in paths)
 
 
 def foretold(system: System, accuracy: float) -> Outline:
@@ -82,14 +131,29 @@ def foretold(system: System, accuracy: float) -> Outline:
     """
     found, further, begun = outlined(system), tuple[int, ...](), False
     for _ in range(ROUNDS - 1):
-        ahead = found.ahead(accuracy)
-        if ahead.told and ahead.change <= accuracy:
-            break
+        found, ahead = foreseen_whole(found, accuracy)
+        if found.further or enough(ahead, accuracy):
+            return found
         then, further, begun = with_more(found, ahead, ahead.harmonics, accuracy, None)
         if then is None:
             break
         found = then
-    return replace(found, further=further, begun=begun)
+    found = found.whole()
+    return found if found.further else replace(found, further=further, begun=begun)
+
+
+def foreseen_whole(found: Outline, accuracy: float) -> tuple[Outline, Foreseen]:
+    """What more harmonics would do to a response; where they would do little, with all its branches."""
+    ahead = found.ahead(accuracy)
+    if found.before is None or not enough(ahead, accuracy):
+        return found, ahead
+    whole = found.whole()
+    return whole, ahead if len(whole.shown) == len(found.shown) else whole.ahead(accuracy)
+
+
+def enough(ahead: Foreseen, accuracy: float) -> bool:
+    """Whether the harmonics of a response are foreseen to be."""
+    return ahead.told and ahead.change <= accuracy
 
 
 def with_more(
@@ -105,10 +169,10 @@ def with_more(
         return None, ahead.harmonics if blind and ahead.harmonics != more else (), False
     if work.seconds + found.seconds_with(more) > PATIENCE:
         return None, more, False
-    system, stable = found.system.with_harmonics(more), near(found, more)
+    stable = near(found, more)
     try:
         with work.up_to(PATIENCE):
-            then = outlined(system, progress, found.traced.found, stable)
+            then = found.led(more, stable, progress)
     except TooLongError:
         return None, more, True
     # where no solution was found the one of fewer harmonics, which says its error, stays

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from fcm.continuation import Path
-from fcm.harmonic.carried import at_its_frequency, same
+from fcm.harmonic.carried import passes
 from fcm.harmonic.choice import Accurate, judged
 from fcm.harmonic.error import reported
 from fcm.harmonic.multipliers import multipliers_of
@@ -72,16 +72,5 @@ def _missed(system: System, looked: Sequence[Found], paths: Sequence[Path]) -> I
     """The solutions that are stable, and that no path passes, as in a window of stability unseen."""
     of = multipliers_of(system, system.scene.frequency_range[1])
     for z in (z for one in looked for z in one.solutions):
-        if of.verdict(z, enough=(1.0,)).stable == 1.0 and not any(_passes(system, one, z) for one in paths):
+        if of.verdict(z, enough=(1.0,)).stable == 1.0 and not any(passes(system, one, z) for one in paths):
             yield z
-
-
-def _passes(system: System, path: Path, z: FloatArray) -> bool:
-    """Whether the solution z lies between two points of a path."""
-    w = path.parameter - z[-1]
-    for i in np.flatnonzero((w[:-1] * w[1:] <= 0.0) & (w[:-1] != w[1:])).tolist():
-        guess = path.z[i] + w[i] / (w[i] - w[i + 1]) * (path.z[i + 1] - path.z[i])
-        there = at_its_frequency(system, guess)
-        if there is not None and same(there, z):
-            return True
-    return False

@@ -12,7 +12,7 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic.carried import found_at
+from fcm.harmonic.carried import found_at, led, passes
 from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
@@ -25,10 +25,12 @@ from fcm.scene.model import FloatArray
 
 @dataclass(frozen=True)
 class Traced:
-    """Branches, and what was found at the frequencies where solutions were looked for."""
+    """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
+    harmonics; work is what that took, in seconds of `fcm.harmonic.cost`."""
 
     branches: Branches
     found: tuple[Found, ...]
+    work: float = 0.0
 
 
 def traced(
@@ -43,13 +45,50 @@ def traced(
     fewer: what was found there with fewer harmonics, if anything; near: solutions (unknown + 1,) known from
     elsewhere, whose branches are traced too if they are within the range.
     """
-    span = system.scene.frequency_range
+    before = system.work.seconds
+    found, passed = _passed(system, fewer)
+    work = system.work.seconds - before
+    return Traced(_through(system, [*passed, *near], progress), found, work)
+
+
+def traced_from(
+    system: System,
+    fewer: Sequence[int],
+    before: Traced,
+    near: Sequence[FloatArray],
+    progress: Progress | None = None,
+) -> Traced | None:
+    """The branches through what those of fewer harmonics lead to where these were looked for, and through
+    solutions near; None if there is no such. No level is followed: what was found is as before."""
+    frequencies = [one.omega for one in before.found]
+    starts = [*led(system, fewer, before.branches.paths, frequencies), *near]
+    return replace(before, branches=_through(system, starts, progress)) if starts else None
+
+
+def with_levels(system: System, before: Traced) -> Traced:
+    """With what the levels of the forces lead to, and the branches through what is on none that is known."""
+    begin = system.work.seconds
+    found, passed = _passed(system, before.found)
+    work = system.work.seconds - begin
+    span, paths = system.scene.frequency_range, before.branches.paths
+    inside = (z for z in passed if span[0] <= z[-1] <= span[1])
+    missed = [z for z in inside if not any(passes(system, path, z) for path in paths)]
+    return replace(with_further(system, replace(before, found=()), found, missed), work=work)
+
+
+def _passed(system: System, fewer: Sequence[Found]) -> tuple[tuple[Found, ...], list[FloatArray]]:
+    """What is found where the levels are followed, with all solutions that this leads to."""
     found = found_at(system, looked_at(system), fewer)
     beside = passed_beside(system, [turn for one in found for turn in one.turns])
-    inside = [z for z in (*near, *beside) if span[0] <= z[-1] <= span[1]]
-    starts = [*(z for one in found for z in one.solutions), *inside]
-    branches = all_branches(system.afresh, starts, span, system.scene.max_step, progress, _along(system))
-    return Traced(_steady(system, branches), found)
+    return found, [*(z for one in found for z in one.solutions), *beside]
+
+
+def _through(system: System, starts: Sequence[FloatArray], progress: Progress | None) -> Branches:
+    """The branches through solutions, of which those outside the range do not count."""
+    span = system.scene.frequency_range
+    inside = [z for z in starts if span[0] <= z[-1] <= span[1]]
+    step, along = system.scene.max_step, _along(system)
+    return _steady(system, all_branches(system.afresh, inside, span, step, progress, along))
 
 
 def with_further(
@@ -62,7 +101,7 @@ def with_further(
     branches = all_branches(system.afresh, starts, span, step, None, along, known.paths)
     further = (path for path in branches.paths[len(known.paths) :] if not _nowhere(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
-    return Traced(branches, (*before.found, *found))
+    return replace(before, branches=branches, found=(*before.found, *found))
 
 
 def _along(system: System) -> Follow:
