@@ -190,7 +190,7 @@ def of_a_period(name: str, scene: Scene, omega: float) -> None:
 
     def newton() -> None:
         shot = problem.residual(x, omega * (1.0 + 1e-9 * next(frequencies)))
-        assert shot.by_state.size and shot.by_frequency.size
+        assert shot.by_state.size and shot.by_parameter.size
 
     calls = {
         "a period": period,

@@ -12,7 +12,7 @@ from fcm.continuation.branches import contains
 from fcm.harmonic import choice, outline, start, trace
 from fcm.harmonic.choice import accurate, enlarged, estimated, judged
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.outline import Outline, foretold, outlined
+from fcm.harmonic.outline import Outline, outlined
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
 from fcm.response.trace import traced_curve
@@ -94,16 +94,6 @@ def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
     assert np.isnan(found.worst) and not found.further
     assert np.count_nonzero(np.isnan(found.folds)) == 1
     assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
-
-
-def test_an_outline_has_the_harmonics_that_are_foreseen_and_estimates_no_error(monkeypatch):
-    """Those of the accurate response, of which it is said that they were enough; foreseen to do less."""
-    known = accurate(System(scene("yang1998", 5)), 1e-2)
-    monkeypatch.setattr(choice, "errors_along", None)
-    found = foretold(System(scene("yang1998", 5)), 1e-2)
-    assert known.reached and found.system.harmonics == known.system.harmonics
-    ahead = found.ahead(1e-2)
-    assert ahead.told and ahead.change <= 1e-2 < outlined(System(scene("yang1998", 5))).ahead(1e-2).change
 
 
 def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed(monkeypatch):

@@ -52,7 +52,7 @@ def test_the_derivative_by_the_frequency_is_that_of_differences(name, omega):
         ahead, behind = problem.residual(x, omega + step), problem.residual(x, omega - step)
         assert ahead.sequence == behind.sequence
         quotient = (ahead.gap - behind.gap) / (2.0 * step)
-        assert omega * relative(shot, shot.by_frequency) == pytest.approx(
+        assert omega * relative(shot, shot.by_parameter) == pytest.approx(
             omega * relative(shot, quotient), abs=1e-7
         )
 
@@ -64,7 +64,7 @@ def test_the_derivatives_of_a_large_structure():
     shot = problem.residual(x, omega)
     assert len(shot.segments) > 4
     quotient = (problem.residual(x, omega + 1e-6).gap - problem.residual(x, omega - 1e-6).gap) / 2e-6
-    assert relative(shot, shot.by_frequency) == pytest.approx(relative(shot, quotient), abs=1e-6)
+    assert relative(shot, shot.by_parameter) == pytest.approx(relative(shot, quotient), abs=1e-6)
     way = np.random.default_rng(0).normal(size=x.size) * shot.scale
     quotient = (
         problem.residual(x + 1e-6 * way, omega).gap - problem.residual(x - 1e-6 * way, omega).gap
@@ -82,7 +82,7 @@ def test_the_derivative_by_the_frequency_without_contact_is_known():
 
     problem, omega, step = Shooting(scene), 1.2, 1e-5
     shot = problem.residual(start(omega), omega)
-    change = np.linalg.solve(shot.by_state, -shot.by_frequency)
+    change = np.linalg.solve(shot.by_state, -shot.by_parameter)
     assert shot.residual < 1e-13
     assert change == pytest.approx((start(omega + step) - start(omega - step)) / (2.0 * step), rel=1e-7)
 

@@ -141,4 +141,4 @@ def test_the_residual_of_several_periods():
         np.sort(np.abs(orbit.multipliers**2)), abs=1e-12
     )
     quotient = (two.residual(x, omega + 1e-6).gap - two.residual(x, omega - 1e-6).gap) / 2e-6
-    assert shot.by_frequency == pytest.approx(quotient, abs=1e-7 * np.abs(quotient).max())
+    assert shot.by_parameter == pytest.approx(quotient, abs=1e-7 * np.abs(quotient).max())

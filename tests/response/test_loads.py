@@ -127,7 +127,7 @@ def test_derivatives_by_the_frequency_know_that_forces_grow():
     assert growth == pytest.approx((shown[0] - shown[1]) / 2e-6, rel=1e-5, abs=1e-6)
     problem, x = Shooting(scene), np.array([3.0, 1.0, 2.0, -4.0, 0.5])
     ends = [problem.residual(x, 1.2 + h) for h in (0.0, 1e-6, -1e-6)]
-    assert ends[0].by_frequency == pytest.approx((ends[1].gap - ends[2].gap) / 2e-6, rel=1e-5, abs=1e-5)
+    assert ends[0].by_parameter == pytest.approx((ends[1].gap - ends[2].gap) / 2e-6, rel=1e-5, abs=1e-5)
 
 
 def test_the_exact_motion_under_all_of_them_is_that_of_an_ordinary_solver():

@@ -36,7 +36,7 @@ def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
 
 
 class Tried:
-    """Responses to a number from 0 to 1, of which some have no peak: in the order in which they are looked at."""
+    """Responses to a number from 0 to 1, some without a peak: in the order in which they are looked at."""
 
     span = (0.0, 1.0)
 

@@ -12,10 +12,12 @@ from fcm.harmonic.crest import RIVAL
 from fcm.harmonic.error import Errors, errors_along
 from fcm.harmonic.foreseen import NOTHING, UNKNOWN, needed
 from fcm.harmonic.nearby import with_a_window
-from fcm.harmonic.outline import ROUNDS, Outline, enough, foreseen_whole, near, outlined, with_more
+from fcm.harmonic.outline import Outline, enough, foreseen_whole, near, outlined, with_more
 from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+
+ROUNDS = 8  # of tracing, estimating, choosing
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,6 @@ from fcm.harmonic.trace import Traced, traced, traced_from, with_levels
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
-ROUNDS = 8  # of tracing, estimating, choosing
 DOUBTFUL = 3.0  # seconds that rounds may take of which nothing tells that they bring the accuracy nearer
 
 
@@ -122,24 +121,6 @@ def outlined(
 
 def _shown(system: System, paths: Sequence[Path]) -> tuple[Reported, ...]:
     return tuple(reported(system, path) for path in paths)
-
-
-def foretold(system: System, accuracy: float) -> Outline:
-    """The response with the harmonics that are foreseen to be enough for an accuracy; system has one.
-
-    As `accurate`, but no error is estimated: for motions that are not of the balance it is a guess alone.
-    """
-    found, further, begun = outlined(system), tuple[int, ...](), False
-    for _ in range(ROUNDS - 1):
-        found, ahead = foreseen_whole(found, accuracy)
-        if found.further or enough(ahead, accuracy):
-            return found
-        then, further, begun = with_more(found, ahead, ahead.harmonics, accuracy, None)
-        if then is None:
-            break
-        found = then
-    found = found.whole()
-    return found if found.further else replace(found, further=further, begun=begun)
 
 
 def foreseen_whole(found: Outline, accuracy: float) -> tuple[Outline, Foreseen]:

@@ -11,8 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from fcm.continuation import Path
 from fcm.harmonic.carried import passes
 from fcm.harmonic.choice import Accurate, judged

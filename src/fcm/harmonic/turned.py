@@ -10,13 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from fcm.continuation import Path
 from fcm.continuation.newton import Newton
-from fcm.harmonic.balance import Balance
 from fcm.harmonic.further import padded
 from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
@@ -28,6 +27,16 @@ ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on ei
 FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
 
+class Loaded(Protocol):
+    """A problem in the frequency, at the level of the forces that is its load."""
+
+    load: float
+    scale: FloatArray
+
+    def measure(self, z: FloatArray) -> int:
+        """See `Problem`."""
+
+
 class Turn(NamedTuple):
     """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's direction there
     (unknown + 1,), in which that does not change; short if it turns before it passes the level 1."""
@@ -36,6 +45,11 @@ class Turn(NamedTuple):
     z: FloatArray
     direction: FloatArray
     short: bool
+
+    @property
+    def may_come(self) -> bool:
+        """Whether the level may be 1 at a turn like this one within a range."""
+        return self.short and 1.0 / SHORT < self.level < SHORT
 
     def padded(self, harmonics: Sequence[int], more: Sequence[int]) -> Turn:
         """That of a balance with some harmonics as one of more."""
@@ -63,30 +77,31 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
     """
     of = None
     for turn in turns:
-        if not turn.short or not 1.0 / SHORT < turn.level < SHORT:
+        if not turn.may_come:
             continue
         balance, newton = system.afresh(), system.front.newton
-        balance.measure(turn.z)
-        newton.z[:], newton.scale[:] = turn.z, balance.scale
-        along = turn.direction / np.asarray(balance.scale)
-        newton.row[:] = along / np.linalg.norm(along)
-        if _came(balance, newton, turn.level):
+        if came(balance, newton, turn):
             of = of or multipliers_of(system, system.scene.frequency_range[1])
-            yield from (z for z in _beside(newton) if of.verdict(z, enough=(1.0,)).stable == 1.0)
+            yield from (z for z in beside(newton) if of.verdict(z, enough=(1.0,)).stable == 1.0)
 
 
-def _came(balance: Balance, newton: Newton, level: float) -> bool:
-    """Whether a solution beside a turn, at a level, leads to one at the level 1."""
+def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
+    """Whether a turn leads to a solution at the level 1; newton is of that problem, and comes to it."""
+    level = problem.load = turn.level
+    problem.measure(turn.z)
+    newton.z[:], newton.scale[:] = turn.z, problem.scale
+    along = turn.direction / np.asarray(problem.scale)
+    newton.row[:] = along / np.linalg.norm(along)
     stages = max(math.ceil(abs(math.log(level)) / math.log(STAGE)), 1)
     for k in range(stages - 1, -1, -1):
-        balance.load = level ** (k / stages)
+        problem.load = level ** (k / stages)
         if not newton.correct(1.0) or newton.moved >= FAR:
             return False
         newton.row[:] = newton.tangent
     return True
 
 
-def _beside(newton: Newton) -> list[FloatArray]:
+def beside(newton: Newton) -> list[FloatArray]:
     """Solutions on both sides of the one that was found last, in its plane or a little along its curve."""
     middle, along = np.array(newton.z), np.array(newton.tangent)
     found = [middle]

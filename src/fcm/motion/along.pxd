@@ -4,6 +4,7 @@ cdef class Along:
     cdef readonly Flows flows
     cdef readonly Py_ssize_t unknowns
     cdef readonly double[:, ::1] columns
+    cdef readonly double paced
     cdef double[::1] _flat
     cdef double[:, ::1] _terms, _grades, _room, _matrix
     cdef void follow(self, Py_ssize_t slot, double position) noexcept nogil

@@ -3,7 +3,8 @@
 Along it the derivative by the start is the exponential of the flow's matrix. The frequency acts on the
 forces alone, which may also grow with it: at a fixed time the derivatives of sin(omega t) and cos(omega t)
 are t cos(omega t) and -t sin(omega t), and that of the columns of the forces is known with the flow. Of the
-motion itself only the angle of the forces is needed.
+motion itself only the angle of the forces is needed. The level of the forces, a factor of sin and cos, acts
+as a start does at which they alone differ.
 """
 
 from __future__ import annotations
@@ -31,11 +32,12 @@ class Along:
     """`follow` moves the rows of `columns` (unknowns + 2, size) along a flow.
 
     Row k < unknowns is a derivative of the state vector by its start; the row after them that by the
-    frequency, at a fixed time; of the last row, the state vector, only the forces' angle is moved.
+    frequency, at a fixed time, or by the level of the forces; of the last row, the state vector, only the
+    forces' angle is moved. paced: 1 for the derivative by the frequency, 0 for that by the level.
     """
 
     def __init__(self, flows: Flows, unknowns: cython.Py_ssize_t) -> None:
-        self.flows, self.unknowns = flows, unknowns
+        self.flows, self.unknowns, self.paced = flows, unknowns, 1.0
         self.columns = np.zeros((unknowns + 2, flows.size))
         self._terms, self._grades = np.zeros((ORDER + 1, flows.size)), np.zeros((ORDER + 1, flows.size))
         self._room = np.zeros((unknowns + 1, flows.linear))
@@ -66,8 +68,8 @@ class Along:
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
         i: cython.Py_ssize_t
-        sine: cython.double = self.columns[u + 1, n]
-        cosine: cython.double = self.columns[u + 1, n + 1]
+        sine: cython.double = self.paced * self.columns[u + 1, n]
+        cosine: cython.double = self.paced * self.columns[u + 1, n + 1]
         by_sine: cython.double = self.columns[u, n]
         by_cosine: cython.double = self.columns[u, n + 1]
         self.flows.reach(slot, j)
@@ -93,8 +95,8 @@ class Along:
         for k in range(u, u + 2):
             sine, cosine = self.columns[k, n], self.columns[k, n + 1]
             self.columns[k, n], self.columns[k, n + 1] = c * sine + s * cosine, c * cosine - s * sine
-        self.columns[u, n] += time * self.columns[u + 1, n + 1]
-        self.columns[u, n + 1] -= time * self.columns[u + 1, n]
+        self.columns[u, n] += self.paced * time * self.columns[u + 1, n + 1]
+        self.columns[u, n + 1] -= self.paced * time * self.columns[u + 1, n]
 
     @cython.cfunc
     @cython.nogil
@@ -205,7 +207,8 @@ class Along:
         self._fraction(slot, x, orders)
         for i in range(self.flows.size):
             self._grades[0, i] = self.columns[u, i]
-        self._terms[0, n], self._terms[0, n + 1] = self.columns[u + 1, n], self.columns[u + 1, n + 1]
+        self._terms[0, n] = self.paced * self.columns[u + 1, n]
+        self._terms[0, n + 1] = self.paced * self.columns[u + 1, n + 1]
         for j in range(orders):
             size = h * self.flows.omega / (j + 1)
             self._terms[j + 1, n], self._terms[j + 1, n + 1] = (

@@ -1,4 +1,4 @@
-"""The derivative of the motion by its start and by the frequency.
+"""The derivative of the motion by its start, and by the frequency or the level of the forces.
 
 Along a flow it is moved as in `along`. Across a transition whose instant moves with the start or with the
 frequency it is the saltation matrix
@@ -32,10 +32,11 @@ _NEGATIVE_SLIP = cython.declare(cython.int, 3)
 
 @cython.cclass
 class Derivative(Along):
-    """Of a motion by x = (q, q', f) at its start, and by the frequency.
+    """Of a motion by x = (q, q', f) at its start, and by the frequency or by the level of the forces.
 
     Row k < unknowns of `columns` is the derivative of the state vector by the component k of x; the row after
-    them that by the frequency, at a fixed time; the last row is the state vector itself; `rate` is A y there.
+    them that by the frequency, at a fixed time, or by the level; the last row is the state vector itself;
+    `rate` is A y there.
     """
 
     def __init__(self, flows: Flows, unknowns: int = 0) -> None:
@@ -43,8 +44,8 @@ class Derivative(Along):
         self.at, self.position = 0, 0.0
         self.rate, self._rates = np.zeros(flows.size), np.zeros((2, flows.size))
 
-    def begins(self, segments: Segments) -> None:
-        """Put the derivative at the start of the segments."""
+    def begins(self, segments: Segments, by_level: bool = False) -> None:
+        """Put the derivative at the start of the segments, at the forces' angle 0 if it is by the level."""
         k: cython.Py_ssize_t
         j: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -56,6 +57,8 @@ class Derivative(Along):
         for k in range(m):
             for j in range(self.flows.contacts):
                 self.columns[k, n + j] = self.flows.k_v[j] * self.flows.normal[j, k]
+        self.paced = 0.0 if by_level else 1.0
+        self.columns[self.unknowns, self.flows.linear + 1] = 1.0 - self.paced
         self._stand(segments)
 
     @cython.cfunc
@@ -85,17 +88,18 @@ class Derivative(Along):
         segments: Segments,
         duration: float,
         by_state: cython.double[:, ::1],
-        by_frequency: cython.double[::1],
+        by_parameter: cython.double[::1],
     ) -> int:
         """Fill the derivatives of x at the end of segments that last for periods; frequency shortens them.
 
-        By x at their start, (unknown, unknown), and by the frequency; returns what `go` does.
+        By x at their start, (unknown, unknown), and by the frequency or the level (unknown,); returns what
+        `go` does.
         """
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         last: cython.Py_ssize_t = segments.count - 1
         end: cython.double = segments.length[last]
-        shorter: cython.double = duration / self.flows.omega
+        shorter: cython.double = self.paced * duration / self.flows.omega
         missing: cython.Py_ssize_t
         with cython.nogil:
             missing = self._go(segments, last, end)
@@ -103,7 +107,7 @@ class Derivative(Along):
                 for i in range(self.unknowns):
                     for k in range(self.unknowns):
                         by_state[i, k] = self.columns[k, i]
-                    by_frequency[i] = self.columns[self.unknowns, i] - shorter * self.rate[i]
+                    by_parameter[i] = self.columns[self.unknowns, i] - shorter * self.rate[i]
         return int(missing)
 
     @cython.cfunc

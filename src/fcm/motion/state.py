@@ -83,8 +83,8 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
 
 def entered(system: System, x: FloatArray, angle: float = 0.0) -> March:
     """The march, to go on from x = (q, q', f) at an angle of the forces."""
-    march = system.march()
-    if not (isfinite(angle) and march.enters(x, sin(angle), cos(angle))):
+    march, level = system.march(), system.level
+    if not (isfinite(angle) and march.enters(x, level * sin(angle), level * cos(angle))):
         raise SimulationError("the state to start from has numbers that are not finite")
     return march
 

@@ -39,7 +39,12 @@ class System:
     ----------
     scene : Scene
     omega : float
+
+    level is that of the forces, by which all harmonic ones are multiplied: 1 of the scene as it is. Where it
+    is the parameter, motions are differentiated by it instead of the frequency.
     """
+
+    level, by_level = 1.0, False
 
     def __init__(self, scene: Scene, omega: float) -> None:
         self.scene, self.omega = scene, _checked(omega)
@@ -83,10 +88,16 @@ class System:
         other.omega = _checked(omega)
         return other
 
+    def at_level(self, level: float, by_level: bool = False) -> System:
+        """The same at another level of the forces, which may be the parameter, with the same flows."""
+        other = self.at(self.omega)
+        other.level, other.by_level = level, by_level
+        return other
+
     @property
     def wave(self) -> npt.NDArray[np.complex128]:
         """Modal amplitudes of the harmonic forces, of Im(wave exp(i theta)): (mode,)."""
-        wave: npt.NDArray[np.complex128] = self.constant + self.omega**2 * self.square
+        wave: npt.NDArray[np.complex128] = self.level * (self.constant + self.omega**2 * self.square)
         return wave
 
     @property

@@ -11,7 +11,7 @@ from fcm.continuation import Path
 from fcm.continuation.branches import SAME
 from fcm.continuation.newton import Newton
 from fcm.motion.state import State
-from fcm.orbit.harmonic import FEW, MANY, computed_state
+from fcm.orbit.harmonic import MANY, computed_state
 from fcm.orbit.held import held
 from fcm.orbit.periodic import Look
 from fcm.orbit.problem import OrbitProblem
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from fcm.harmonic.system import System
 
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
-ACCURACY = 1e-2  # of the other balance that is looked at, as of a response by default
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
 
@@ -65,34 +64,17 @@ def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArra
         yield float(z[-1]), computed_state(scene, harmonics, z)
 
 
-def first_balances(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
-    """The responses of the balance whose ends and tops may lead to other branches.
+def first_balance(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
+    """The response of the balance of one harmonic, whose ends and tops may lead to other branches.
 
-    That of one harmonic, and where branches of few are known to be apart, also that of `SOME`, as others may
-    lead to no closed branch; of many contacts that of one, and only where branches are apart.
+    Of many contacts only where branches are known to be apart.
     """
     from fcm.harmonic.outline import outlined
 
     whole = scene.whole()
     many = len(whole.contacts) >= MANY
-    if not (whole.modal.frequency.all() and whole.contacts) or (many and not apart):
-        return
-    yield outlined(_single(whole, look))
-    if apart and not many:
-        yield _outlined(_single(whole, look))
-
-
-def further_balances(scene: Scene, look: Look) -> Iterator[Outline]:
-    """Those where one harmonic is not enough: of `FEW`, and of as many as it is foreseen to take.
-
-    None of many contacts.
-    """
-    from fcm.harmonic.outline import foretold, outlined
-
-    whole = scene.whole()
-    if whole.modal.frequency.all() and len(whole.contacts) < MANY:
-        yield outlined(_single(whole, look).with_harmonics(FEW))
-        yield foretold(_single(whole, look), ACCURACY)
+    if whole.modal.frequency.all() and whole.contacts and (apart or not many):
+        yield outlined(_single(whole, look))
 
 
 def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dict[float, list[State]]:

@@ -1,26 +1,24 @@
-"""The balances that are to lead to further branches, as long as nobody waits for them."""
+"""The search for what leads to further branches, as long as nobody waits for it."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TypeVar
 
 import numpy as np
 
 from fcm.orbit.periodic import Look
 
-if TYPE_CHECKING:
-    from fcm.harmonic.outline import Outline
-
+Found = TypeVar("Found")
 SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
 
 
 class Bounded:
-    """Balances that take no more than so many seconds of processor time together.
+    """What leads to further branches, found in no more than so many seconds of processor time together.
 
-    outside : called now and then, all the while; `look` is to be called while a balance is computed.
-    given_up : why there may be more branches than those that they lead to, empty if all were computed.
+    outside : called now and then, all the while; `look` is to be called while it is sought.
+    given_up : why there may be more branches than those, empty if all was sought.
     """
 
     def __init__(self, outside: Look, most: float) -> None:
@@ -28,7 +26,7 @@ class Bounded:
         self._end, self._left, self._ask = np.inf, most, 0.0
 
     def look(self) -> None:
-        """Raise `TooLongError` when they have taken as much."""
+        """Raise `TooLongError` when it has taken as much."""
         from fcm.harmonic.work import TooLongError
 
         self.outside()
@@ -37,7 +35,7 @@ class Bounded:
                 raise TooLongError
             self._ask = time.monotonic() + SELDOM
 
-    def each(self, balances: Iterator[Outline]) -> Iterator[Outline]:
+    def each(self, finds: Iterator[Found]) -> Iterator[Found]:
         """One after the other; what is done with them between takes nothing of their time."""
         from fcm.harmonic.work import TooLongError
 
@@ -45,17 +43,15 @@ class Bounded:
             begin = time.process_time()
             self._end = begin + self._left
             try:
-                balance = next(balances, None)
+                found = next(finds, None)
             except TooLongError:
-                self._note(f"a balance that leads to them takes more than {self.most:.3g} s")
+                self.note(f"what leads to them takes more than {self.most:.3g} s to be found")
                 return
             self._left -= time.process_time() - begin
-            if balance is None:
+            if found is None:
                 return
-            if balance.further:
-                few, many = len(balance.system.harmonics), len(balance.further)
-                self._note(f"with {few} harmonics, as the {many} that it is foreseen to take are too many")
-            yield balance
+            yield found
 
-    def _note(self, why: str) -> None:
+    def note(self, why: str) -> None:
+        """That the search is not whole, and why."""
         self.given_up.append(f"the search for further branches was given up: {why}")

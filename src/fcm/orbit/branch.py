@@ -11,10 +11,11 @@ import numpy as np
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Branches, Follow
 from fcm.motion.errors import SimulationError
-from fcm.orbit.apart import first_balances, further_balances, passes
+from fcm.orbit.apart import first_balance, passes
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.raised import raised
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import along_balance, first_point, starts
 from fcm.scene.modal import UNITS
@@ -97,7 +98,7 @@ def explore(
     """All branches of a scene as paths, and what is missing, else ''.
 
     That is why there is no solution at an end of the range, and why the search for further branches was given
-    up: the balances that lead to them may take so many seconds of processor time.
+    up: what leads to them may take so many seconds of processor time.
     """
     scene = problem.scene
     found, missed, sought, apart = starts(problem, look)
@@ -119,23 +120,40 @@ def _with_others(
     branches: Callable[..., Branches],
     bounded: Bounded,
 ) -> tuple[Path, ...]:
-    """Paths, and those of other branches that the balance leads to.
+    """Paths, and those of others that the balance of one harmonic and the level of the forces lead to.
 
-    One harmonic is enough where each of its ends and tops leads to a motion as high, on a path that is there.
-    apart as of `first_balances`.
+    The level is not followed where each end and top of that balance leads to a motion as high, on a path that
+    is there. apart as of `first_balance`.
     """
     scene, look = problem.scene, bounded.look
-    for balances in (first_balances(scene, apart, look), further_balances(scene, look)):
-        before, high = len(paths), True
-        for balance in bounded.each(balances):
-            points, as_high = along_balance(problem, balance, bounded.outside)
-            high = high and as_high
-            for z in points:  # what is passed already is known without being followed again
-                if not known(paths, [z], problem):
-                    more = branches([z], known=paths).paths[len(paths) :]
-                    paths += tuple(path for path in more if not known(paths, spread(path), problem))
-        if high and len(paths) == before:
-            break
+    before, high = len(paths), True
+    for balance in bounded.each(first_balance(scene, apart, look)):
+        points, high = along_balance(problem, balance, bounded.outside)
+        paths = _with(problem, paths, points, branches)
+    if high and len(paths) == before:
+        return paths
+
+    def there(omega: float) -> list[FloatArray]:
+        return [z for path in paths for z in path.z[path.parameter == omega]]
+
+    for one in bounded.each(raised(scene, there, look)):
+        paths = _with(problem, paths, one.motions, branches)
+        if not one.complete:
+            bounded.note(f"the level of the forces cannot be followed at {shown(scene, one.omega)}")
+    return paths
+
+
+def _with(
+    problem: OrbitProblem,
+    paths: tuple[Path, ...],
+    motions: Sequence[FloatArray],
+    branches: Callable[..., Branches],
+) -> tuple[Path, ...]:
+    """Paths, and those through motions that none of them passes."""
+    for z in motions:  # what is passed already is known without being followed again
+        if not known(paths, [z], problem):
+            more = branches([z], known=paths).paths[len(paths) :]
+            paths += tuple(path for path in more if not known(paths, spread(path), problem))
     return paths
 
 

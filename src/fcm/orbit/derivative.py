@@ -1,4 +1,4 @@
-"""The derivative of a motion by its start and by the frequency, as arrays."""
+"""The derivative of a motion by its start, and by the frequency or the level of the forces, as arrays."""
 
 from __future__ import annotations
 
@@ -14,30 +14,31 @@ from fcm.scene.model import FloatArray
 class Along(NamedTuple):
     """The derivative at an instant."""
 
-    columns: FloatArray  # (unknown + 2, d): rows by each of x = (q, q', f), by the frequency; last the state
+    columns: FloatArray  # (unknown + 2, d): by each of x = (q, q', f), by the parameter; last the state
     rate: FloatArray  # (d,) of the state [1/s]
 
 
 def derivative_at(system: System, segments: Segments, last: int, position: float) -> Along:
     """At a position (in steps) in a segment."""
     kernel = system.derivative()
-    kernel.begins(segments)
+    kernel.begins(segments, system.by_level)
     while (missing := kernel.go(segments, last, position)) >= 0:
         system.make(np.asarray(segments.states)[missing])
     return Along(np.array(kernel.columns), np.array(kernel.rate))
 
 
 def period_derivative(system: System, segments: Segments, duration: float) -> tuple[FloatArray, FloatArray]:
-    """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency.
+    """Derivatives of x = (q, q', f) after periods of a duration T by x at their start, and by the frequency
+    or by the level, whichever is the parameter.
 
     The periods shorten as the frequency grows: dT / d omega = -T / omega.
     """
     kernel, u = system.derivative(), system.unknowns
-    by_state, by_frequency = np.empty((u, u)), np.empty(u)
-    kernel.begins(segments)
-    while (missing := kernel.closes(segments, duration, by_state, by_frequency)) >= 0:
+    by_state, by_parameter = np.empty((u, u)), np.empty(u)
+    kernel.begins(segments, system.by_level)
+    while (missing := kernel.closes(segments, duration, by_state, by_parameter)) >= 0:
         system.make(np.asarray(segments.states)[missing])
-    return by_state, by_frequency
+    return by_state, by_parameter
 
 
 def along(system: System, segments: Segments, places: FloatArray, way: FloatArray, rate: float) -> FloatArray:

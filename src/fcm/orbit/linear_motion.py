@@ -18,6 +18,7 @@ import numpy.typing as npt
 from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
 from fcm.motion.system import System
+from fcm.orbit.periodic import unloaded
 from fcm.orbit.residual_friction import resting
 from fcm.scene.model import FloatArray, Scene
 from fcm.signals import undisturbed
@@ -56,6 +57,20 @@ def started_states(scene: Scene, omega: float) -> list[State]:
     computed = scene.computed()
     found = linear_motions(scene, omega, as_started=True)
     return [replace(one.state, friction=one.state.friction[computed]) for one in found]
+
+
+def about_rest(scene: Scene, omega: float, level: float) -> Iterator[State]:
+    """Guesses at a level of the forces: about rest with the contacts as they are there, then all stuck, then
+    all open."""
+    whole, computed = scene.whole(), scene.computed()
+    system, rest = System(whole, omega).at_level(level), unloaded(whole)
+    at_rest = system.preload + system.stiffness * (system.normal @ rest.q) > 0.0
+    for closed in (at_rest, np.ones_like(at_rest), np.zeros_like(at_rest)):
+        stuck = [j for j in np.flatnonzero(closed).tolist() if has_friction(whole.contacts[j])]
+        wave = linear_answer(system, closed, stuck)[0]
+        friction = np.where(closed, rest.friction, 0.0)
+        friction[stuck] += system.k_u[stuck] * (system.tangential[stuck] @ wave.imag)
+        yield State(rest.q + wave.imag, omega * wave.real, friction[computed])
 
 
 def _motion(

@@ -103,10 +103,10 @@ class OrbitProblem(Problem):
         if shot is None:
             jacobian[:] = self._residual[:] = np.nan
         elif self._all:
-            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = shot.gap, shot.by_state, shot.by_frequency
+            self._residual[:], jacobian[:, :-1], jacobian[:, -1] = shot.gap, shot.by_state, shot.by_parameter
         else:
             self._residual[:], jacobian[:, :-1] = shot.gap[self.free], shot.by_state[self._block]
-            jacobian[:, -1] = shot.by_frequency[self.free]
+            jacobian[:, -1] = shot.by_parameter[self.free]
         return 0
 
     def probe(self, z: FloatArray) -> int:

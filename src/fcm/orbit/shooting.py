@@ -93,8 +93,8 @@ class Shot:
         return self._differentiated()[1]
 
     @property
-    def by_frequency(self) -> FloatArray:
-        """Derivative of the gap by the frequency: (unknown,)."""
+    def by_parameter(self) -> FloatArray:
+        """Derivative of the gap by the frequency or by the level of the forces: (unknown,)."""
         return self._differentiated()[2]
 
     def _differentiated(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -187,7 +187,7 @@ class Shooting:
     >>> scene = fcm.load_scene("yang1998-n5")
     >>> problem, orbit = Shooting(scene), periodic(scene, 1.3)
     >>> shot = problem.residual(problem.unknowns(orbit.state), 1.3)
-    >>> shot.by_state.shape, shot.by_frequency.shape, bool(shot.residual < 1e-11)
+    >>> shot.by_state.shape, shot.by_parameter.shape, bool(shot.residual < 1e-11)
     ((5, 5), (5,), True)
     """
 
@@ -210,8 +210,10 @@ class Shooting:
         whole: FloatArray = np.concatenate((state.q, state.velocity, state.friction))
         return whole[self.free]
 
-    def residual(self, unknowns: FloatArray, omega: float) -> Shot:
-        """The period from a state at a frequency.
+    def residual(
+        self, unknowns: FloatArray, omega: float, level: float = 1.0, by_level: bool = False
+    ) -> Shot:
+        """The period from a state at a frequency and a level of the forces, which may be the parameter.
 
         Raises
         ------
@@ -221,4 +223,7 @@ class Shooting:
         x = np.zeros(self.size)
         x[self.free] = unknowns
         self.periods += self.each
-        return Shot(self.system(omega), x, self.resting, self.each)
+        system = self.system(omega)
+        if level != 1.0 or by_level:
+            system = system.at_level(level, by_level)
+        return Shot(system, x, self.resting, self.each)

@@ -42,7 +42,7 @@ class Starts(NamedTuple):
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
     sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
-    apart: bool  # whether the balance has more solutions than there are points: see `first_balances`
+    apart: bool  # whether the balance has more solutions than there are points: see `first_balance`
 
 
 def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:

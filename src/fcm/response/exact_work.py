@@ -30,7 +30,7 @@ from fcm.scene.model import FloatArray, Held, Scene
 
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
 ENOUGH = 10.0  # [s] of processor time for a curve that a stiff contact may keep from ever being finished
-BESIDE = 1.0 / 3.0  # of the time for a curve, that balances which may lead to further branches may take
+BESIDE = 0.5  # of the time for a curve, that the search for what leads to further branches may take
 STOPPED = f"{INTERRUPTED} at "  # how the reason of a curve begins that an interruption has cut off
 AT_END = f"{STOPPED}its end, while other motions beside its points were sought"
 
