@@ -1,11 +1,14 @@
 """Windows of several solutions that one harmonic puts beside the range, and more of them inside it."""
 
+import numpy as np
 import pytest
 
 from fcm.harmonic.choice import accurate
 from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
 
 from ..motion.cases import yang
 from .scenes import scene
@@ -62,3 +65,33 @@ def test_harmonics_that_have_the_same_solutions_stay():
     found = traced(system).found
     assert 1.0 < min(turn.level for turn in found[0].turns) < 2.0
     assert with_a_window(system, found) == (1,)
+
+
+IMPACTS = 0.776378  # amplitude of v
+GAP = {
+    "name": "gap",
+    "tangential": "u",
+    "normal": "v",
+    "mu": 0.355,
+    "k_u": 0.1748,
+    "k_v": 31.502,
+    "n_0": -15.623,
+}
+NEVER_CLOSED = {
+    "dofs": ["v", "u"],
+    "frequency": [1.0, 3.6523, 4.3209, 4.3311],
+    "damping": [0.00959, 0.00625, 0.01156, 0.00713],
+    "shapes": [[-0.071486, 0.032441], [1.0554, 0.96054], [-1.3723, -0.34316], [1.4898, 0.54145]],
+}
+
+
+def test_impacts_beside_a_gap_that_just_stays_open_are_found():
+    """The open motion fills 0.91 of the gap, and the level of one harmonic does not turn. At 2.3427 rad/s a
+    march of the exact motion settles, from each of 12 random states, at another one: that of IMPACTS."""
+    of = scene(NEVER_CLOSED, [GAP], (2.1, 2.45))
+    curve = traced_curve(of, Wanted(None, 1e-2))
+    off, stable, v = curve.frequency - 2.3427, curve.stable == 1.0, curve.amplitude[:, 0]
+    passed = np.flatnonzero((off[:-1] * off[1:] < 0.0) & stable[:-1] & stable[1:])
+    least, greatest = sorted((v[i] * off[i + 1] - v[i + 1] * off[i]) / (off[i + 1] - off[i]) for i in passed)
+    assert curve.complete and least < 0.91 * 15.623 / 31.502
+    assert greatest == pytest.approx(IMPACTS, rel=1e-2)
