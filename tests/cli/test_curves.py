@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import click
 import netCDF4
 import pytest
 
+from fcm.cli.balance import harmonics
+from fcm.cli.columns import ranges
 from fcm.cli.curves import as_table
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response
@@ -133,8 +136,26 @@ def test_numbers_of_contacts_and_energies_have_units_in_files_and_pictures(fcm, 
     assert "$n_{0}$ (N), $k_{u}$ (N/mm), $\\mu$" in [axes.get_ylabel() for axes in many.axes]
 
 
-def test_of_levels_no_errors_are_computed_and_none_is_said_to_have_been_sought():
+def test_of_levels_an_error_that_is_missing_is_not_said_to_have_been_sought_nor_all_of_them_missing():
+    """Of most peaks along levels the error is estimated; with one harmonic too few it cannot be."""
     one = curve({"u": 1.0}) | {"harmonics": [1], "level_folds": []}
     one["peak"]["u"]["error"] = None
     said = as_table({"curves": [one]}, "Hz").splitlines()[-1]
-    assert "along levels" in said and "found" not in said
+    assert "could not be estimated at this peak" in said and "found" not in said
+
+
+@pytest.mark.parametrize(("count", "end"), [(12, "12.0000"), (300, "12.0000  ... 300 in all")])
+def test_of_very_many_folds_a_line_has_the_first_and_their_number(count, end):
+    """The line had all, thousands of characters, and at its end whether the curve is complete."""
+    one = curve({"u": 1.0}) | {"folds": [float(k) for k in range(1, count + 1)]}
+    line = as_table({"curves": [one]}, "Hz").splitlines()[1].rstrip()
+    assert line.endswith(end) and len(line) < 250
+
+
+def test_harmonics_can_be_given_as_tables_have_them():
+    for text, numbers in (("3", (1, 2, 3)), ("1-3,9", (1, 2, 3, 9)), ("1-1", (1,)), ("1,3-5", (1, 3, 4, 5))):
+        assert harmonics(None, None, text) == numbers
+    assert harmonics(None, None, ranges([1, 2, 3, 9, 12])) == (1, 2, 3, 9, 12)
+    for text in ("1-", "-3", "3-1", "1-999999999", "1--3", "1-3-5", "2-4", "1-3,3"):
+        with pytest.raises(click.BadParameter, match="harmonics"):
+            harmonics(None, None, text)

@@ -4,23 +4,35 @@ from __future__ import annotations
 
 import click
 
-WRONG = "is not a number of harmonics from 1 to 50, nor some of them such as 1,2,3,9"
+WRONG = "is not a number of harmonics from 1 to 50, nor some of them such as 1,2,3,9 or 1-3,9"
 
 
 def harmonics(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tuple[int, ...] | None:
-    """The harmonics named by an option; None without it."""
+    """The harmonics named by an option, also as tables of curves have them (1-3,9); None without it."""
     if text is None:
         return None
     from fcm.scene.rules import harmonics_fault, harmonics_up_to
 
     try:
-        numbers = tuple(int(word) for word in text.split(","))
+        numbers = tuple(h for word in text.split(",") for h in _from_to(word))
     except ValueError:
         raise click.BadParameter(f"{text!r} {WRONG}.") from None
-    chosen = harmonics_up_to(numbers[0]) if len(numbers) == 1 else numbers
+    single = "," not in text and "-" not in text
+    chosen = harmonics_up_to(numbers[0]) if single else numbers
     if fault := harmonics_fault(chosen):
         raise click.BadParameter(f"{text!r} {WRONG}: {fault}.")
     return chosen
+
+
+def _from_to(word: str) -> range:
+    """The whole numbers of 3, or of 1-3."""
+    from fcm.scene.rules import MOST_HARMONICS
+
+    first, dash, last = word.strip().partition("-")
+    low, high = int(first), int(last if dash else first)
+    if not low <= high <= low + MOST_HARMONICS:
+        raise ValueError
+    return range(low, high + 1)
 
 
 def accuracy(_ctx: click.Context, _param: click.Parameter, value: float | None) -> float | None:

@@ -13,8 +13,9 @@ Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
-_OF_LEVELS = "- not told: along levels of the forces what harmonics leave out is not estimated"
+_OF_LEVELS = "- not told: what more harmonics would change could not be estimated at this peak"
 _MOST_DOFS = 4  # whose peaks fit beside each other on a line
+_MOST_FOLDS = 12  # of which a line has all
 
 
 def as_table(summary: Mapping[str, Any], unit: str) -> str:
@@ -135,9 +136,15 @@ def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
         cells += [height, at, short(peak.get("error"))]
     if balanced:
         cells.append(ranges(curve["harmonics"]) if "harmonics" in curve else "-")
-    folds = "  ".join(number(fold) for fold in curve.get("level_folds", curve["folds"])) or "none"
+    folds = _folds(curve.get("level_folds", curve["folds"]))
     state = "" if curve["complete"] else f"NOT COMPLETE: {curve.get('reason') or 'it stopped early'}"
     return [*cells, str(curve["points"]), f"{curve['seconds']:.3f}", folds, state]
+
+
+def _folds(folds: Sequence[float | None]) -> str:
+    """All of them, or of very many the first and how many there are."""
+    shown = "  ".join(map(number, folds[:_MOST_FOLDS])) or "none"
+    return shown if len(folds) <= _MOST_FOLDS else f"{shown}  ... {len(folds)} in all"
 
 
 def cost_and_error(summary: Mapping[str, Any]) -> str:
