@@ -28,7 +28,7 @@ class Inserted:
         return int(self.place)
 
     @property
-    def mark(self) -> Mark:
+    def mark(self) -> int:
         """What it is besides a point."""
         return Mark.NONE
 
@@ -45,7 +45,7 @@ class Crossing(Inserted):
     kind: Kind = Kind.PAIR
 
     @property
-    def mark(self) -> Mark:
+    def mark(self) -> int:
         """What it is besides a point."""
         return Mark.CROSSING
 
@@ -59,7 +59,7 @@ def with_points(path: Path, inserted: Sequence[Inserted]) -> Path:
         path,
         z=np.insert(path.z, at, [one.z for one in inserted], axis=0),
         direction=np.insert(path.direction, at, [one.direction for one in inserted], axis=0),
-        mark=np.insert(path.mark, at, [int(one.mark) for one in inserted]),
+        mark=np.insert(path.mark, at, [one.mark for one in inserted]),
         orientation=np.insert(path.orientation, at, [one.orientation for one in inserted]),
         shift=np.insert(path.shift, at, path.shift[at - 1]),
     )

@@ -56,4 +56,4 @@ def _at(problem: OrbitProblem, newton: Newton, one: Sample, other: Sample, omega
     direction = np.asarray(newton.tangent) * np.asarray(newton.scale)
     if direction @ (other.z - one.z) < 0.0:
         direction = -direction
-    return sampled(problem, np.array(newton.z), direction, int(Mark.STATION))
+    return sampled(problem, np.array(newton.z), direction, Mark.STATION)

@@ -93,7 +93,7 @@ def _begun_at_a_peak(problem: OrbitProblem, ahead: Path, behind: Path) -> list[t
     highest = level & _summits(problem, ahead, 0) & (here >= _amplitudes(problem, behind, 1))
     if not highest.any():
         return []
-    return [(sampled(problem, ahead.z[0], ahead.direction[0], int(Mark.PEAK)), highest)]
+    return [(sampled(problem, ahead.z[0], ahead.direction[0], Mark.PEAK), highest)]
 
 
 def _summits(problem: OrbitProblem, path: Path, k: int) -> Summits:

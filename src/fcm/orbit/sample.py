@@ -94,7 +94,7 @@ def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample])
         if before.stable != point.stable and not (before.mark | point.mark) & Mark.FOLD:
             place = crossing(problem, path, k)
             if place is not None and 0.0 < place.part < 1.0:
-                out.append(sampled(problem, place.z, place.direction, int(Mark.CROSSING)))
+                out.append(sampled(problem, place.z, place.direction, Mark.CROSSING))
             elif place is not None and before.stable:
                 out[-1] = replace(out[-1], mark=before.mark | Mark.CROSSING)
             elif place is not None:

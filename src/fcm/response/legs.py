@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from fcm.continuation import Mark, Path, Stage, Status, follow
+from fcm.continuation import Path, Stage, Status, follow
 from fcm.continuation.branches import SAME
 from fcm.continuation.trail import Kept, Points
 from fcm.orbit.doubled import Doubled
@@ -41,7 +41,7 @@ class Leg:
         return self.stage.path(Status.INTERRUPTED)
 
 
-LEGS = (Leg, Path, Stage, Status, Kept, Points, Mark)  # what is saved consists of these
+LEGS = (Leg, Path, Stage, Status, Kept, Points)  # what is saved consists of these
 
 
 class _Ended(Exception):  # noqa: N818
