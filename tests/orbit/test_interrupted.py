@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.orbit import branch, sample
+from fcm.orbit import branch, problem, sample
 from fcm.orbit.doubled import Doubled
-from fcm.response import exact_work, not_unique
+from fcm.response import exact_work, legs, not_unique
 from fcm.response.groups import KINDS
+from fcm.response.orbit_curve import orbit_curve
 from fcm.results.orbits import Stuck
 from fcm.run.records import unpacked
 
@@ -178,3 +179,23 @@ def test_what_lies_between_points_is_not_sought_when_there_is_no_time(monkeypatc
     assert curve.reason.startswith("interrupted at 2.0")
     assert set(curve.stable) == set(whole.stable[np.isfinite(whole.stable)]) == {0.0, 1.0}
     assert set(curve.frequency) < set(whole.frequency)
+
+
+def test_of_a_curve_whose_time_is_over_no_period_is_computed_again(monkeypatch):
+    """Its points were recorded when the curve came to them, and nothing else of them is remembered."""
+    looks, before = iter(range(60)), []
+
+    def look(self):
+        if next(looks, None) is None:
+            raise legs.TimeOver
+
+    def made(groups, *rest):
+        before.append(groups[0].problem.periods)
+        return orbit_curve(groups, *rest)
+
+    monkeypatch.setattr(legs.Clock, "look", look)
+    monkeypatch.setattr(problem, "KEPT", 0)
+    monkeypatch.setattr(exact_work, "orbit_curve", made)
+    curve = curve_of(yang(5.0), limit=100.0)
+    assert curve.reason.startswith("not finished in 100 s") and np.isfinite(curve.amplitude).sum() > 20
+    assert curve.orbits.periods == before[0] > 100

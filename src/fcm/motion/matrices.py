@@ -94,6 +94,13 @@ def _limits_of(system: System, one: Held) -> list[FloatArray]:
     return [limit, limit - force, limit + force]
 
 
+def held_rows(system: System) -> FloatArray:
+    """The normal forces of all contacts that are held, then their friction forces: (2 held, d - 2)."""
+    pairs = [held_forces(system, one) for one in system.scene.held]
+    loads, forces = ([pair[i] for pair in pairs] for i in (0, 1))
+    return np.array(loads + forces).reshape(2 * len(pairs), system.size - 2)
+
+
 def held_forces(system: System, one: Held) -> tuple[FloatArray, FloatArray]:
     """The normal and the friction force of a contact that is held closed: rows of the state vector."""
     contact, shapes = one.contact, system.scene.modal.shapes

@@ -18,7 +18,7 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.flow import Flows
 from fcm.motion.integrals import Integrals
 from fcm.motion.march import March
-from fcm.motion.matrices import has_friction, held_as_springs, held_limits, matrices_of
+from fcm.motion.matrices import has_friction, held_as_springs, held_limits, held_rows, matrices_of
 from fcm.motion.powers import Powers
 from fcm.motion.rows import Rows
 from fcm.motion.scan import Scan
@@ -78,7 +78,7 @@ class System:
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)
         self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
-        self.displaced, self.limits, self.forces, self.kept = self._scans()
+        self.displaced, self.limits, self.forces, self.kept, self.held = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
 
     def at(self, omega: float) -> System:
@@ -145,10 +145,10 @@ class System:
         return self.preload + y[self.n]
 
     def _scans(self) -> list[Scan]:
-        """Of the displacements, of the limits of slip, of the forces, and of what held contacts keep."""
+        """Of the displacements, the limits of slip, the forces, and of what held contacts keep and bear."""
         displacements = np.zeros((self.scene.modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = self.scene.modal.shapes.T
-        rows = displacements, self.limit_rows, self._force_rows(), held_limits(self)
+        rows = displacements, self.limit_rows, self._force_rows(), held_limits(self), held_rows(self)
         return [Scan(self.flows, Rows(each)) for each in rows]
 
     def _force_rows(self) -> FloatArray:

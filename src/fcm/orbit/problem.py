@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
 from zlib import crc32
 
 import numpy as np
@@ -13,8 +14,10 @@ from fcm.orbit.derivative import along
 from fcm.orbit.shooting import Shooting, Shot
 from fcm.scene.model import FloatArray, Scene
 
-KEPT = 15_000_000  # numbers of periods that are remembered: a place is asked for more than once
-LASTING = 0.7  # of them for points of curves, which are asked for again at the end
+if TYPE_CHECKING:
+    from fcm.orbit.sample import Sample
+
+KEPT = 1_000_000  # numbers of periods that are remembered: a place is asked for more than once
 INSTANT = 1e-9  # of a period: what lasts less is no state of its own
 STILL = 1e-9  # of the greatest amplitude: what moves less is not reported
 
@@ -59,7 +62,7 @@ class OrbitProblem(Problem):
         self._scale, self._root = np.asarray(self.scale), float(np.sqrt(self.free.size))
         self._shots: dict[bytes, Shot | None] = {}
         self._numbers = 0  # in them
-        self._points: set[bytes] = set()  # of them those to which a curve has come
+        self.samples: dict[bytes, Sample] = {}  # what is kept of points, see `recorded`
         self._rates = scene.modal.frequency
 
     def z(self, state: State, omega: float) -> FloatArray:
@@ -73,22 +76,11 @@ class OrbitProblem(Problem):
         shot = self._shots.get(key)
         if shot is None and key not in self._shots:
             shot = self._made(z)
-            self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             if self._numbers > KEPT:
-                self._forget()
+                self._shots, self._numbers = {}, 0
+            self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             self._shots[key] = shot
         return shot
-
-    def _forget(self) -> None:
-        """Forget the periods that no curve has come to, and of the others what is not reported; all of them,
-        if those are too many."""
-        self._shots = {key: self._shots[key] for key in self._points if key in self._shots}
-        kept = [shot for shot in self._shots.values() if shot is not None]
-        for shot in kept:
-            shot.settle()
-        self._numbers = sum(shot.numbers for shot in kept)
-        if self._numbers > LASTING * KEPT:
-            self._shots, self._points, self._numbers = {}, set(), 0
 
     def _made(self, z: FloatArray) -> Shot | None:
         self.periods += self.repeats
@@ -123,7 +115,6 @@ class OrbitProblem(Problem):
         shot = self.shot(z)
         if shot is None:
             return 0
-        self._points.add(np.asarray(z).tobytes())
         system, scale = shot.system, shot.scale.copy()
         rates = np.maximum(self._rates, system.omega)
         length = shot.segments.length_by(rates)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -36,6 +36,7 @@ class Sample:
     z: FloatArray  # (unknown + 1,), the frequency last
     direction: FloatArray  # (unknown + 1,) of the curve, in the units of z
     mark: int = 0  # of `Mark`, joined
+    held: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))  # (held, 3): see `_held`
     steady: Steady | None = None  # how it repeats or ranges, where it does not after every period
 
     @property
@@ -46,12 +47,34 @@ class Sample:
 
 def sampled(problem: OrbitProblem, z: FloatArray, direction: FloatArray, mark: int = 0) -> Sample:
     """What is kept of a point."""
-    shot = _shot(problem, z)
+    return replace(recorded(problem, z), direction=direction, mark=mark)
+
+
+def recorded(problem: OrbitProblem, z: FloatArray) -> Sample:
+    """The same without its place on a curve, found once for each z: while its period is still known, if it is
+    asked for when the curve comes there."""
+    key = z.tobytes()
+    if key not in problem.samples:
+        problem.samples[key] = _made(_shot(problem, z), z)
+    return problem.samples[key]
+
+
+def _made(shot: Shot, z: FloatArray) -> Sample:
+    """What is kept of a period from z."""
     multipliers = shot.multipliers
     return Sample(
         float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), borne([shot.cycle]),
-        multipliers, shot.residual, within_unit_circle(multipliers), z, direction, mark, several(shot),
+        multipliers, shot.residual, within_unit_circle(multipliers), z, np.zeros(z.size), held=_held(shot),
+        steady=several(shot),
     )  # fmt: skip
+
+
+def _held(shot: Shot) -> FloatArray:
+    """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
+    system = shot.system
+    system.run(system.held, shot.segments)
+    least, greatest = (np.asarray(one).reshape(2, -1) for one in (system.held.least, system.held.greatest))
+    return np.column_stack((shot.kept, greatest[0], np.maximum(greatest[1], -least[1])))
 
 
 def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:

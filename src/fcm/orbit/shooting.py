@@ -108,17 +108,6 @@ class Shot:
             self._derivatives = end, gap, rate
         return self._derivatives
 
-    @property
-    def numbers(self) -> int:
-        """Of which it consists, about."""
-        return int(self.segments.y.size) + (3 * self.x.size**2 if self._derivatives is not None else 0)
-
-    def settle(self) -> None:
-        """Know the multipliers instead of the derivatives that they follow from, which are many times as many
-        numbers."""
-        if self._derivatives is not None and self.multipliers.size:
-            self._derivatives = None
-
     @cached_property
     def extremes(self) -> Displaced:
         """The least and the greatest displacement of each degree of freedom."""

@@ -17,13 +17,8 @@ from fcm.continuation import Status
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.system import System as Balanced
 from fcm.harmonic.trace import traced
-from fcm.motion.matrices import has_friction, held_forces
-from fcm.motion.measure import extremes_by
-from fcm.motion.rows import Rows
-from fcm.motion.scan import Scan
-from fcm.motion.segments import Segments
+from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
-from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.reduction.sentences import named
@@ -137,17 +132,16 @@ def whole_states(scene: Scene, states: Sequence[str]) -> tuple[str, ...]:
     return tuple(letters[i] for i in range(len(letters)))
 
 
-def whole_borne(system: System, segments: Segments, computed: FloatArray) -> FloatArray:
-    """What each contact of the whole scene bears, as of `borne`; those that are held do not slip."""
-    scene = system.scene
+def whole_borne(scene: Scene, computed: FloatArray, held: FloatArray) -> FloatArray:
+    """What each contact of the whole scene bears, as of `borne`; those that are held do not slip.
+
+    held : of these the normal and the friction force, (held, 2).
+    """
     every = np.zeros((len(scene.contacts) + len(scene.held), 4))
     every[scene.computed()] = computed
-    for one in scene.held:
+    for one, forces in zip(scene.held, held, strict=True):
         if not one.open:
-            rows = Rows(np.array(held_forces(system, one)))
-            least, greatest = extremes_by(Scan(system.flows, rows), system, segments)
-            every[one.place, 0] = greatest[0].value
-            every[one.place, 1] = max(greatest[1].value, -least[1].value)
+            every[one.place, :2] = forces
     return every
 
 

@@ -15,6 +15,7 @@ from fcm.continuation.trail import Kept, Points
 from fcm.orbit.doubled import Doubled
 from fcm.orbit.periodic import without_end
 from fcm.orbit.problem import OrbitProblem
+from fcm.orbit.sample import recorded
 from fcm.run import Report
 from fcm.scene.model import FloatArray
 
@@ -96,6 +97,7 @@ class Legs:
         self.report, self.low, self.high = report, *span
         self.look, self.passing = look, passing
         self.number = 0  # of the next one
+        self._recorded = 0  # points of the one that is followed
         self._begun: tuple[OrbitProblem, Stage] | None = None
         self._passed: Leg | None = None  # the last one of which nothing was wrong
         self._given = dict[int, Leg]()  # of another scene, with the same motions
@@ -136,6 +138,7 @@ class Legs:
         stage: Stage | None,
     ) -> Path:
         """The curve from its start, or from a stage of it on."""
+        self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
         if isinstance(problem, Doubled):
             problem.begins()
@@ -149,6 +152,7 @@ class Legs:
         if isinstance(problem, Doubled) and problem.ended(stage.z):
             raise _Ended
         self._begun = problem, stage
+        self._record(problem, stage)
         covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
@@ -157,6 +161,13 @@ class Legs:
             self.passing(problem, stage.z)
             self._passed = self._leg(problem, stage=stage)
         self.look()
+
+    def _record(self, problem: OrbitProblem, stage: Stage) -> None:
+        """Record the points that are new, while their periods are known: then a curve that is stopped is
+        there at once."""
+        for z in (*stage.kept.before.z[self._recorded :], stage.kept.last[0]):
+            recorded(problem, z)
+        self._recorded = stage.kept.number - 1
 
     def found(self, problem: OrbitProblem) -> list[Leg]:
         """The legs of a problem as far as all their points were passed."""

@@ -12,7 +12,6 @@ from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
 from fcm.orbit.doubled import flip, flips
 from fcm.orbit.sample import Sample
-from fcm.orbit.shooting import Shot
 from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
 from fcm.response.groups import lost_curve
 from fcm.response.loose import loose
@@ -47,9 +46,8 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
             folds += [point.frequency for point in found if point.mark & Mark.FOLD]
             whole = found
             if scene.held:
-                shots = [group.problem.shot(point.z) for point in found]
-                kept += [_kept(scene, shots)]
-                whole = [_of_whole(scene, *one) for one in zip(found, shots, strict=True)]
+                kept += [_kept(scene, found)]
+                whole = [_of_whole(scene, one) for one in found]
             points += [None, *whole] if points else whole
     least = np.min(kept, axis=0) if kept else _kept(scene, [])
     if lost := lost_by(least).tolist():  # other motions beside such points are of no use
@@ -64,21 +62,18 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     return curve
 
 
-def _of_whole(scene: Scene, point: Sample, shot: Shot | None) -> Sample:
+def _of_whole(scene: Scene, point: Sample) -> Sample:
     """A point with the contacts that are held."""
-    states = whole_states(scene, point.states)
-    none = np.full((len(states), 4), np.nan)
-    borne = none if shot is None else whole_borne(shot.system, shot.segments, point.borne)
+    states, borne = whole_states(scene, point.states), whole_borne(scene, point.borne, point.held[:, 1:])
     return replace(point, state=whole_state(scene, point.state), states=states, borne=borne)
 
 
-def _kept(scene: Scene, shots: Sequence[Shot | None]) -> FloatArray:
+def _kept(scene: Scene, points: Sequence[Sample]) -> FloatArray:
     """The least of its limit or gap that each contact which is held keeps: (contact, 2), else nan."""
     kept = np.full((len(scene.contacts) + len(scene.held), 2), np.nan)
-    rooms = [shot.kept for shot in shots if shot is not None]
-    if not rooms:
+    if not points:
         return kept
-    least = np.min(rooms, axis=0, initial=1.0)
+    least = np.min([point.held[:, 0] for point in points], axis=0, initial=1.0)
     for one, room in zip(scene.held, least, strict=True):
         kept[one.place, int(one.open)] = room
     return kept
