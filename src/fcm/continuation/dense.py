@@ -67,14 +67,17 @@ class Solver:
 
             # all columns at once, which is far faster than one after the other
             return np.asarray(lapack.dgetrs(*self.factors, np.eye(self.size), trans=1)[0])
-        columns = np.zeros((self.size, self.size))
+        made = np.empty((self.size, self.size))
+        columns: cython.double[:, ::1] = made
         i: cython.Py_ssize_t
+        j: cython.Py_ssize_t
         for i in range(self.size):
             self.right[:] = 0.0
             self.right[i] = 1.0
             self.solve()
-            columns[:, i] = self.right
-        return columns
+            for j in range(self.size):
+                columns[j, i] = self.right[j]
+        return made
 
     @cython.cfunc
     @cython.exceptval(check=False)

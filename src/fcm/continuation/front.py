@@ -79,8 +79,7 @@ class Front(Step):
         self.prediction.put(self.here, self.newton.scale, step, self.guess)
         for i in range(self.guess.shape[0]):
             self.guess[i] += self.newton.scale[i] * self.aside[i]
-        self.newton.z[:] = self.guess
-        self.newton.row[:] = self.here.tangent
+            self.newton.z[i], self.newton.row[i] = self.guess[i], self.here.tangent[i]
         if not self.sought(step) or not self.exactly():
             return False
         for i in range(self.guess.shape[0]):

@@ -36,9 +36,10 @@ class Step:
     @cython.exceptval(-1, check=False)
     def put(self, at: cython.double, margins: cython.bint, outputs: cython.bint) -> cython.bint:
         """Find the place between here and there at a length from here, with its margins, its outputs."""
+        i: cython.Py_ssize_t
         self.interpolate(at)
-        self.newton.z[:] = self.guess
-        self.newton.row[:] = self.here.tangent
+        for i in range(self.guess.shape[0]):
+            self.newton.z[i], self.newton.row[i] = self.guess[i], self.here.tangent[i]
         if not self.newton.correct(at):
             return False
         self.record(self.between, margins, outputs)

@@ -96,7 +96,8 @@ class Balance(Problem):
             self.residual[first + 1] -= self.load * self.seen.X_im[p]
         for i in range(self.unknowns):
             self.residual[i] += z[i]
-        self.evaluated[:] = z
+        for i in range(self.unknowns + 1):
+            self.evaluated[i] = z[i]
         return 0
 
     @cython.cfunc

@@ -21,7 +21,8 @@ class Level(Problem):
 
     def __init__(self, balance: Balance, omega: cython.double = 0.0) -> None:
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
-        self.group, self.jacobian = balance.group, balance.jacobian
+        self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
+        self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
         self.boundless *= self.boundless  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
         self.many = self.dear
@@ -44,7 +45,6 @@ class Level(Problem):
         i: cython.Py_ssize_t
         self.place(z)
         b.evaluate(self.z)
-        self.residual[:] = b.residual
         for i in range(n):
             self.jacobian[i, last] = 0.0
         for p in range(2 * b.contacts):
@@ -57,9 +57,7 @@ class Level(Problem):
     @cython.exceptval(-1, check=False)
     def probe(self, z: cython.double[::1]) -> cython.int:
         self.place(z)
-        self.balance.probe(self.z)
-        self.residual[:] = self.balance.residual
-        return 0
+        return self.balance.probe(self.z)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -73,13 +71,8 @@ class Level(Problem):
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def bound(self, z: cython.double[::1]) -> cython.int:
-        b: Balance = self.balance
-        i: cython.Py_ssize_t
         self.place(z)
-        b.bound(self.z)
-        for i in range(self.margins):
-            self.margin[i], self.kind[i], self.angle[i] = b.margin[i], b.kind[i], b.angle[i]
-        return 0
+        return self.balance.bound(self.z)
 
     @cython.cfunc
     @cython.exceptval(check=False)

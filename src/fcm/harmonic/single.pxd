@@ -7,9 +7,11 @@ cdef class SingleHarmonic(Law):
     cdef public CoefficientLaw coarse
     cdef double[::1] numbers
     cdef double[:, ::1] slopes
+    cdef double least, most
     cpdef bint rests(self) except -1
     cdef double limit(self, double[::1] x, Py_ssize_t first, double sign) noexcept
-    cdef void slipping(self, double[::1] x, Py_ssize_t first) noexcept
-    cdef void chain(self, double[::1] x, Py_ssize_t first, double n0_bar, double b_bar, double a) noexcept
+    cdef void limits(self, double[::1] x, Py_ssize_t first, double b) noexcept
+    cdef void slipping(self, double[::1] x, Py_ssize_t first, double b) noexcept
+    cdef void chain(self, double[::1] x, Py_ssize_t first, double n0_bar, double b_bar, double a, double b) noexcept
     cdef void stuck(self, double[::1] x, Py_ssize_t first) noexcept
-    cdef void normal(self, double[::1] x, Py_ssize_t first) noexcept
+    cdef void normal(self, double[::1] x, Py_ssize_t first, double b) noexcept

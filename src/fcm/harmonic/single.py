@@ -37,22 +37,24 @@ class SingleHarmonic(Law):
         Law.__init__(self, 6, 5, mu, k_u, k_v, n_0)
         self.exact, self.coarse, self.coefficients = exact, coarse, exact
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
+        self.least, self.most = 0.0, 0.0  # see `limits`
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def evaluate(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        b: cython.double = hypot(x[first + 4], x[first + 5])
         self.force[:] = 0.0
         self.tangent[:, :] = 0.0
         self.mixed = False
         if self.k_v > 0.0:
-            self.normal(x, first)
+            self.normal(x, first, b)
         if self.mu > 0.0 and self.k_u > 0.0:
-            self.bound(x, first)
+            self.limits(x, first, b)
             if self.rests():
                 self.stuck(x, first)
             elif self.margin[CLOSES] > 0.0:
                 self.mixed = True
-                self.slipping(x, first)
+                self.slipping(x, first, b)
         return 0
 
     @cython.ccall
@@ -67,17 +69,23 @@ class SingleHarmonic(Law):
         """Forces by which a contact is closed at some time, and at all times; by which it is beyond the slip
         limit (25); and, where it never slips, by which its mean friction is within its limits.
         """
+        self.limits(x, first, hypot(x[first + 4], x[first + 5]))
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def limits(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
+        """The same where |V| is b; and between which limits a contact's mean friction is where it sticks."""
         load: cython.double = self.n_0 + self.k_v * x[first + 1]
-        variation: cython.double = self.k_v * hypot(x[first + 4], x[first + 5])
+        variation: cython.double = self.k_v * b
         self.margin[CLOSES] = load + variation if variation > 0.0 else load
         self.margin[OPENS] = load - variation
-        most: cython.double = self.mu * load - self.limit(x, first, -1.0)
-        least: cython.double = self.limit(x, first, 1.0) - self.mu * load
-        self.margin[SLIPS] = most - least
-        within: cython.bint = most > least and load > variation
-        self.margin[MOST] = most - self.k_u * x[first] if within else 0.0
-        self.margin[LEAST] = self.k_u * x[first] - least if within else 0.0
-        return 0
+        self.most = self.mu * load - self.limit(x, first, -1.0)
+        self.least = self.limit(x, first, 1.0) - self.mu * load
+        self.margin[SLIPS] = self.most - self.least
+        within: cython.bint = self.most > self.least and load > variation
+        self.margin[MOST] = self.most - self.k_u * x[first] if within else 0.0
+        self.margin[LEAST] = self.k_u * x[first] - self.least if within else 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -95,20 +103,17 @@ class SingleHarmonic(Law):
     @cython.cfunc
     @cython.exceptval(check=False)
     def stuck(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
-        """A spring; it resists the mean displacement too, as far as the limits of its friction allow."""
+        """A spring; it resists the mean displacement too, as far as the `limits` of its friction allow."""
         k: cython.double = self.k_u
-        load: cython.double = self.mu * (self.n_0 + self.k_v * x[first + 1])
-        least: cython.double = self.limit(x, first, 1.0) - load
-        most: cython.double = load - self.limit(x, first, -1.0)
         sign: cython.double = 0.0
         i: cython.Py_ssize_t
         for i in range(2, 4):
             self.force[i] = k * x[first + i]
             self.tangent[i, i] = k
-        if k * x[first] > most:
-            sign, self.force[0] = -1.0, most
-        elif k * x[first] < least:
-            sign, self.force[0] = 1.0, least
+        if k * x[first] > self.most:
+            sign, self.force[0] = -1.0, self.most
+        elif k * x[first] < self.least:
+            sign, self.force[0] = 1.0, self.least
         else:
             self.force[0], self.tangent[0, 0] = k * x[first], k
             return
@@ -123,10 +128,9 @@ class SingleHarmonic(Law):
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def normal(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
+    def normal(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
         """(28) to (31): k_v b (N_b + N_s cos), less the preload that the structure at rest balances."""
         k: cython.double = self.k_v
-        b: cython.double = hypot(x[first + 4], x[first + 5])
         load: cython.double = self.n_0 + k * x[first + 1]
         preload: cython.double = max(self.n_0, 0.0)
         i: cython.Py_ssize_t
@@ -163,7 +167,7 @@ class SingleHarmonic(Law):
 
     @cython.cfunc
     @cython.exceptval(check=False)
-    def slipping(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.void:
+    def slipping(self, x: cython.double[::1], first: cython.Py_ssize_t, b: cython.double) -> cython.void:
         """(27) with the phase of u restored: k_u U (F_s + i F_c), and the mean k_u a F_b."""
         k: cython.double = self.k_u
         U_r: cython.double = x[first + 2]
@@ -173,10 +177,10 @@ class SingleHarmonic(Law):
         a: cython.double = max(hypot(U_r, U_i), SMALLEST)
         ratio: cython.double = self.mu / (k * a)
         n0_bar: cython.double = ratio * (self.n_0 + self.k_v * x[first + 1])
-        b_bar: cython.double = ratio * self.k_v * hypot(V_r, V_i)
+        b_bar: cython.double = ratio * self.k_v * b
         phi: cython.double = atan2(V_i * U_r - V_r * U_i, V_r * U_r + V_i * U_i)
         self.coefficients.evaluate(n0_bar, b_bar, phi, True, self.numbers, 0)
-        self.chain(x, first, n0_bar, b_bar, a)
+        self.chain(x, first, n0_bar, b_bar, a, max(b, SMALLEST))
         F_b: cython.double = self.numbers[0]
         F_s: cython.double = self.numbers[1]
         F_c: cython.double = self.numbers[2]
@@ -206,10 +210,10 @@ class SingleHarmonic(Law):
         n0_bar: cython.double,
         b_bar: cython.double,
         a: cython.double,
+        b: cython.double,
     ) -> cython.void:
         """slopes: a times the derivatives of F_b, F_s, F_c by the unknowns, from those by n0_bar, b_bar,
         phi."""
-        b: cython.double = max(hypot(x[first + 4], x[first + 5]), SMALLEST)
         k: cython.double = self.mu / self.k_u * self.k_v
         relative: cython.double = a / b
         i: cython.Py_ssize_t
