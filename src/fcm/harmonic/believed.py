@@ -61,5 +61,7 @@ def runs(which: Mask) -> list[tuple[int, int]]:
     """The first of each run of points, and the one behind its last."""
     if not which.any():
         return []
-    ends = np.flatnonzero(np.diff(np.concatenate(([False], which, [False]))))
-    return [(int(first), int(end)) for first, end in ends.reshape(-1, 2)]
+    inside = np.zeros(len(which) + 2, dtype=np.bool_)
+    inside[1:-1] = which
+    ends = (inside[1:] != inside[:-1]).nonzero()[0]
+    return [(first, end) for first, end in ends.reshape(-1, 2).tolist()]

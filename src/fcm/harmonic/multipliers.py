@@ -122,12 +122,11 @@ class Multipliers:
         found = even(fine, plain, turning)
         if turning:
             return found
-        untold = found._replace(stable=math.nan)
         if self.last:
-            return untold if doubtful(found, fine, plain, 1.0) else found
+            return found._replace(stable=math.nan) if doubtful(found, fine, plain, 1.0) else found
         slight = 0.0 < found.growth < max(SAFE, SLIGHT * self.finer.shift)
         if slight or doubtful(found, fine, plain, SLIGHT):
-            return self._refined(z, persistent=found.stable == 1.0) or untold
+            return self._refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
         return found
 
     def _refined(self, z: FloatArray, persistent: bool) -> Verdict | None:

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.secants import Secants
+from fcm.harmonic.believed import runs
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
 from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.spectrum import FLIP_NEAR, Kind, Verdict
@@ -77,7 +78,8 @@ class _Along:
         even = self._even()
         stable = np.where(even & beyond, np.nan, 0.0)
         crossings: list[Crossing] = []
-        for first, last in _runs(even & ~beyond):
+        for first, end in runs(even & ~beyond):
+            last = end - 1
             self._look(first, last)
             self._hidden(first, last)
             places = self.verdicts.among(first, last)
@@ -213,13 +215,6 @@ class _Along:
                 break
             sides.saw(at, now)
         return found
-
-
-def _runs(flags: npt.NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """First and last index of each run of flags."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], flags, [False])).astype(int)))
-    for first, end in edges.reshape(-1, 2).tolist():
-        yield first, end - 1
 
 
 def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:

@@ -6,7 +6,6 @@ import threading
 from collections import OrderedDict
 from collections.abc import Iterator
 from contextlib import contextmanager
-from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -76,9 +75,8 @@ class System:
         return self._with(scene=replace(self.scene, contacts=contacts), work=Work())
 
     def _with(self, **other: object) -> System:
-        found = copy(self)
-        for name, value in other.items():
-            object.__setattr__(found, name, value)
+        found = object.__new__(type(self))
+        found.__dict__.update(vars(self), **other)
         for made in ("_workspace", "unit", "normal"):
             found.__dict__.pop(made, None)
         return found

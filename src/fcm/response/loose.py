@@ -25,11 +25,13 @@ def loose(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
     >>> loose(scene, np.array([["E"], ["EPEN"]])).tolist()
     [False, False]
     """
+    if len(scene.contacts) < 2:
+        return np.zeros(len(states), dtype=np.bool_)
     rough = np.array([contact.mu * contact.k_u > 0.0 for contact in scene.contacts], dtype=np.bool_)
     stuck, changing = (states == "E") & rough, np.char.str_len(states) > 1
     found: npt.NDArray[np.bool_] = stuck.any(axis=1) & changing.any(axis=1)
     still = stuck.any(axis=1) & ~changing.any(axis=1)
-    if len(scene.contacts) > 1 and still.any():
+    if still.any():
         rows, which = np.unique(states[still], axis=0, return_inverse=True)
         felt = np.array([_felt(scene, row == "E", (row == "E") & rough) for row in rows])
         found[still] = felt[which.ravel()]
