@@ -67,8 +67,8 @@ def traced_from(
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
-    begin = system.work.seconds
-    found, passed = _passed(system, before.found)
+    begin, known = system.work.seconds, [replace(one, solutions=()) for one in before.found]
+    found, passed = _passed(system, known)  # what theirs lead to is on the branches
     work = system.work.seconds - begin
     span, paths = system.scene.frequency_range, before.branches.paths
     inside = (z for z in passed if span[0] <= z[-1] <= span[1])
