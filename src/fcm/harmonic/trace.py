@@ -12,7 +12,7 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic.carried import found_at, led, passes
+from fcm.harmonic.carried import MANY, found_at, led, passes
 from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
@@ -67,8 +67,10 @@ def traced_from(
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
-    begin, known = system.work.seconds, [replace(one, solutions=()) for one in before.found]
-    found, passed = _passed(system, known)  # what theirs lead to is on the branches
+    begin = system.work.seconds
+    # what those of fewer lead to is on the branches; those of many tell which there are
+    known = [one if len(one.harmonics) >= MANY else replace(one, solutions=()) for one in before.found]
+    found, passed = _passed(system, known)
     work = system.work.seconds - begin
     span, paths = system.scene.frequency_range, before.branches.paths
     inside = (z for z in passed if span[0] <= z[-1] <= span[1])
