@@ -1,4 +1,6 @@
-"""The way down over several numbers, where the peaks are functions that are known."""
+"""The least peak over a number, and the way down over several, of peaks that are known functions."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -6,7 +8,7 @@ import pytest
 from fcm.cli.track import as_table
 from fcm.results.tracked import Optimal
 from fcm.track.descent import downhill
-from fcm.track.envelope import Height
+from fcm.track.envelope import Height, least
 from fcm.track.trials import by_trials
 
 EDGE = 0.37  # of the first number: below it another, higher peak is there, which no way leads to
@@ -36,7 +38,7 @@ def test_the_way_down_ends_where_a_higher_peak_appears_that_was_not_followed():
 
 
 class Tried:
-    """Responses to a number from 0 to 1, some without a peak: in the order in which they are looked at."""
+    """Responses to a number from 0 to 1, some without a peak, in the order in which they are looked at."""
 
     span = (0.0, 1.0)
 
@@ -53,6 +55,32 @@ def test_trials_where_some_responses_have_no_peak():
     search.look(np.float64(0.4))
     found = by_trials(search)
     assert (found.s, found.value) == (0.5, 1.0)
+
+
+class Straight:
+    """A piece of a curve of peaks, 2 + slope s, from one value to another."""
+
+    condition, spots = None, ()
+
+    def __init__(self, low, high, slope):
+        self.s, self.slope = np.array([low, high]), slope
+        self.height = 2.0 + slope * self.s
+
+    def covers(self, s):
+        return self.s[0] <= s <= self.s[1]
+
+    def roughly(self, s):
+        return 2.0 + self.slope * s
+
+    def at(self, s):
+        return Height(self.roughly(s), self.slope, np.array([s]), 0)
+
+
+def test_the_least_beside_a_gap_between_pieces():
+    """In the gap nothing is known: its heights were infinite, and numpy warned of their differences."""
+    way = SimpleNamespace(span=(0.0, 1.0))
+    found = least(way, [Straight(0.0, 0.25, -1.0), Straight(0.5, 1.0, 1.0)])
+    assert found.s == pytest.approx(0.25, abs=1e-9) and found.value == pytest.approx(1.75, abs=1e-9)
 
 
 def test_least_peaks_of_several_numbers_by_trials_say_so():

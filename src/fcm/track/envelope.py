@@ -25,6 +25,7 @@ FINE = 1e-9  # of the span: the number is known to this
 ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
 GAP = 1e-3  # of the span, in which no piece is known
 EQUAL = 1e-7  # relative: peaks that are one at a crossing
+UNKNOWN = 10.0  # of the highest: what counts where nothing is known, as differences of infinities are none
 
 
 class Target(NamedTuple):
@@ -183,8 +184,9 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
         return max(heights, key=lambda pair: pair[0].value)
 
     if high > low:
+        most = UNKNOWN * max(float(piece.height.max()) for piece in pieces)
         bounded = minimize_scalar(
-            lambda s: highest(s)[0].value,
+            lambda s: min(highest(s)[0].value, most),
             bounds=(low, high),
             method="bounded",
             options={"xatol": 1e-5 * span},
