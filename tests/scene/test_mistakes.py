@@ -102,7 +102,11 @@ CASES = [
     ("force.0.dof", "q", 'force[0].dof: unknown degree of freedom "q"'),
     ("force.0.dof", {"u": 0}, "force[0].dof: has only zero weights"),
     ("response.frequency", [1.7, 0.7], "response.frequency: goes down: [1.7, 0.7]; give the lower one first"),
-    ("response.frequency", [1, 1], "response.frequency: is empty: [1, 1]"),
+    (
+        "response.frequency",
+        [1, 1],
+        "response.frequency: is empty: [1, 1]; give a range, and a single frequency",
+    ),
     ("response.frequency", [0, 1], "response.frequency[0]: must be greater than 0, is 0"),
     ("response.frequency", [-1, 1], "response.frequency[0]: must be greater than 0, is -1"),
     ("response.frequency", [1], "response.frequency: must be two numbers, [from, to], is a list of 1"),

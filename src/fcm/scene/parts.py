@@ -24,6 +24,7 @@ from fcm.scene.section import Section
 
 Dofs = Names | None
 NARROWEST = 1e-10  # relative width of a range: its points are still some 1e5 roundings apart
+ONE = "give a range, and a single frequency within it by --at"
 MAX_STEP = 0.05  # longest step along a curve when the scene names none
 
 
@@ -161,8 +162,8 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
         return NO_RANGE, step
     low, high = (float(end) * UNITS[unit] for end in ends)
     if low >= high:
-        order = "goes down" if low > high else "is empty"
-        section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; give the lower one first")
+        order, what = ("goes down", "give the lower one first") if low > high else ("is empty", ONE)
+        section.wrong("frequency", f"{order}: [{ends[0]:g}, {ends[1]:g}]; {what}")
     elif high - low < NARROWEST * high:
         what = f"its ends differ by {(high - low) / high:.0e} of themselves, and must by {NARROWEST:g}"
         section.wrong("frequency", f"is too narrow to follow a curve through: {what} or more")
