@@ -43,6 +43,14 @@ FOUR_MODES = impacts(
     0,
 )
 
+TOUCHING = impacts(  # its normal motion is 3 % of the tangential
+    [1.0, 3.0635, 3.1222],
+    [0.044844, 0.0078936, 0.0077645],
+    [[0.94722, 0.10045], [-0.71854, 1.5813], [0.21626, 0.86487]],
+    (0.6515, 6.9317, 16.506, -0.47859),
+    0,
+)
+
 
 def judged(scene, omega, highest):
     """The verdict of the balanced solution, and whether the exact motion beside it is stable."""
@@ -71,6 +79,14 @@ def test_a_pair_about_to_meet_at_minus_one_is_not_called_stable():
 def test_a_decay_that_further_harmonics_make_a_growth_is_not_called_stable():
     """Ten harmonics have a multiplier of -0.96, twenty by their own forces -0.98; the exact motion flips."""
     verdict, true = judged(FOUR_MODES, 0.76054, 10)
+    assert not true
+    assert verdict.stable != 1.0
+
+
+@pytest.mark.parametrize(("omega", "highest"), [(0.6231, 15), (0.625, 15), (0.6209, 12), (0.625, 12)])
+def test_a_small_normal_motion_that_is_not_yet_what_it_will_be_is_not_called_stable(omega, highest):
+    """Amplitudes err by 1e-4 of the greatest; the exact motion flips with a multiplier of about -2."""
+    verdict, true = judged(TOUCHING, omega, highest)
     assert not true
     assert verdict.stable != 1.0
 

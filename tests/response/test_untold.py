@@ -16,6 +16,7 @@ from fcm.response.groups import KINDS
 from fcm.results.gist import without_points
 from fcm.results.jumps import swept
 from fcm.run.records import unpacked
+from fcm.scene import scene_from_dict
 
 SCENE = """
 [modal]
@@ -171,3 +172,25 @@ def test_sweeps_begin_with_a_stable_motion():
     stable = np.array([0.0, 0.0, np.nan, 1.0, 1.0, 1.0, 0.0])
     jumps = swept(w, a[:, None], stable).jumps
     assert [(one.sweep, one.frequency, one.before.item()) for one in jumps] == [("up", 3.0, 7.0)]
+
+
+def test_where_a_growth_ends_in_what_is_not_told_no_point_alone_is_called_stable():
+    """A light impact: unstable below 1.164 rad/s, and up to 1.17 or so it cannot be told."""
+    given = {
+        "modal": {
+            "dofs": ["u", "v"],
+            "frequency": [1.0, 1.374],
+            "damping": [0.0083903, 0.017088],
+            "shapes": [[1.2943, -2.167], [-0.71544, 0.76463]],
+        },
+        "contact": [
+            {"name": "c", "tangential": "u", "normal": "v", "mu": 0.21551, "k_u": 0.66602, "k_v": 5.0822,
+             "n_0": -0.12538},
+        ],
+        "force": [{"dof": "v", "amplitude": 1.0}],
+        "response": {"frequency": [1.14, 1.2], "harmonics": 5},
+    }  # fmt: skip
+    curve = trace(scene_from_dict(given)).curves[0]
+    assert (curve.stable == 0.0).any() and np.isnan(curve.stable).any()
+    stable = np.concatenate(([False], curve.stable == 1.0, [False]))
+    assert not (stable[1:-1] & ~stable[:-2] & ~stable[2:]).any()

@@ -12,3 +12,4 @@ cdef class Finer:
     cpdef int at(self, double[::1] z) except -1
     cdef void unknowns(self, double[::1] z) noexcept
     cdef void displace(self, Py_ssize_t h) noexcept
+    cdef double added(self, Py_ssize_t c, Py_ssize_t first) noexcept

@@ -27,7 +27,9 @@ def beyond(harmonics: list[int]) -> list[int]:
 class Finer:
     """`at` a point z of the balance fills x, the unknowns of the finer motion; contact as in `Transitions`.
 
-    shift is the greatest amplitude that was added, relative to the greatest that there was.
+    shift is the greatest amplitude that was added to a displacement of a contact, tangential or normal,
+    relative to the greatest that there was of the same: a small normal motion opens and closes a contact as
+    much as a large one does.
     """
 
     def __init__(self, seen: Receptance, contact: npt.NDArray[np.float64], harmonics: list[int]) -> None:
@@ -46,8 +48,6 @@ class Finer:
         c: cython.Py_ssize_t
         i: cython.Py_ssize_t
         h: cython.Py_ssize_t
-        most: cython.double = 0.0
-        added: cython.double = 0.0
         self.seen.at(z[self.contacts * self.width])
         for c in range(self.contacts):
             self.kernel.evaluate(
@@ -60,15 +60,29 @@ class Finer:
         for h in range(self.place.shape[0]):
             if self.place[h] < 0:
                 self.displace(h)
-            for c in range(self.contacts):
-                for i in range(4):
-                    size: cython.double = abs(self.x[c * self.wide + 2 + 4 * h + i])
-                    if self.place[h] < 0:
-                        added = max(added, size)
-                    else:
-                        most = max(most, size)
-        self.shift = added / most if most > 0.0 else 0.0
+        self.shift = 0.0
+        for c in range(self.contacts):
+            for i in range(2):
+                self.shift = max(self.shift, self.added(c, 2 * i))
         return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def added(self, c: cython.Py_ssize_t, first: cython.Py_ssize_t) -> cython.double:
+        """The greatest amplitude that was added to one displacement of a contact, of which first is the first
+        number of each harmonic, relative to the greatest that there was; 0 if there was none."""
+        h: cython.Py_ssize_t
+        i: cython.Py_ssize_t
+        most: cython.double = 0.0
+        new: cython.double = 0.0
+        for h in range(self.place.shape[0]):
+            for i in range(2):
+                size: cython.double = abs(self.x[c * self.wide + 2 + 4 * h + first + i])
+                if self.place[h] < 0:
+                    new = max(new, size)
+                else:
+                    most = max(most, size)
+        return new / most if most > 0.0 else 0.0
 
     @cython.cfunc
     @cython.exceptval(check=False)

@@ -40,7 +40,8 @@ class Inserted:
 
 @dataclass(frozen=True)
 class Crossing(Inserted):
-    """A point of the curve at which stability changes without a fold; it counts to the stable side."""
+    """A point of the curve at which stability changes without a fold; it counts to the side that is stable,
+    or where that is not told."""
 
     kind: Kind = Kind.PAIR
 

@@ -35,7 +35,7 @@ SMALL = 16  # rows of a matrix up to which LAPACK, called from Python, takes lon
 SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
 FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
-LIGHT = 100.0  # if it is also this many times what further harmonics add: light impacts make that of it
+LIGHT = 200.0  # if it is also this many times what further harmonics add: light impacts make that of it
 SLIGHT = 4.0  # the same of a growth that truncation may have made
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 

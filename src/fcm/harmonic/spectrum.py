@@ -139,8 +139,8 @@ def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> b
     """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
 
     That is so where it is none, of a decay that is less than its change, of a growth that is less than some
-    times that, and where a pair turns so fast towards -1 that it may meet there, of which one multiplier
-    leaves by a flip; and of what decays but for a multiplier that is taken to be far on the wrong side of 1.
+    times that, and where a pair turns so fast that it may meet at -1, of which one multiplier leaves by a
+    flip; and of what decays but for a multiplier, of either, that is taken to be far on the wrong side of 1.
     """
     if math.isnan(found.stable):
         return True
@@ -148,9 +148,16 @@ def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> b
     change = abs(one.growth - other.growth)
     if found.stable != 1.0:
         return found.growth < times * change
-    turned = abs(one.before_flip - other.before_flip)
-    flips = found.before_flip < min(FLIP_NEAR, SHIFTED * turned)
-    return flips or -found.growth < change or (fine.odd and abs(fine.nearest) > SURELY)
+    near, turned = to_flip(one), abs(to_flip(one) - to_flip(other))
+    flips = near < min(max(FLIP_NEAR, turned), SHIFTED * turned)
+    far = (fine.odd and abs(fine.nearest) > SURELY) or (plain.odd and abs(plain.nearest) > SURELY)
+    return flips or -found.growth < change or far
+
+
+def to_flip(verdict: Verdict) -> float:
+    """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
+    met = verdict.kind is Kind.FLIP and verdict.growth > log(SMALL)
+    return 0.0 if met else verdict.before_flip
 
 
 def either(one: Verdict, other: Verdict) -> Verdict:

@@ -198,7 +198,8 @@ class _Along:
         first, found, enough = int(a), None, self.verdicts.enough(a, b)
         curve = self.verdicts.curve(first)
         before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
-        kind = self.verdicts[a if before > 0.0 else b].kind
+        grows, decays = (self.verdicts[t] for t in ((a, b) if before > 0.0 else (b, a)))
+        kind = grows.kind
         sides = Secants(a - first, b - first, before, after, may_jump=True)
         fine = FINE if enough else BETWEEN
         for _ in range(LOOKS):
@@ -210,7 +211,8 @@ class _Along:
             if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
-            found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
+            place = curve.z, curve.direction, curve.orientation, decays.stable
+            found = Crossing(first + at, *place, kind=kind)
             if abs(now) < ZERO:
                 break
             sides.saw(at, now)
