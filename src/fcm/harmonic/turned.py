@@ -22,7 +22,8 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
-STAGE = 1.25  # by stages, each of so many times the level
+STAGE = 1.25  # by stages, each of so many times the level,
+SHORTEST = 0.5  # and this part of that where Newton's method does not lead from one to the next
 ASIDE = (0.02, 0.1)  # of its size: from a solution beside a fold to those on either side of that
 FAR = 0.5  # of a solution's size: what Newton's method finds further away has little to do with the turn
 
@@ -86,18 +87,25 @@ def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]
 
 
 def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:
-    """Whether a turn leads to a solution at the level 1; newton is of that problem, and comes to it."""
-    level = problem.load = turn.level
+    """Whether a turn leads to a solution at the level 1, by shorter stages where one was too long; newton is
+    of that problem, and comes to it."""
+    problem.load = turn.level
     problem.measure(turn.z)
     newton.z[:], newton.scale[:] = turn.z, problem.scale
     along = turn.direction / np.asarray(problem.scale)
     newton.row[:] = along / np.linalg.norm(along)
-    stages = max(math.ceil(abs(math.log(level)) / math.log(STAGE)), 1)
-    for k in range(stages - 1, -1, -1):
-        problem.load = level ** (k / stages)
-        if not newton.correct(1.0) or newton.moved >= FAR:
+    left, known = math.log(turn.level), turn.z
+    stage = left / max(math.ceil(abs(left) / math.log(STAGE)), 1)
+    shortest = stage * SHORTEST
+    while left != 0.0:
+        then = left - stage if abs(left) > 1.5 * abs(stage) else 0.0
+        problem.load = math.exp(then)
+        if newton.correct(1.0) and newton.moved < FAR:
+            left, known, newton.row[:] = then, np.array(newton.z), newton.tangent
+        elif abs(stage) > abs(shortest):
+            stage, newton.z[:] = 0.5 * stage, known
+        else:
             return False
-        newton.row[:] = newton.tangent
     return True
 
 
