@@ -11,7 +11,7 @@ from fcm.harmonic.start import solutions
 from fcm.harmonic.unstable import unstable_stretches
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
-from fcm.scene import load_scene
+from fcm.scene import load_scene, scene_from_dict
 
 MARCHED = (1.6231, 7.0014, 6.7749, 3.7635)
 
@@ -52,3 +52,29 @@ def test_a_look_that_does_not_come_to_its_end_leaves_branches_unsure(monkeypatch
     (at,) = traced_curve(scene).unsure
     ((low, high),) = traced_curve(scene).summary()["no_stable_motion"]
     assert low < at < high
+
+
+def test_a_window_of_stability_that_was_not_seen_is_where_a_look_finds_it():
+    """At 1.425 rad/s a march of the exact motion settles at (2.2122, 1.0395) from each of 12 states."""
+    given = {
+        "modal": {
+            "dofs": ["v", "u"],
+            "frequency": [1.0, 2.3335, 3.7286, 4.7082],
+            "damping": [0.041622, 0.04402, 0.0079051, 0.018357],
+            "shapes": [[-1.5054, 0.41462], [-0.64261, 0.61897], [0.40903, 0.33035], [-0.90691, -1.1796]],
+        },
+        "contact": [
+            {"name": "c", "tangential": "u", "normal": "v", "mu": 0.030279, "k_u": 0.25324, "k_v": 26.774,
+             "n_0": -3.2003},
+        ],
+        "force": [{"dof": "v", "amplitude": 1.0}],
+        "response": {"frequency": [1.1187, 1.4861]},
+    }  # fmt: skip
+    curve = traced_curve(scene_from_dict(given), Wanted(tuple(range(1, 11)), 1e-2))
+    off = curve.frequency - 1.425
+    (i,) = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+    assert (curve.stable[i : i + 2] == 1.0).all()
+    part = off[i] / (off[i] - off[i + 1])
+    there = (1.0 - part) * curve.amplitude[i] + part * curve.amplitude[i + 1]
+    assert there == pytest.approx((2.2122, 1.0395), rel=1e-2)
+    assert not any(low < 1.425 < high for low, high in curve.summary()["no_stable_motion"])

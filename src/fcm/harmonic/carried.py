@@ -87,15 +87,15 @@ def led(
                 yield there
 
 
-def passes(system: System, path: Path, z: FloatArray) -> bool:
-    """Whether the solution z lies between two points of a path."""
+def place_on(system: System, path: Path, z: FloatArray) -> int | None:
+    """The point of a path between which and the next the solution z lies; None if there is none."""
     w = path.parameter - z[-1]
     for i in np.flatnonzero((w[:-1] * w[1:] <= 0.0) & (w[:-1] != w[1:])).tolist():
         guess = path.z[i] + w[i] / (w[i] - w[i + 1]) * (path.z[i + 1] - path.z[i])
         there = at_its_frequency(system, guess)
         if there is not None and same(there, z):
-            return True
-    return False
+            return int(i)
+    return None
 
 
 def same(one: FloatArray, other: FloatArray) -> bool:

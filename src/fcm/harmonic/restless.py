@@ -3,7 +3,7 @@
 The structure does something at every frequency. Where it can stay at none of the motions found, it moves in a
 way that the balance has no solution for, as in one that repeats after two periods or never, or a branch was
 missed. So there the level of the forces is followed once more. What it passes that is stable is on no branch
-that was found.
+that was found, or in a window of stability that was not seen on one.
 """
 
 from __future__ import annotations
@@ -11,11 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from fcm.continuation import Path
-from fcm.harmonic.carried import passes
+import numpy as np
+
+from fcm.continuation import Mark, Path
+from fcm.harmonic.carried import place_on
 from fcm.harmonic.choice import Accurate, judged
 from fcm.harmonic.error import reported
-from fcm.harmonic.multipliers import multipliers_of
+from fcm.harmonic.multipliers import Multipliers, multipliers_of
 from fcm.harmonic.outline import Outline
 from fcm.harmonic.start import NEAR, Found, solutions
 from fcm.harmonic.system import System
@@ -28,24 +30,35 @@ LOOKS = 3  # stretches in whose middle the level is followed, the widest first,
 SHARE = 0.2  # as long as that takes no more of the work before
 
 
-def with_missed(found: Accurate, stable: Sequence[FloatArray], accuracy: float) -> Accurate:
-    """A response with stable branches that were missed; itself if none is found, and each look came to its
-    end.
+def with_missed(
+    found: Accurate, stable: Sequence[FloatArray], accuracy: float
+) -> tuple[Accurate, list[FloatArray]]:
+    """A response with stable branches that were missed, and stable with windows that were; the same response
+    if no branch is found, and each look came to its end.
 
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known.
     """
-    system, paths = found.system, found.traced.branches.paths
-    parts = [(path.parameter, known) for path, known in zip(paths, stable, strict=True)]
+    system, paths, known = found.system, found.traced.branches.paths, list(stable)
+    parts = [(path.parameter, one) for path, one in zip(paths, known, strict=True)]
     stretches = unstable_stretches(parts, system.scene.frequency_range)
     looked = _looked(system, stretches) if stretches else []
-    missed = list(_missed(system, looked, paths)) if looked else []
+    if not looked:
+        return found, known
+    of = multipliers_of(system, system.scene.frequency_range[1])
+    missed = []
+    for z in _stable(of, looked):
+        passed = [(k, i) for k, path in enumerate(paths) if (i := place_on(system, path, z)) is not None]
+        for k, i in passed:
+            known[k] = _with_window(of, paths[k], known[k], i)
+        if not passed:
+            missed.append(z)
     if not missed:
-        return found if all(one.complete for one in looked) else _having(found, looked)
+        return (found if all(one.complete for one in looked) else _having(found, looked)), known
     traced = with_further(system, found.traced, looked, missed)
     further = traced.branches.paths[len(paths) :]
     shown = (*found.shown, *(reported(system, path) for path in further))
     every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
-    return replace(every, further=found.further, begun=found.begun)
+    return replace(every, further=found.further, begun=found.begun), known
 
 
 def _having(found: Accurate, looked: Sequence[Found]) -> Accurate:
@@ -66,9 +79,23 @@ def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
     return found
 
 
-def _missed(system: System, looked: Sequence[Found], paths: Sequence[Path]) -> Iterator[FloatArray]:
-    """The solutions that are stable, and that no path passes, as in a window of stability unseen."""
-    of = multipliers_of(system, system.scene.frequency_range[1])
+def _stable(of: Multipliers, looked: Sequence[Found]) -> Iterator[FloatArray]:
+    """The solutions that are stable."""
     for z in (z for one in looked for z in one.solutions):
-        if of.verdict(z, enough=(1.0,)).stable == 1.0 and not any(passes(system, one, z) for one in paths):
+        if of.verdict(z, enough=(1.0,)).stable == 1.0:
             yield z
+
+
+def _with_window(of: Multipliers, path: Path, stable: FloatArray, i: int) -> FloatArray:
+    """Of the points of a path (point,) whether they are stable, with a window that was not seen: from a place
+    behind point i to either side, up to a fold or the first point that is not stable."""
+    found = stable.copy()
+    sign = path.orientation * np.sign(path.direction[:, -1])  # what a verdict is of, see `stability`
+    inside = (sign > 0.0) & ((path.mark & Mark.FOLD) == 0) & (stable == 0.0)
+    for way, j in ((-1, i), (1, i + 1)):
+        while 0 <= j < len(found) and inside[j]:
+            found[j] = of.verdict(path.z[j]).stable
+            if found[j] != 1.0:
+                break
+            j += way
+    return found

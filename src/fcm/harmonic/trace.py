@@ -12,7 +12,7 @@ from fcm.continuation import Branches, Path, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic.carried import MANY, found_at, led, passes
+from fcm.harmonic.carried import MANY, found_at, led, place_on
 from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
@@ -74,7 +74,7 @@ def with_levels(system: System, before: Traced) -> Traced:
     work = system.work.seconds - begin
     span, paths = system.scene.frequency_range, before.branches.paths
     inside = (z for z in passed if span[0] <= z[-1] <= span[1])
-    missed = [z for z in inside if not any(passes(system, path, z) for path in paths)]
+    missed = [z for z in inside if all(place_on(system, path, z) is None for path in paths)]
     return replace(with_further(system, replace(before, found=()), found, missed), work=work)
 
 

@@ -155,10 +155,12 @@ def _curve(followed: _Followed) -> Curve:
 
 
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
-    """A response with its stability, and with branches that were missed where nothing was stable."""
+    """A response with its stability, and with what was missed where nothing was stable."""
     followed = _with_stability(_Followed(found, [], []), accuracy)
-    more = with_missed(followed.found, followed.stable, np.inf if accuracy is None else accuracy)
-    return followed if more is followed.found else _with_stability(replace(followed, found=more), accuracy)
+    least = np.inf if accuracy is None else accuracy
+    more, stable = with_missed(followed.found, followed.stable, least)
+    again = replace(followed, found=more, stable=stable)
+    return again if more is followed.found else _with_stability(again, accuracy)
 
 
 def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
