@@ -501,6 +501,31 @@ def test_a_corner_that_only_a_label_tells_of_is_turned_at(max_step):
     assert path.z[-1, 0] > 0.5
 
 
+class RoofBesideALine(Problem):
+    """p = 2 - (x^2 + radius^2)^(1/2), smooth with a narrow fold, and on another branch p = 2.1 + x."""
+
+    def __init__(self, radius):
+        Problem.__init__(self, 1, 1, 0)
+        self.soft, self.radius = True, radius
+
+    def evaluate(self, z):
+        x, p = z
+        high = np.hypot(x, self.radius)
+        roof, line = p - 2.0 + high, p - 2.1 - x
+        self.residual[0] = roof * line
+        self.jacobian[0, 0], self.jacobian[0, 1] = x / high * line - roof, line + roof
+        return 0
+
+
+@pytest.mark.parametrize("radius", [1e-3, 1e-5, 1e-7, 1e-8, 1e-9])
+@pytest.mark.parametrize("max_step", STEPS)
+def test_no_step_leads_from_a_narrow_fold_to_another_branch(radius, max_step):
+    """Beyond the fold the curve is at right angles to what it was, where a short step sees the other one."""
+    path = follow(RoofBesideALine(radius), np.array([-0.5, 1.5]), (1.0, 3.0), True, max_step)
+    assert path.parameter == pytest.approx(2.0 - np.hypot(path.z[:, 0], radius), abs=1e-7)
+    assert path.status is Status.COMPLETE and path.z[-1, 0] == pytest.approx(1.0, abs=1e-6)
+
+
 class Pieces(Labelled):
     """x = sum over the slopes of the pieces of a broken line in p, with corners at 2, 3, ..."""
 

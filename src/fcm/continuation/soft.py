@@ -30,6 +30,8 @@ WARY = 1.0  # and to the one after a shortened one
 # cosine beyond which a change of orientation is a branch point and not a way back, and what was taken for a
 # corner is none: labels leave out what is short, so that it is further on
 STRAIGHT = 0.999
+ASIDE = 2.0  # times as long as its turn alone makes it, a short step may be
+BESIDE = (2.0 * (1.0 - STRAIGHT)) ** 0.5  # of its length, by which a step that turns less misses the curve
 SHORT_OF = 3e-3  # of the way to where a label changes, by which a step ends before it
 BEYOND = 1e-7  # length past a corner at which the curve's new direction is looked for, at least
 TOUCHED = 1e-8  # a change of label this near is met: less than BEYOND
@@ -113,14 +115,25 @@ class Soft:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
         front = self.front
         same = front.there.orientation == front.here.orientation
+        near = front.missed * front.step < MOST * ERROR
         if front.step <= SHARP:
-            return follower.good() and (same or front.cosine > STRAIGHT)
-        near = front.missed < ASTRAY and front.missed * front.step < MOST * ERROR
+            return near and follower.good() and self.went_on() and (same or self.straight())
+        near = near and front.missed < ASTRAY
         return (
             not self.turned_twice()
             and not self.strayed()
             and (follower.good() or (same and near and front.cosine > GENTLY))
         )
+
+    def went_on(self) -> bool:
+        """Whether a short step, which may turn by any angle, led no further aside than its turn explains:
+        else it led to another branch. A chord turns less than the curve."""
+        way = (np.asarray(self.front.there.z) - np.asarray(self.front.here.z)) / self.front.newton.scale
+        return bool(np.linalg.norm(way) * self.front.cosine < ASIDE * self.front.step)
+
+    def straight(self) -> bool:
+        """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
+        return self.front.cosine > STRAIGHT and self.front.missed < BESIDE
 
     def turned_twice(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
