@@ -72,6 +72,8 @@ def _made(shot: Shot, z: FloatArray) -> Sample:
 def _held(shot: Shot) -> FloatArray:
     """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
     system = shot.system
+    if not system.scene.held:
+        return np.zeros((0, 3))
     system.run(system.held, shot.segments)
     least, greatest = (np.asarray(one).reshape(2, -1) for one in (system.held.least, system.held.greatest))
     return np.column_stack((shot.kept, greatest[0], np.maximum(greatest[1], -least[1])))
