@@ -50,7 +50,7 @@ class AtLevel(OrbitProblem):
     @load.setter
     def load(self, level: float) -> None:
         self._load = level
-        self._shots.clear()
+        self.forget()
 
     def _made(self, z: FloatArray) -> Shot | None:
         self.periods += 1

@@ -77,10 +77,19 @@ class OrbitProblem(Problem):
         if shot is None and key not in self._shots:
             shot = self._made(z)
             if self._numbers > KEPT:
-                self._shots, self._numbers = {}, 0
+                self.forget()
             self._numbers += 0 if shot is None else int(shot.segments.y.size) + 3 * shot.x.size**2
             self._shots[key] = shot
         return shot
+
+    @property
+    def full(self) -> bool:
+        """Whether so much is remembered that it may be forgotten with the next step."""
+        return 2 * self._numbers > KEPT
+
+    def forget(self) -> None:
+        """Forget all periods."""
+        self._shots, self._numbers = {}, 0
 
     def _made(self, z: FloatArray) -> Shot | None:
         self.periods += self.repeats

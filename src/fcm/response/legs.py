@@ -163,11 +163,13 @@ class Legs:
         self.look()
 
     def _record(self, problem: OrbitProblem, stage: Stage) -> None:
-        """Record the points that are new, while their periods are known: then a curve that is stopped is
-        there at once."""
-        for z in (*stage.kept.before.z[self._recorded :], stage.kept.last[0]):
-            recorded(problem, z)
-        self._recorded = stage.kept.number - 1
+        """Record the points that are new before their periods are forgotten: then a curve that is stopped is
+        there at once. Many together: after each step it would make the following a tenth slower."""
+        if problem.full:
+            for z in (*stage.kept.before.z[self._recorded :], stage.kept.last[0]):
+                recorded(problem, z)
+            self._recorded = stage.kept.number - 1
+            problem.forget()
 
     def found(self, problem: OrbitProblem) -> list[Leg]:
         """The legs of a problem as far as all their points were passed."""
