@@ -33,6 +33,22 @@ def test_the_multipliers_beside_a_stuck_contact_are_those_of_the_whole_matrix():
         assert np.abs(shot.others - one).min() < 1e-9
 
 
+def test_a_closed_contact_without_friction_adds_no_multiplier():
+    """Its force along the surface, 0, is an unknown of the motion that never changes."""
+    scene = light()
+    smooth = replace(scene.contacts[0], name="smooth", mu=0.0, k_v=0.1, n_0=100.0)
+    scene = replace(scene, contacts=(*scene.contacts, smooth))
+    orbit, problem = periodic(scene, 0.6), Shooting(scene)
+    shot = problem.residual(problem.unknowns(orbit.state), 0.6)
+    assert orbit.states[-1] == "E"
+    still = sum(states == "E" for states in orbit.states)
+    whole = np.linalg.eigvals(shot.derivative)
+    moving = np.delete(whole, np.argsort(np.abs(whole - 1.0))[:still])
+    assert shot.others.size == moving.size
+    for one in moving:
+        assert np.abs(shot.others - one).min() < 1e-9
+
+
 @pytest.fixture(scope="module")
 def crossed():
     """A problem, its path, and the steps on which stability changes between folds."""

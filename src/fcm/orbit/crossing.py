@@ -34,12 +34,6 @@ class Place(NamedTuple):
         """Whether stability ends there, as far as can be told."""
         return abs(self.excess) <= 0.5 * SURE
 
-    @property
-    def flat(self) -> bool:
-        """Whether the greatest multiplier is a 1 that stays, beside one that is still smaller: a secant from
-        there leads nowhere."""
-        return abs(self.excess + STABLE) <= SURE
-
 
 def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     """The last place of the stable side between a point of a path and the next; None if it is not found.
@@ -54,7 +48,7 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
         if stable.there or sides.width * between.length < TOUCHED:
             return stable
         tried = sides.at, 0.5 * (sides.low + sides.high)
-        part = next((at for at in (tried[::-1] if stable.flat else tried) if between.put(at)), None)
+        part = next((at for at in tried if between.put(at)), None)
         if part is None:
             break
         new = _place(problem, part, between.z, between.direction)

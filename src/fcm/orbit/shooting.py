@@ -11,11 +11,12 @@ from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.motion.cycle import Cycle
 from fcm.motion.matrices import has_friction
 from fcm.motion.measure import Displaced, displaced
+from fcm.motion.pool import STICKING
 from fcm.motion.run import march_from
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.derivative import period_derivative
-from fcm.orbit.residual_friction import Choice, always_stuck, choices, overshoots, resting, stuck_of
+from fcm.orbit.residual_friction import Choice, choices, overshoots, resting, stuck_of
 from fcm.scene.model import FloatArray, Scene
 
 LEAST = 1e-100  # part of the greatest scale, of those that matrices are balanced by: others overflow
@@ -129,26 +130,27 @@ class Shot:
 
     @cached_property
     def others(self) -> npt.NDArray[np.complex128]:
-        """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays.
+        """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays, and
+        of each that stays closed without friction, whose f = 0 does.
 
-        With w = u - f / k_u for its f the others are those of the rest.
+        With w = u - f / k_u for the f of the first the others are those of the rest.
         """
-        system, stuck = self.system, always_stuck(self.system, self.segments)
-        by_state, scale = self.derivative, self.scale
-        if stuck:
-            places, by_state = system.f.start + np.array(stuck), by_state.copy()
+        system, seen = self.system, self.segments.seen()
+        stuck, by_state, scale = stuck_of(system, seen), self.derivative, self.scale
+        if closed := [j for j, states in enumerate(seen) if states == 1 << STICKING]:
+            places, by_state = system.f.start + np.array(stuck, dtype=int), by_state.copy()
             by_state[:, system.q] += by_state[:, places] @ (
                 system.k_u[stuck, None] * system.tangential[stuck]
             )
             rest = np.ones(self.x.size, dtype=bool)
-            rest[places] = False
+            rest[system.f.start + np.array(closed)] = False
             by_state, scale = by_state[rest][:, rest], scale[rest]
         scale = np.maximum(scale, LEAST * scale.max(initial=0.0))
         return _eigenvalues(by_state * (scale / scale[:, None]))
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
-        """Floquet's, the greatest first; 1 for each contact that always sticks."""
+        """Floquet's, the greatest first; 1 for each contact that always sticks, or stays closed smooth."""
         values = self.others
         if values.size < self.x.size:
             values = np.append(values, np.ones(self.x.size - values.size))
