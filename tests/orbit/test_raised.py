@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.system import System as Balanced
+from fcm.harmonic.work import TooLongError
 from fcm.motion import State, simulate
-from fcm.orbit import OrbitProblem
+from fcm.orbit import OrbitProblem, bounded, raised
+from fcm.orbit.bounded import Bounded
 from fcm.orbit.level import LevelProblem
 from fcm.orbit.periodic import without_end
-from fcm.orbit.raised import raised_at
+from fcm.orbit.raised import Raised, raised_at
 from fcm.orbit.shooting import Shooting
 
 from ..motion.cases import two_contacts, yang
@@ -48,3 +50,46 @@ def test_every_passing_of_the_level_1_is_a_motion():
     assert found.complete and len(starts) == 3
     assert np.array(ends) == pytest.approx(starts[:, :m], abs=1e-9 * np.abs(starts).max())
     assert min(np.abs(a - b).max() for a, b in combinations(starts, 2)) > 1e-3 * np.abs(starts).max()
+
+
+def test_what_a_level_passed_is_kept_when_its_time_is_over():
+    scene, omega = random_scene(3), 2.1490306
+    one, looks = Balanced(scene, (1,)), []
+    whole = raised_at(scene, one, omega, (), lambda: looks.append(0))
+    left = iter(looks[: -len(looks) // 4])
+
+    def look():
+        if next(left, None) is None:
+            raise TooLongError
+
+    part = raised_at(scene, one, omega, (), look)
+    assert part.over and not part.complete and 0 < len(part.motions) <= len(whole.motions)
+    for z in part.motions:
+        assert min(np.abs(z - other).max() for other in whole.motions) < 1e-9 * np.abs(z).max()
+
+
+def test_levels_have_equal_shares_of_the_time_and_what_others_leave(monkeypatch):
+    """The first takes 60 of 110 s, the others 5 s each: it is begun, given up, and followed to its end."""
+    scene, now, came = random_scene(3), [0.0], []
+
+    def at(scene, one, omega, known, look):
+        begin, end = now[0], now[0] + (60.0 if omega == 1.0 else 5.0)
+        while now[0] < end:
+            now[0] += 0.5
+            try:
+                look()
+            except TooLongError:
+                came.append((omega, now[0] - begin))
+                return Raised(omega, (), False, over=True)
+        came.append((omega, now[0] - begin))
+        return Raised(omega, (), True)
+
+    monkeypatch.setattr(raised, "raised_at", at)
+    monkeypatch.setattr("fcm.harmonic.start.looked_at", lambda system: [1.0, 2.0, 3.0, 4.0, 5.0])
+    monkeypatch.setattr(bounded.time, "process_time", lambda: now[0])
+    monkeypatch.setattr(bounded.time, "monotonic", lambda: now[0])
+    limited = Bounded(without_end, 110.0)
+    found = list(limited.each(raised.raised(scene, lambda omega: (), limited)))
+    assert came == [(1.0, 22.5), (2.0, 5.0), (3.0, 5.0), (4.0, 5.0), (5.0, 5.0), (1.0, 60.0)]
+    assert found[-1].complete and not limited.given_up
+    assert [one.omega for one in found] == [1.0, 2.0, 3.0, 4.0, 5.0, 1.0]

@@ -23,7 +23,8 @@ class Bounded:
 
     def __init__(self, outside: Look, most: float) -> None:
         self.outside, self.most, self.given_up = outside, most, list[str]()
-        self._end, self._left, self._ask = np.inf, most, 0.0
+        self._begin = self._ask = 0.0
+        self._end, self._left = np.inf, most
 
     def look(self) -> None:
         """Raise `TooLongError` when it has taken as much."""
@@ -40,17 +41,23 @@ class Bounded:
         from fcm.harmonic.work import TooLongError
 
         while True:
-            begin = time.process_time()
-            self._end = begin + self._left
+            self._begin = time.process_time()
+            self._end = self._begin + self._left
             try:
                 found = next(finds, None)
             except TooLongError:
                 self.note(f"what leads to them takes more than {self.most:.3g} s to be found")
                 return
-            self._left -= time.process_time() - begin
+            self._left -= time.process_time() - self._begin
             if found is None:
                 return
             yield found
+
+    def share(self, count: int) -> float:
+        """An equal share [s] of what is left, which the next of so many is to be found in."""
+        found = self._left / count
+        self._end = self._begin + found
+        return found
 
     def note(self, why: str) -> None:
         """That the search is not whole, and why."""

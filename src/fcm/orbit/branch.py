@@ -15,7 +15,7 @@ from fcm.orbit.apart import first_balance, passes
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
-from fcm.orbit.raised import raised
+from fcm.orbit.raised import Raised, raised
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import along_balance, first_point, starts
 from fcm.scene.modal import UNITS
@@ -136,10 +136,13 @@ def _with_others(
     def there(omega: float) -> list[FloatArray]:
         return [z for path in paths for z in path.z[path.parameter == omega]]
 
-    for one in bounded.each(raised(scene, there, look)):
+    last = dict[float, Raised]()
+    for one in bounded.each(raised(scene, there, bounded)):
         paths = _with(problem, paths, one.motions, branches)
-        if not one.complete:
-            bounded.note(f"the level of the forces cannot be followed at {shown(scene, one.omega)}")
+        last[one.omega] = one
+    for one in (each for each in last.values() if not each.complete):
+        failed = f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
+        bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
     return paths
 
 

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.continuation import Path, Status, all_branches, follow
+from fcm.continuation import Path, Stage, Status, all_branches, follow
 from fcm.continuation.branches import Follow
 from fcm.continuation.newton import Newton
+from fcm.orbit.bounded import Bounded
 from fcm.orbit.harmonic import FEW
 from fcm.orbit.held import held
 from fcm.orbit.level import AtLevel, LevelProblem
@@ -40,17 +41,19 @@ BELOW = 0.5  # part of the level up to which contacts are linear, down to which 
 @dataclass(frozen=True)
 class Raised:
     """The motions (unknown + 1,) that the level leads to from a frequency [rad/s], the frequency last, and
-    whether it was followed to its end."""
+    whether it was followed to its end; if not, whether because the time for that was over."""
 
     omega: float
     motions: tuple[FloatArray, ...]
     complete: bool
+    over: bool = False
 
 
-def raised(scene: Scene, known: Known, look: Look) -> Iterator[Raised]:
-    """What the level leads to from each frequency at which it is followed.
+def raised(scene: Scene, known: Known, bounded: Bounded) -> Iterator[Raised]:
+    """What the level leads to from each frequency at which it is followed, in an equal share of the time; and
+    once more, to the end, where that was too short and others leave more than it.
 
-    known : the motions (unknown + 1,) that are known at a frequency. look : called now and then.
+    known : the motions (unknown + 1,) that are known at a frequency.
     """
     from fcm.harmonic.start import looked_at
     from fcm.harmonic.system import System
@@ -59,30 +62,82 @@ def raised(scene: Scene, known: Known, look: Look) -> Iterator[Raised]:
     if not (whole.modal.frequency.all() and whole.contacts):
         return
     one = System(whole, (1,))
-    one.work.look = look
-    for omega in looked_at(one):
-        yield raised_at(scene, one, omega, known(omega), look)
+    one.work.look = bounded.look
+    waiting = [(omega, 0.0) for omega in looked_at(one)]
+    while waiting:
+        (omega, before), *waiting = waiting
+        if (share := bounded.share(1 + len(waiting))) > before:
+            found = raised_at(scene, one, omega, known(omega), bounded.look)
+            waiting += [(omega, share)] * found.over
+            yield found
 
 
 def raised_at(scene: Scene, one: System, omega: float, known: Sequence[FloatArray], look: Look) -> Raised:
-    """The same at one frequency; one is the balance of one harmonic."""
+    """The same at one frequency; one is the balance of one harmonic. What was found is there, too, where look
+    raises `TooLongError`."""
+    from fcm.harmonic.work import TooLongError
+
+    found = list[FloatArray]()
+    try:
+        complete = _followed(scene, one, omega, known, look, found)
+    except TooLongError:
+        return Raised(omega, tuple(found), False, over=True)
+    return Raised(omega, tuple(found), complete)
+
+
+def _followed(
+    scene: Scene, one: System, omega: float, known: Sequence[FloatArray], look: Look, found: list[FloatArray]
+) -> bool:
+    """Whether the level was followed to its end; what it leads to is added to what is found."""
     from fcm.harmonic.linear_contacts import least
     from fcm.harmonic.start import BEFORE, WEAK
     from fcm.harmonic.turned import turns_of
 
+    def passes(path: Path) -> None:
+        found.extend(np.append(z[:-1], omega) for z in path.z[path.parameter == 1.0])
+
     linear, top = BEFORE * least(one, omega), _top(one, omega)
     if linear >= top:
-        return Raised(omega, (), True)
+        return True
     linear, problem = min(linear, 1.0), LevelProblem(scene, omega)
-    span, along = (BELOW * max(linear, WEAK[0]), top), partial(follow, watch=lambda _: look())
+    span, along = (BELOW * max(linear, WEAK[0]), top), partial(_along, look, passes)
     rest = _from_rest(problem, linear, span, along)
     if rest is None:
-        return Raised(omega, (), False)
+        return False
     there = [np.append(z[:-1], 1.0) for z in known]
     curves = all_branches(lambda: problem, there, span, STEP, None, along, rest)
-    passed = [np.append(z[:-1], omega) for path in curves.paths for z in path.z[path.parameter == 1.0]]
-    turns = [turn for path in curves.paths for turn in turns_of(path, omega)]
-    return Raised(omega, (*passed, *_beside(scene, turns, look)), curves.status is Status.COMPLETE)
+    found.extend(_beside(scene, [turn for path in curves.paths for turn in turns_of(path, omega)], look))
+    return curves.status is Status.COMPLETE
+
+
+def _along(
+    look: Look,
+    passes: Callable[[Path], None],
+    problem: LevelProblem,
+    start: FloatArray,
+    span: tuple[float, float],
+    forward: bool,
+    max_step: float,
+    stations: Sequence[float],
+    _progress: object = None,
+) -> Path:
+    """As `follow`; passes is told of the path also where look raises `TooLongError`."""
+    from fcm.harmonic.work import TooLongError
+
+    stages = list[Stage]()
+
+    def watch(stage: Stage) -> None:
+        stages[:] = [stage]
+        look()
+
+    try:
+        path = follow(problem, start, span, forward, max_step, stations, watch=watch)
+    except TooLongError:
+        for stage in stages:
+            passes(stage.path(Status.INTERRUPTED))
+        raise
+    passes(path)
+    return path
 
 
 def _from_rest(
