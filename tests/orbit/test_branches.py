@@ -169,6 +169,17 @@ def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
     assert cosine > 0.5  # where it goes on it is near -1
 
 
+def test_a_curve_goes_on_from_a_corner_at_right_angles():
+    """At 1.57431 it goes on where the frequency hardly changes, to motions a fifth of its size away."""
+    scene = random_scene(21)
+    problem = OrbitProblem(scene)
+    begin = max(starts(problem)[0], key=lambda z: z[-1])
+    path = follow(problem, begin, (1.574, scene.frequency_range[1]), False, scene.max_step)
+    assert path.status is Status.COMPLETE and path.parameter[-1] == 1.574
+    for z in path.z[np.abs(path.parameter - 1.57431) < 1e-5]:
+        assert off_after_a_period(scene, z) < 1e-9
+
+
 def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said():
     scene = lightly_damped(20)
     problem = OrbitProblem(scene)

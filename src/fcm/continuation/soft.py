@@ -27,8 +27,8 @@ GENTLY = 0.5  # cosine of the turn of a step
 ASTRAY = 0.5  # of its length, by which a step may miss the curve
 SHORTER, REFUSED, LONGER = 0.3, (0.1, 0.5), 3.0  # of a step to the next, to the one in its place: limits
 WARY = 1.0  # and to the one after a shortened one
-# cosine beyond which a change of orientation is a branch point and not a way back, and what was taken for a
-# corner is none: labels leave out what is short, so that it is further on
+# cosine beyond which a change of orientation is a branch point and not a way back, a step has a direction,
+# and what was taken for a corner is none: labels leave out what is short, so that it is further on
 STRAIGHT = 0.999
 ASIDE = 2.0  # times as long as its turn alone makes it, a short step may be
 BESIDE = (2.0 * (1.0 - STRAIGHT)) ** 0.5  # of its length, by which a step that turns less misses the curve
@@ -117,19 +117,26 @@ class Soft:
         same = front.there.orientation == front.here.orientation
         near = front.missed * front.step < MOST * ERROR
         if front.step <= SHARP:
-            return near and follower.good() and self.went_on() and (same or self.straight())
-        near = near and front.missed < ASTRAY
+            on = (near or self.turned()) and self.went_on() and (same or self.straight())
+            return on and follower.good()
         return (
             not self.turned_twice()
             and not self.strayed()
-            and (follower.good() or (same and near and front.cosine > GENTLY))
+            and (follower.good() or (same and near and front.missed < ASTRAY and front.cosine > GENTLY))
         )
 
     def went_on(self) -> bool:
-        """Whether a short step, which may turn by any angle, led no further aside than its turn explains:
-        else it led to another branch. A chord turns less than the curve."""
-        way = (np.asarray(self.front.there.z) - np.asarray(self.front.here.z)) / self.front.newton.scale
-        return bool(np.linalg.norm(way) * self.front.cosine < ASIDE * self.front.step)
+        """Whether a short step led no further aside than its turn explains, and so not to another branch."""
+        return bool(np.linalg.norm(self.way()) * self.front.cosine < ASIDE * self.front.step)
+
+    def turned(self) -> bool:
+        """Whether it went as the curve does there: it turned at a corner ahead, which is not a fold."""
+        way, here, there = self.way(), self.front.here, np.asarray(self.front.there.tangent)
+        return bool(here.tangent[-1] * there[-1] > 0.0 and way @ there > STRAIGHT * np.linalg.norm(way))
+
+    def way(self) -> FloatArray:
+        """Of a step, from here to there, in the curve's own size."""
+        return np.array((np.array(self.front.there.z) - self.front.here.z) / self.front.newton.scale)
 
     def straight(self) -> bool:
         """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
