@@ -2,7 +2,9 @@
 
 import csv
 import json
+import re
 from pathlib import Path
+from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
@@ -196,3 +198,35 @@ def test_all_mistakes_of_the_table_are_named_at_once(fcm, scene, table, said):
     scene.write_text(f"{scene.read_text()}[optimum]\n{table}\n")
     done = fcm("respond", scene)
     assert done.code == 2 and all(text in done.err for text in said), done.err
+
+
+TWO = OPTIMUM.replace('"]', '", "contact.shroud.mu"]').replace("]]", "], [0.2, 0.6]]")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "where", "stops_at"),
+    [(OPTIMUM, "lowest", "whole"), (TWO, "descent", "downhill")],
+    ids=["one number", "two"],
+)
+def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypatch, wanted, where, stops_at):
+    """All that had been traced was lost. What is kept is the peak of the ordinary response there."""
+    text = scene.read_text()
+    scene.write_text(text + wanted)
+    monkeypatch.setattr(f"fcm.track.{where}.{stops_at}", Mock(side_effect=KeyboardInterrupt))
+    done = fcm("respond", scene, "--harmonics", "1", "-o", "best.nc", "--sensitivity")
+    assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
+    assert "--resume" not in done.err  # nothing is kept from which the search could go on
+    with netCDF4.Dataset("best.nc") as data:
+        numbers, peak = np.array(data["optimum_number"][0]), float(data["optimum_peak"][0])
+        assert data["optimum_kind"][0] == "unfinished" and np.ma.is_masked(data["optimum_error"][0])
+    for name, value in zip(("n_0", "mu"), numbers, strict=False):
+        text = re.sub(rf"^{name} *= .*$", f"{name} = {float(value)!r}", text, flags=re.MULTILINE)
+    scene.write_text(text)
+    (there,) = json.loads(fcm("respond", scene, "--harmonics", "1", "--json").out)["curves"]
+    assert peak == pytest.approx(there["peak"]["u"]["amplitude"], rel=1e-9)
+
+
+def test_of_a_search_that_found_nothing_before_it_was_interrupted_nothing_is_said(fcm, optimum, monkeypatch):
+    monkeypatch.setattr("fcm.track.lowest.special_points", Mock(side_effect=KeyboardInterrupt))
+    done = fcm("respond", optimum, "--harmonics", "1", "-o", "best.nc")
+    assert (done.code, done.out) == (3, "") and not Path("best.nc").exists()

@@ -41,7 +41,7 @@ class Outputs:
         from fcm.run.checkpoint import unfinished
 
         with Checkpoint(unfinished(anchor), resume) as self.checkpoint:
-            if resume and self.checkpoint.empty:
+            if resume and not self.checkpoint.resumable:
                 self.messages.info(f"{plain(anchor)}: nothing of an unfinished run is kept: begun afresh")
             remove_stale(anchor.resolve())
             try:
@@ -96,7 +96,7 @@ class Outputs:
         self.messages.info(f"wrote {plain(path)}")
 
     def _say_kept(self, what: str) -> None:
-        if self.checkpoint is not None and not self.checkpoint.empty:
+        if self.checkpoint is not None and self.checkpoint.resumable:
             self.messages.warning(f"{what} in {plain(self.checkpoint.path)}: continue with --resume")
 
 

@@ -41,7 +41,7 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str]) -> Non
     if result["curves"]:
         messages.info(cost_and_error(result))
     elif "tracked" in result:
-        messages.info(f"{len(result['tracked']['curves'])} tracked curves in {result['seconds']:.2f} s")
+        messages.info(track.cost(result))
     if many := maybe_not_unique(result):
         messages.info(many)
     if nothing := nothing_stable(result):

@@ -139,7 +139,7 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     kind = {
         "smooth": "", "kink": ", where peaks are equal", "corner": ", at a corner of the response",
         "end": ", where a higher peak ends", "bound": ", at a bound: beyond it there may be less",
-        "trials": "",
+        "trials": "", "unfinished": ", the least so far: the search was interrupted",
     }[one["kind"]]  # fmt: skip
     if one["between"]:
         ends = "{:.6g} and {:.6g}".format(*one["between"])
@@ -224,6 +224,14 @@ def _errors(tracked: Mapping[str, Any], unit: str) -> str:
     of = "amplitudes" if tracked["what"] == "peaks" else "frequencies"
     title = f"relative error of the {of} by the harmonics left out, estimated:"
     return f"{title}\n{aligned(rows, left=1)}" if len(rows) > 1 else ""
+
+
+def cost(result: Mapping[str, Any]) -> str:
+    """What a run took that has traced no curve of the response."""
+    count, seconds = len(result["tracked"]["curves"]), f"{result['seconds']:.2f} s"
+    if result["tracked"]["what"] == "optimum":
+        return f"the optimum was sought for {seconds}"
+    return f"{count} tracked curve{'' if count == 1 else 's'} in {seconds}"
 
 
 def incomplete(result: Mapping[str, Any]) -> str:

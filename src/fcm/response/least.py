@@ -18,7 +18,7 @@ from fcm.run.progress import part
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray, Scene
 from fcm.track.descent import Valley, descend
-from fcm.track.envelope import Least, Target
+from fcm.track.envelope import UNFINISHED, Least, Target
 from fcm.track.lowest import Lowest, Search
 from fcm.track.stability import stability_along
 from fcm.track.trials import by_trials
@@ -49,34 +49,43 @@ class Task:
         self.bounds = np.array(scene.optimum.bounds)
         dofs = scene.modal.dofs
         self.targets = [Target(dofs.index(aim.dof), aim.ends) for aim in scene.optimum.minimise]
+        self.seeking: Search | Valley | None = None  # what is at work,
+        self.fewer: Optimal | None = None  # and what was found before, with fewer harmonics
 
     def put(self, values: FloatArray) -> Scene:
         """The scene with values of the numbers."""
         return with_values(self.scene, self.numbers, values)
+
+    def so_far(self) -> Optimal | None:
+        """Of a search that is interrupted: the least of what was traced; None where nothing was."""
+        found = None if self.seeking is None else self.seeking.so_far()
+        if self.seeking is None or found is None:
+            return None if self.fewer is None else replace(self.fewer, kind=UNFINISHED)
+        return replace(_optimal(self, *found, self.seeking.system.harmonics), fewer=self.fewer)
 
 
 def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | None) -> Found:
     """With given harmonics, or with those that the accuracy takes at the optimum itself."""
     chosen, seconds = harmonics or (1,), AGAIN
     known: Lowest | None = None
-    before: Optimal | None = None
+    task.fewer = None
     for i in range(ROUNDS):
         shown = part(progress, i / ROUNDS, (i + 1) / ROUNDS)
         if len(task.numbers) == 1:
-            search = _search(task, chosen)
+            task.seeking = search = _search(task, chosen)
             known = search.run(known, _sharing(shown))
             if not known.checked:
                 known = replace(known, best=by_trials(search))
             found = _on_line(task, known, chosen)
         else:
-            found = _downhill(task, chosen, before)
+            found = _downhill(task, chosen)
         if harmonics:
             break
         more, taken = _enough(task, found[0], chosen, seconds)
         if more == chosen:
             break
-        chosen, seconds, before = more, seconds - taken, found[0]
-    return replace(found[0], fewer=before), found[1]
+        chosen, seconds, task.fewer = more, seconds - taken, found[0]
+    return replace(found[0], fewer=task.fewer), found[1]
 
 
 def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:
@@ -137,10 +146,10 @@ def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 
-def _downhill(task: Task, harmonics: tuple[int, ...], before: Optimal | None) -> Found:
+def _downhill(task: Task, harmonics: tuple[int, ...]) -> Found:
     """Of several numbers; from what was found with fewer harmonics."""
-    valley = Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets)
-    found = descend(valley, None if before is None else np.array(list(before.values.values())))
+    task.seeking = valley = Valley(System(task.scene, harmonics), task.numbers, task.bounds, task.targets)
+    found = descend(valley, None if task.fewer is None else np.array(list(task.fewer.values.values())))
     if found is None:
         raise ResponseError(_nothing(task))
     return _optimal(task, found[0], found[1], harmonics), []

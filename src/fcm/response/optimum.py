@@ -14,13 +14,14 @@ from fcm.response.least import Found, Task, optimum, with_the_same, with_values
 from fcm.response.sweep import trace
 from fcm.response.wanted import wanted_of
 from fcm.results.peak import stability_at_top
-from fcm.results.result import Curve, Response
+from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
 from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
 from fcm.scene.model import Optimum, Scene
+from fcm.track.envelope import UNFINISHED
 from fcm.track.lowest import HIGHER
 
 SEEKING = 0.8  # share of the bar that is over when the optimum is found
@@ -46,6 +47,8 @@ def optimise(
     ------
     ResponseError
         If nothing has a peak in the range.
+    KeyboardInterrupt
+        If nothing is found then; else what was least so far is returned, without a response.
     """
     assert scene.optimum is not None
     check_no_ring(scene, "optima")
@@ -53,7 +56,10 @@ def optimise(
     numbers, free = _freed(scene, scene.optimum.vary)
     wanted = wanted_of(scene, harmonics, accuracy)
     tasks = [Task(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
-    tracking = _tracking(scene.optimum, _optima(tasks, wanted.harmonics, progress))
+    found, stopped = _optima(tasks, wanted.harmonics, progress)
+    tracking = _tracking(scene.optimum, found)
+    if stopped:
+        return _unfinished(free, tracking, len(tasks), begin)
     there = _at(free, numbers, tracking.optima)
     shown = None if progress is None else part(progress, SEEKING, 1.0)
     response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
@@ -74,13 +80,42 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
     return numbers, scene
 
 
-def _optima(tasks: list[Task], harmonics: tuple[int, ...] | None, progress: Progress | None) -> list[Found]:
-    """That of each task; all with the same harmonics."""
-    found = []
-    for i, task in enumerate(tasks):
-        shown = part(progress, SEEKING * i / len(tasks), SEEKING * (i + 1) / len(tasks))
-        found.append(optimum(task, harmonics, shown))
-    return found if harmonics else with_the_same(tasks, found)
+def _optima(
+    tasks: list[Task], harmonics: tuple[int, ...] | None, progress: Progress | None
+) -> tuple[list[Found], bool]:
+    """That of each task, all with the same harmonics; or those so far, and that it was interrupted.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If nothing is found then.
+    """
+    found: list[Found] = []
+    try:
+        for i, task in enumerate(tasks):
+            shown = part(progress, SEEKING * i / len(tasks), SEEKING * (i + 1) / len(tasks))
+            found.append(optimum(task, harmonics, shown))
+        return found if harmonics else with_the_same(tasks, found), False
+    except KeyboardInterrupt:
+        last = tasks[len(found)].so_far() if len(found) < len(tasks) else None
+        found += [] if last is None else [(last, [])]
+        if not found:
+            raise
+        return found, True
+
+
+def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
+    """What an interruption leaves of the search for optima: those so far, and no response with them."""
+    tracking.optima = [replace(one, stable=(np.nan,) * len(one.active)) for one in tracking.optima]
+    tracking.interrupted = True
+    finished = sum(one.kind != UNFINISHED for one in tracking.optima)
+    said = "" if count == 1 else f" (of {count}, {finished} are)"
+    tracking.problems.append(
+        f"{INTERRUPTED} before the optimum was found{said} and the response with it traced"
+    )
+    response = Response.without_curves(free)
+    response.tracking, response.seconds = tracking, time.perf_counter() - begin
+    return response
 
 
 def _tracking(aim: Optimum, found: list[Found]) -> Tracking:

@@ -25,7 +25,7 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
     """Give every curve that has peaks their sensitivities; the scene is that of the response."""
     check_no_ring(scene, "sensitivities")
     scenes = tuple(scene.each_curve()) if response.curves else ()
-    if response.tracking is not None and response.tracking.optima:
+    if response.curves and response.tracking is not None and response.tracking.optima:
         scenes = scenes_at(scene, response.tracking.optima)
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
         if progress is not None:

@@ -102,7 +102,7 @@ class Optimal:
     minimised: tuple[str, ...]
     value: float
     active: tuple[tuple[str, float], ...]  # degrees of freedom with the greatest peaks, and their frequencies
-    kind: str  # "smooth", "kink", "corner", "end", "bound", "trials"
+    kind: str  # "smooth", "kink", "corner", "end", "bound", "trials", "unfinished"
     harmonics: tuple[int, ...]
     error: float = np.nan  # of the value, estimated, relative
     between: tuple[float, float] | None = None  # the numbers next to it, if it was found by trials

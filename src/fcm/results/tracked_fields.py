@@ -108,7 +108,7 @@ def _optima(response: Response, tracking: Tracking) -> dict[str, Field]:
     stable = _padded([np.array(one.stable) for one in optima])
     dies = "1 where the motion at that peak, or those, is stable, 0 where not"
     add("stable", ("equal",), stable, dies, units="1")
-    add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials")
+    add("kind", (), np.array([one.kind for one in optima], dtype=str), f"{KINDS}, bound, trials, unfinished")
     return out
 
 

@@ -145,6 +145,12 @@ class Checkpoint:
         """Whether it holds nothing that is whole."""
         return next(whole(self._file, os.fstat(self._file).st_size, LENGTH), None) is None
 
+    @property
+    def resumable(self) -> bool:
+        """Whether it holds work, and not only which outputs are written."""
+        records = whole(self._file, os.fstat(self._file).st_size, LENGTH)
+        return any(record.fingerprint != _WRITTEN for record in records)
+
     def _known(self) -> bool:
         return os.pread(self._file, len(TITLE), 0) == TITLE
 
@@ -155,7 +161,7 @@ class Checkpoint:
 
     def _empty(self, reason: str) -> None:
         """Begin a new file; what the old one has goes aside, if it is anything."""
-        if self._known() and self.empty:
+        if self._known() and not self.resumable:
             os.ftruncate(self._file, 0)
             return
         aside = _free(self.path)

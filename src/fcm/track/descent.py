@@ -25,7 +25,7 @@ from scipy.optimize import minimize
 from fcm.harmonic.system import System
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray
-from fcm.track.envelope import EQUAL, Height, Least, Target
+from fcm.track.envelope import EQUAL, UNFINISHED, Height, Least, Target
 from fcm.track.follow import follow, land
 from fcm.track.lowest import Search
 from fcm.track.spot import Ending, Spot, Way
@@ -68,6 +68,9 @@ class Valley:
     ) -> None:
         self.system, self.numbers, self.targets = system, tuple(numbers), targets
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+        self.lowest: tuple[FloatArray, float, Member] | None = (
+            None  # of the responses that were traced until now
+        )
 
     def line(self, q: FloatArray, direction: FloatArray) -> Line:
         """From q along a direction, both scaled."""
@@ -89,6 +92,22 @@ class Valley:
                 if spot is not None:
                     found.append((condition, target.dof, spot))
         return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
+
+    def traced(self, q: FloatArray) -> tuple[float, list[Member]]:
+        """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
+        heights = [(self.height(member, q)[0], member) for member in self.peaks(q)]
+        value, top = max(heights, key=lambda one: one[0], default=(np.inf, None))
+        if top is not None and (self.lowest is None or value < self.lowest[1]):
+            self.lowest = q, value, top
+        return value, [member for _, member in heights]
+
+    def so_far(self) -> tuple[FloatArray, Least] | None:
+        """The least of them, and its numbers; None where none has a peak."""
+        if self.lowest is None:
+            return None
+        q, value, (_, dof, z) = self.lowest
+        top = Height(value, 0.0, np.append(z, np.nan), dof)
+        return self.low + q * self.width, Least(np.nan, value, (top,), UNFINISHED)
 
     def moved(self, member: Member, q: FloatArray, to: FloatArray) -> Member | None:
         """A member at other numbers; None where it is no more.
@@ -161,14 +180,8 @@ def _starts(valley: Valley, near: FloatArray | None) -> list[FloatArray]:
     if near is not None:
         return [np.clip((near - valley.low) / valley.width, 0.0, 1.0)]
     grid = map(np.array, product(LEVELS, repeat=len(valley.numbers)))
-    tried = [(_traced(valley, q)[0], tuple(q)) for q in grid]
+    tried = [(valley.traced(q)[0], tuple(q)) for q in grid]
     return [np.array(q) for value, q in sorted(tried)[:STARTS] if value < np.inf]
-
-
-def _traced(valley: Valley, q: FloatArray) -> tuple[float, list[Member]]:
-    """The greatest of the response at q, infinite where nothing has a peak; and all that counts there."""
-    members = valley.peaks(q)
-    return max((valley.height(one, q)[0] for one in members), default=np.inf), members
 
 
 def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
@@ -185,11 +198,11 @@ def _along(valley: Valley, q: FloatArray, k: int) -> OnLine:
 
 def downhill(valley: Valley, q: FloatArray) -> tuple[FloatArray, float, list[Member]]:
     """Down from q until there is nothing lower at the end of the way, nor nearer and nearer on it."""
-    value, members = _traced(valley, q)
+    value, members = valley.traced(q)
     for _ in range(ROUNDS):
         end = _minimax(valley, q, members, value)
         for _ in range(HALVES):
-            there = _traced(valley, end)
+            there = valley.traced(end)
             lower = there[0] < value * (1.0 - COUNTS)
             if lower or there[0] <= value * (1.0 + COUNTS):
                 break
@@ -215,10 +228,8 @@ def _minimax(valley: Valley, q: FloatArray, members: list[Member], unit: float) 
                 memory[to.tobytes()] = np.full(len(members), TOO_HIGH), np.zeros((len(members), q.size))
                 return memory[to.tobytes()]
             rows = [(0.0, np.zeros(q.size)) if one is None else valley.height(one, to) for one in followed]
-            memory[to.tobytes()] = (
-                np.array([r[0] for r in rows]) / unit,
-                np.array([r[1] for r in rows]) / unit,
-            )
+            values, slopes = zip(*rows, strict=True)
+            memory[to.tobytes()] = np.array(values) / unit, np.array(slopes) / unit
             if None not in followed:
                 here = (to, followed)
         return memory[to.tobytes()]

@@ -25,6 +25,7 @@ FINE = 1e-9  # of the span: the number is known to this
 ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
 GAP = 1e-3  # of the span, in which no piece is known
 EQUAL = 1e-7  # relative: peaks that are one at a crossing
+UNFINISHED = "unfinished"  # what the least so far is of, where it was still sought
 UNKNOWN = 10.0  # of the highest: what counts where nothing is known, as differences of infinities are none
 
 
@@ -51,7 +52,7 @@ class Least:
     s: float
     value: float
     active: tuple[Height, ...]
-    kind: str  # "smooth", "kink" of two equal peaks, "corner", "end" of a higher peak, "bound", or "trials"
+    kind: str  # "smooth", "kink" of equal peaks, "corner", "end" of a higher, "bound", "trials", "unfinished"
     between: tuple[float, float] | None = None  # values of s next to it, if it was found by trials
 
 

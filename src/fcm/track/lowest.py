@@ -20,7 +20,7 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track, whole
-from fcm.track.envelope import FINE, Height, Least, Piece, Target, gaps, least, pieces_of
+from fcm.track.envelope import FINE, UNFINISHED, Height, Least, Piece, Target, gaps, least, pieces_of
 from fcm.track.follow import land
 from fcm.track.known import passed
 from fcm.track.spot import Spot, Way
@@ -121,6 +121,14 @@ class Search:
     def pieces(self) -> list[Piece]:
         """The parts of the curves that count."""
         return [piece for target in self.targets for piece in pieces_of(self.way, self.curves, target)]
+
+    def so_far(self) -> tuple[FloatArray, Least] | None:
+        """The least of the responses traced until now, and its number; None where none has a peak."""
+        peaks = {s: top for s, top in self.seen.items() if top.value > 0.0}
+        if not peaks:
+            return None
+        s = min(peaks, key=lambda value: peaks[value].value)
+        return self.line.values(s), Least(s, peaks[s].value, (peaks[s],), UNFINISHED)
 
     def visit(self, value: float) -> float:
         """Trace the response at a value; follow what is high and not known; the greatest of it."""
