@@ -6,6 +6,8 @@ import netCDF4
 import numpy as np
 import pytest
 
+from fcm.harmonic.mode import nonlinear_mode
+
 MODE = ("respond", "yang1998-n5", "--mode", 1, "--level", "0.1:100", "--harmonics", 1)
 
 
@@ -90,3 +92,27 @@ def test_another_file_is_no_mode(fcm, tmp_path):
     netCDF4.Dataset(tmp_path / "a.nc", "w").close()
     done = fcm("plot", "mode", "a.nc")
     assert done.code == 2 and "no variable frequency, modal_amplitude" in done.err
+
+
+def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypatch):
+    """All of them were lost. Of one that had been followed with fewer harmonics, that is kept."""
+    scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4, 0.5]\n')
+    mode = ("respond", scene, "--mode", 1, "--level", "0.1:100", "--json")
+    every = json.loads(fcm(*mode, "--harmonics", 1).out)["curves"]
+    begun = []
+
+    def interrupted(*args):
+        begun.append(args)
+        if len(begun) == 3:
+            raise KeyboardInterrupt
+        return nonlinear_mode(*args)
+
+    monkeypatch.setattr("fcm.response.mode.nonlinear_mode", interrupted)
+    done = fcm(*mode, "--harmonics", 1)
+    found = json.loads(done.out)["curves"]
+    assert done.code == 3 and [one["mode"] for one in found[:2]] == [one["mode"] for one in every[:2]]
+    assert [one["complete"] for one in found] == [True, True, False]
+    begun[:] = [None]  # of the first mode it is the second time, with more harmonics
+    first, *rest = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"]
+    assert first["mode"] == every[0]["mode"] and first["reason"].endswith("followed with 3 harmonics")
+    assert [one["reason"] for one in rest] == ["interrupted before it was traced"] * 2

@@ -31,7 +31,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
     if asked.track is not None:
         return _tracked(messages, scene, asked, run)
     if asked.mode is not None:
-        return _mode(scene, asked)
+        return _mode(messages, scene, asked)
     if scene.optimum is not None:
         options = {**run, **_balanced(asked), "table": _opened(asked.table)}
         return track.optimised(messages, scene, asked.method, options)
@@ -70,14 +70,17 @@ def _tracked(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]
     return track.tracked(messages, scene, asked.track, asked.over, (asked.low, asked.high), options)
 
 
-def _mode(scene: Scene, asked: Asked) -> Response:
+def _mode(messages: Messages, scene: Scene, asked: Asked) -> Response:
     assert asked.mode is not None and asked.level is not None  # --mode needs --level
     chosen = {
         "harmonics": asked.harmonics,
         "accuracy": asked.accuracy,
         "force_levels": asked.force_levels or (1.0,),
+        "progress": messages.progress,
     }
-    return nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
+    response = nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
+    messages.clear()
+    return response
 
 
 def _levels(scene: Scene, asked: Asked) -> Response:

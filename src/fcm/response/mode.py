@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +18,9 @@ from fcm.response.around import check_no_ring
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
-from fcm.results.result import Curve, Response
+from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
+from fcm.run import Progress
+from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Scene
 from fcm.scene.rules import MOST_HARMONICS
 from fcm.units import in_unit
@@ -35,6 +37,7 @@ def trace_modes(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     force_levels: Sequence[float] = (1.0,),
+    progress: Progress | None = None,
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
 
@@ -47,6 +50,8 @@ def trace_modes(
     ------
     ResponseError
         If the span is out of range, or there is no such mode.
+    KeyboardInterrupt
+        If nothing is finished then; else what is finished is returned.
     """
     low, high = span
     if not 0.0 < low < high <= WIDEST * low:
@@ -61,7 +66,7 @@ def trace_modes(
     wanted = wanted_of(scene, harmonics, accuracy)
     levels = tuple(float(level) for level in force_levels)
     try:
-        curves = [_curve(one, number, span, wanted, levels) for one in scene.each_curve()]
+        curves = _curves(scene, lambda one: _curve(one, number, span, wanted, levels), progress)
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     contacts = tuple(contact.name for contact in scene.contacts)
@@ -69,6 +74,27 @@ def trace_modes(
     response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
     response.seconds = time.perf_counter() - begin
     return response
+
+
+def _curves(scene: Scene, followed: Callable[[Scene], Curve], progress: Progress | None) -> list[Curve]:
+    """That of each curve of a scene; of those that an interruption leaves out, that it did."""
+    from fcm.response.groups import lost_curve
+
+    curves: list[Curve] = []
+    every = scene.each_curve()
+    for i, one in enumerate(every):
+        if progress is not None:
+            progress(i / len(every), f"{i} of {len(every)} curves")
+        if curves and curves[-1].reason.startswith(INTERRUPTED):
+            curves.append(lost_curve(one, NOT_BEGUN))
+            continue
+        try:
+            curves.append(followed(one))
+        except KeyboardInterrupt:
+            if not curves:
+                raise
+            curves.append(lost_curve(one, f"{INTERRUPTED} at the start"))
+    return curves
 
 
 def check_free(scene: Scene) -> None:
@@ -84,19 +110,23 @@ def _curve(
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,))
     mode = nonlinear_mode(system, number, span, scene.max_step)
-    error = truncation(mode)
+    error, stopped = truncation(mode), ""
     while wanted.harmonics is None and not _enough(mode, error, wanted.accuracy):
-        highest = _more(mode)
-        more = nonlinear_mode(
-            system.with_harmonics(tuple(range(1, highest + 1))), number, span, scene.max_step
-        )
+        enlarged = system.with_harmonics(tuple(range(1, _more(mode) + 1)))
+        try:
+            more = nonlinear_mode(enlarged, number, span, scene.max_step)
+        except KeyboardInterrupt:
+            stopped = f"{INTERRUPTED} before it was followed with {len(enlarged.harmonics)} harmonics"
+            break
         if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
             break
         mode, error = more, truncation(more)
     curve = _recorded(mode, number, error, levels)
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
-        count = len(mode.system.harmonics)
-        curve.short_of = f"with {count} harmonics an estimated error of {_worst(error):.1e} remains"
+        count = counted(len(mode.system.harmonics), "harmonic")
+        curve.short_of = f"with {count} an estimated error of {_worst(error):.1e} remains"
+    if stopped:
+        curve.complete, curve.reason = False, stopped
     curve.seconds = time.perf_counter() - begin
     return curve
 
