@@ -44,9 +44,10 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found[0]["parameters"].items())
     which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     shows = f"; {how} shows it" if (how := _how(summary)) else ""
+    other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     return (
         f"no stable motion was found between {ways} {unit}{more}{which}: what is approached there repeats "
-        f"after several periods or never, or is on a branch that was not found{shows}"
+        f"after several periods or never, or is on a branch that was not found{other}{shows}"
     )
 
 
