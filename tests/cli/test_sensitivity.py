@@ -50,7 +50,13 @@ def test_a_file_without_them(fcm, scene):
 
 
 @pytest.mark.parametrize(
-    "args", [["--method", "exact"], ["--level", "0:1", "--at", 1.0], ["--mode", 1, "--level", "1:2"]]
+    "args",
+    [
+        ["--method", "exact"],
+        ["--level", "0:1", "--at", 1.0],
+        ["--mode", 1, "--level", "1:2"],
+        ["--peaks-only"],  # it was taken, and nothing came of it
+    ],
 )
 def test_only_of_peaks_of_a_balance(fcm, scene, args):
     done = fcm("respond", scene, "--sensitivity", *args)

@@ -77,7 +77,7 @@ def _check_options(asked: Asked) -> None:
     balance.check_options(asked.harmonics, asked.accuracy, method, asked.table)
     if asked.table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
-    sensitivity.check_options(asked.sensitivity, method, level, mode)
+    sensitivity.check_options(asked.sensitivity, method, level, mode, asked.peaks_only)
     files = {"-o": asked.output, "--csv": asked.csv, "--history-csv": asked.history_csv}
     if asked.resume and not any(files.values()):
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from fcm.scene.model import Scene
 
 
-def check_options(wanted: bool, method: str, level: object, mode: int | None) -> None:
+def check_options(wanted: bool, method: str, level: object, mode: int | None, peaks_only: bool) -> None:
     """A usage error if --sensitivity is given with what has no peaks of a balance."""
     if wanted and method == "exact":
         raise click.UsageError(
@@ -21,6 +21,10 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None) ->
     if wanted and (level is not None or mode is not None):
         option = "--level" if mode is None else "--mode"
         raise click.UsageError(f"--sensitivity is of no use with {option}: such a curve has no peaks.")
+    if wanted and peaks_only:
+        raise click.UsageError(
+            "--sensitivity is of no use with --peaks-only: it is taken at points of the curves."
+        )
 
 
 def added(messages: Messages, response: Response, scene: Scene) -> None:
