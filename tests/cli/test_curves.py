@@ -10,7 +10,7 @@ import pytest
 
 from fcm.cli.balance import harmonics
 from fcm.cli.columns import ranges
-from fcm.cli.curves import as_table
+from fcm.cli.curves import as_table, cost_and_error
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.plot.read import read_response
 from fcm.plot.response import draw_response
@@ -159,3 +159,14 @@ def test_harmonics_can_be_given_as_tables_have_them():
     for text in ("1-", "-3", "3-1", "1-999999999", "1--3", "1-3-5", "2-4", "1-3,3"):
         with pytest.raises(click.BadParameter, match="harmonics"):
             harmonics(None, None, text)
+
+
+def test_an_error_of_which_nothing_is_told_is_not_said_to_be_none():
+    """It was 0, that of a motion at rest, where levels of the forces begin; of no peak was it told."""
+    peak = {"u": {"amplitude": 1.0, "error": None}}
+    curve = {"points": 3, "harmonics": [1], "truncation_error": 0.0, "peak": peak}
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "level of the forces"})
+    assert said.endswith("largest relative error: not known")
+    peak["u"]["error"] = 0.0
+    said = cost_and_error({"curves": [curve], "seconds": 1.0, "method": "level of the forces"})
+    assert said.endswith("0.0e+00 by leaving out higher harmonics")

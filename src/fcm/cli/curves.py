@@ -168,7 +168,8 @@ def cost_and_error(summary: Mapping[str, Any]) -> str:
             one["error"] for curve in curves for one in curve["peak"].values() if one and one.get("error")
         ]
         harmonic = max([harmonic, *told])  # also where what lies around a peak is not told
-        errors.append(f"{harmonic:.1e} by leaving out higher harmonics{but}")
+        if harmonic > 0.0 or not untold:  # the 0 of a motion at rest tells nothing of peaks
+            errors.append(f"{harmonic:.1e} by leaving out higher harmonics{but}")
     return (
         f"{count}, {points} points in {summary['seconds']:.2f} s\n"
         f"largest relative error: {'; '.join(errors) or 'not known'}"
