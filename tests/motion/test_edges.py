@@ -138,7 +138,7 @@ def test_numbers_of_cycles_that_are_none(cycles):
 
 
 def test_states_of_another_scene():
-    with pytest.raises(SimulationError, match="2 modes and 1 contacts"):
+    with pytest.raises(SimulationError, match=r"2 modes and 1 contact$"):
         simulate(yang(), 1.3, 1, State.rest(two_contacts()))
     with pytest.raises(SimulationError, match="finite"):
         simulate(yang(), 1.3, 1, State(np.zeros(2), np.full(2, np.nan), np.zeros(1)))

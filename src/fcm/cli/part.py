@@ -42,7 +42,7 @@ def reached(messages: Messages, scene: str, resolution: Resolution, progress: Pr
         raise TableError(f"{scene}: no contact slips, or opens in a part of its cycle, so it needs no table")
     if stopped := sum(not curve.complete for curve in response.curves):
         messages.warning(
-            f"{scene}: {stopped} curves could not be traced to their ends; the part may lack some"
+            f"{scene}: curves that could not be traced to their ends: {stopped}; the part may lack some"
         )
     return part
 

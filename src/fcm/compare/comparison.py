@@ -13,6 +13,7 @@ from fcm.compare.startup import Startup, startup
 from fcm.reduction.leave_out import TOLERANCE
 from fcm.response.around import refuse_ring
 from fcm.response.sweep import trace
+from fcm.scene.errors import counted
 from fcm.scene.model import Scene
 from fcm.table import open_table
 from fcm.table.seam import seam
@@ -74,7 +75,7 @@ class Comparison:
                 count = f"{len(harmonic.branches())} separate parts, the exact curve {len(exact.branches())}"
                 found.append(f"{name}: harmonic balance has {count}; what one of them lacks is in the errors")
             if harmonic.complete and exact.complete and len(harmonic.folds) != len(exact.folds):
-                count = f"{len(harmonic.folds)} folds, the exact curve {len(exact.folds)}"
+                count = f"{counted(len(harmonic.folds), 'fold')}, the exact curve {len(exact.folds)}"
                 found.append(f"{name}: harmonic balance has {count}; they are not compared")
         return found + [text for one in self.runs if (text := _incomplete(one, self.seams))]
 

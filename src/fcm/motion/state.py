@@ -12,6 +12,7 @@ from fcm.motion.combination import Codes
 from fcm.motion.errors import SimulationError
 from fcm.motion.march import March
 from fcm.motion.system import System
+from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Scene
 
 
@@ -75,7 +76,8 @@ def entry(system: System, state: State) -> tuple[FloatArray, Codes]:
         x[system.q], x[system.p], x[system.f] = state.q, state.velocity, state.friction
     except ValueError:
         raise SimulationError(
-            f"a state of this scene has {system.modes} modes and {len(system.contacts)} contacts"
+            f"a state of this scene has {counted(system.modes, 'mode')} and "
+            f"{counted(len(system.contacts), 'contact')}"
         ) from None
     march = entered(system, x, state.angle)
     return np.array(march.y)[0], np.array(march.states)[0]

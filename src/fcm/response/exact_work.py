@@ -26,6 +26,7 @@ from fcm.response.unreached import unreached
 from fcm.response.visit import Visitor
 from fcm.results.result import INTERRUPTED, Curve
 from fcm.run import Interrupted, Report
+from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Held, Scene
 
 FEWEST = 2  # contacts of a scene of which some may be foreseen to keep their state
@@ -180,7 +181,7 @@ def _finished(made: Callable[[str, Search], Curve], reason: str, search: Search)
 
 def _without(problem: OrbitProblem, lost: int) -> str:
     """Why the curves of motions that repeat after so many periods are not complete."""
-    return f"of {lost} flips no motion was found that repeats after {problem.repeats} periods"
+    return f"of {counted(lost, 'flip')} no motion was found that repeats after {problem.repeats} periods"
 
 
 def _watched(problem: OrbitProblem, z: FloatArray) -> None:

@@ -20,6 +20,7 @@ from fcm.run import Progress
 from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
+from fcm.scene.errors import counted
 from fcm.scene.model import Optimum, Scene
 from fcm.track.envelope import UNFINISHED
 from fcm.track.lowest import HIGHER
@@ -178,7 +179,7 @@ def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) 
 
 
 def _with(harmonics: tuple[int, ...]) -> str:
-    return f"with {len(harmonics)} harmonic{'' if len(harmonics) == 1 else 's'}"
+    return f"with {counted(len(harmonics), 'harmonic')}"
 
 
 def _higher(tracking: Tracking, response: Response) -> list[str]:

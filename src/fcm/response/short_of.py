@@ -10,6 +10,7 @@ from fcm.harmonic.choice import Accurate
 from fcm.harmonic.cost import PATIENCE
 from fcm.harmonic.foreseen import NOTHING
 from fcm.harmonic.lost import Lost
+from fcm.scene.errors import counted
 from fcm.units import in_unit
 
 MOST_NAMES = 3  # of degrees of freedom in one sentence
@@ -70,5 +71,4 @@ def _of_stability(found: Accurate, off: Sequence[Lost]) -> str:
 
 
 def _with_harmonics(found: Accurate) -> str:
-    count = len(found.system.harmonics)
-    return f"with {count} harmonic{'' if count == 1 else 's'}"
+    return f"with {counted(len(found.system.harmonics), 'harmonic')}"

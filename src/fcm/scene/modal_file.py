@@ -9,7 +9,7 @@ import numpy as np
 
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import names_in_npz, read_npz
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.uff import read_uff
 
@@ -117,7 +117,7 @@ def _lengths(found: dict[str, Any]) -> list[str]:
     per_mode = {key: np.size(found[key]) for key in ("mass", "damping") if np.ndim(found.get(key, 0.0))}
     if np.ndim(found.get("shapes", 0.0)) == 2:
         per_mode["shapes"] = len(found["shapes"])
-    said = [f"its {key} is of {count} modes" for key, count in per_mode.items() if count != modes]
+    said = [f"its {key} is of {counted(count, 'mode')}" for key, count in per_mode.items() if count != modes]
     return [f"{one}, its frequency of {modes}" for one in said]
 
 

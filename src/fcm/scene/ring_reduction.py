@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.scene.errors import counted
 from fcm.scene.reduction import at_many, damping_of, how_far_off, of_rounding, split
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
@@ -114,8 +115,9 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     """What is kept of the structure, how far it is off, and what is amiss."""
     all_found = [one.found for one in diameters]
     kept = sorted({one.kept for one in all_found})
-    count = str(kept[0]) if len(kept) == 1 else f"{kept[0]} to {kept[-1]}"
-    text = f"structure: {count} modes of each of the nodal diameters 0 to {len(diameters) - 1} are kept"
+    count = counted(kept[0], "mode") if len(kept) == 1 else f"{kept[0]} to {kept[-1]} modes"
+    verb = "is" if kept == [1] else "are"
+    text = f"structure: {count} of each of the nodal diameters 0 to {len(diameters) - 1} {verb} kept"
     bound = max(one.bound for one in all_found)
     if not any(np.isfinite(one.beyond) for one in all_found):
         text += ", all that there are"
