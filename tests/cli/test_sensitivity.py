@@ -6,6 +6,8 @@ import netCDF4
 import numpy as np
 import pytest
 
+from fcm.harmonic.sensitivity import sensitivities
+
 
 @pytest.fixture
 def result(fcm, scene, tmp_path):
@@ -70,3 +72,31 @@ def test_a_hidden_degree_of_freedom_has_none(fcm, scene):
     curve = json.loads(done.out)["curves"][0]
     assert done.code == 0 and list(curve["sensitivity"]) == list(curve["peak"])
     assert np.isfinite([n["amplitude"] for n in curve["sensitivity"]["u"]["numbers"].values()]).all()
+
+
+def test_an_interruption_keeps_the_curves(fcm, scene, monkeypatch):
+    """All of them were lost, unless they went to a file from which a run could go on."""
+    scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4, 0.5]\n')
+    taken = iter([sensitivities])
+
+    def interrupted(*args):
+        try:
+            return next(taken)(*args)
+        except StopIteration:
+            raise KeyboardInterrupt from None
+
+    monkeypatch.setattr("fcm.response.sensitivity.sensitivities", interrupted)
+    done = fcm("respond", scene, "--sensitivity", "--harmonics", 1, "--jobs", 1, "--json", "-o", "a.nc")
+    found = json.loads(done.out)["curves"]
+    with netCDF4.Dataset("a.nc") as data:
+        assert np.isfinite(data["sensitivity"][:].filled(np.nan)).any(axis=(1, 2)).tolist() == [
+            True,
+            False,
+            False,
+        ]
+    assert done.code == 3 and all(curve["points"] > 50 for curve in found)
+    assert ["sensitivity" in curve for curve in found] == [True, False, False]
+    assert [curve.get("reason") for curve in found] == [
+        None,
+        *["interrupted before its sensitivities were known"] * 2,
+    ]

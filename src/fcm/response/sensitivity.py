@@ -10,10 +10,11 @@ from fcm.harmonic.sensitivity import Sensitivities, sensitivities
 from fcm.reduction.put_back import unknowns
 from fcm.response.around import check_no_ring
 from fcm.response.optimum import scenes_at
-from fcm.results.result import Curve, Response
+from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.run import Progress
 from fcm.scene.model import FloatArray, Scene
 
+WITHOUT = f"{INTERRUPTED} before its sensitivities were known"
 REMARKS = {
     Kind.CORNER: "at a corner of the curve: derivatives hold as long as the peak stays on it",
     Kind.EDGE: "at an end of the range: the derivative of the amplitude there",
@@ -22,7 +23,10 @@ REMARKS = {
 
 
 def add_sensitivities(response: Response, scene: Scene, progress: Progress | None = None) -> None:
-    """Give every curve that has peaks their sensitivities; the scene is that of the response."""
+    """Give every curve that has peaks their sensitivities; the scene is that of the response.
+
+    Interrupted, the curves that have none say so.
+    """
     check_no_ring(scene, "sensitivities")
     scenes = tuple(scene.each_curve()) if response.curves else ()
     if response.curves and response.tracking is not None and response.tracking.optima:
@@ -30,8 +34,13 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
     for i, (curve, one) in enumerate(zip(response.curves, scenes, strict=True)):
         if progress is not None:
             progress(i / len(scenes), "sensitivities")
-        if curve.points and curve.harmonics and one.contacts:
-            curve.sensitivity = _of_curve(curve, one)
+        try:
+            if curve.points and curve.harmonics and one.contacts:
+                curve.sensitivity = _of_curve(curve, one)
+        except KeyboardInterrupt:
+            for without in response.curves[i:]:
+                without.complete, without.reason = False, without.reason or WITHOUT
+            return
 
 
 def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:
