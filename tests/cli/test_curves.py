@@ -86,6 +86,7 @@ def test_where_stability_is_not_told_a_sweep_may_jump_and_the_table_says_so():
     untold = [
         {"sweep": "up", "from": 1.2, "to": 1.3, "before": {"u": 0.7}},
         {"sweep": "down", "from": 1.4, "to": 1.1, "before": {"u": 0.8}},
+        {"sweep": "down", "from": 0.9, "to": 0.9 - 1e-9, "before": {"u": 0.8}},  # it was 0.9 to 0.9
     ]
     one = curve({"u": 1.0}, jumps) | {"stability_untold": untold}
     _, *rows, said = as_table({"curves": [one]}, "Hz").partition("\n\n")[2].splitlines()
@@ -94,6 +95,7 @@ def test_where_stability_is_not_told_a_sweep_may_jump_and_the_table_says_so():
         ["1.60000", "1.00000", "0.500000", "up"],
         ["1.50000", "1.00000", "0.500000", "down"],
         ["1.40000", "to", "1.10000?", "0.800000", "?", "down"],
+        ["0.900000?", "0.800000", "?", "down"],
     ]
     assert said == "? between these it is not told whether the motion is stable: it may jump there already"
     alone = as_table({"curves": [curve({"u": 1.0}) | {"stability_untold": untold[:1]}]}, "Hz")

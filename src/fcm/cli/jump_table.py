@@ -42,4 +42,5 @@ def _jump(one: Mapping[str, Any], dofs: list[str]) -> list[str]:
 
 def _untold(one: Mapping[str, Any], dofs: list[str]) -> list[str]:
     moves = [text for dof in dofs for text in (number(one["before"].get(dof)), UNKNOWN)]
-    return [f"{number(one['from'])} to {number(one['to'])}{UNKNOWN}", *moves]
+    ends = dict.fromkeys((number(one["from"]), number(one["to"])))  # one, where six digits tell no more
+    return [" to ".join(ends) + UNKNOWN, *moves]
