@@ -1,6 +1,7 @@
 """``fcm respond --mode`` and ``fcm plot mode``."""
 
 import json
+from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
@@ -114,5 +115,10 @@ def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypat
     assert [one["complete"] for one in found] == [True, True, False]
     begun[:] = [None]  # of the first mode it is the second time, with more harmonics
     first, *rest = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"]
-    assert first["mode"] == every[0]["mode"] and first["reason"].endswith("followed with 3 harmonics")
+    assert first["mode"] == every[0]["mode"] and first["reason"].endswith("known with 3 harmonics")
     assert [one["reason"] for one in rest] == ["interrupted before it was traced"] * 2
+    begun[:] = [None] * 5  # and so, if the error with more is not known
+    told = Mock(side_effect=[np.ones(1), KeyboardInterrupt])
+    monkeypatch.setattr("fcm.response.mode.truncation", told)
+    first = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"][0]
+    assert first["mode"] == every[0]["mode"] and first["harmonics"] == [1]

@@ -115,12 +115,12 @@ def _curve(
         enlarged = system.with_harmonics(tuple(range(1, _more(mode) + 1)))
         try:
             more = nonlinear_mode(enlarged, number, span, scene.max_step)
+            if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
+                break
+            mode, error = more, truncation(more)
         except KeyboardInterrupt:
-            stopped = f"{INTERRUPTED} before it was followed with {len(enlarged.harmonics)} harmonics"
+            stopped = f"{INTERRUPTED} before it was known with {len(enlarged.harmonics)} harmonics"
             break
-        if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
-            break
-        mode, error = more, truncation(more)
     curve = _recorded(mode, number, error, levels)
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
         count = counted(len(mode.system.harmonics), "harmonic")
