@@ -6,7 +6,7 @@ from pathlib import Path
 import netCDF4
 import pytest
 
-from fcm.cli.doubts import nothing_stable
+from fcm.cli.doubts import nothing_stable, short_of_accuracy
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene
 
@@ -53,3 +53,9 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
 @pytest.mark.parametrize("curves", [[], [{"parameters": {}}]])
 def test_nothing_is_said_where_something_is_stable_throughout(curves):
     assert nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"}) == ""
+
+
+@pytest.mark.parametrize(("short", "said"), [(1, "1 of 3 curves has not"), (2, "2 of 3 curves have not")])
+def test_one_curve_has_and_two_have_not_the_accuracy(short, said):
+    curves = [{"short_of_accuracy": "why"}] * short + [{}] * (3 - short)
+    assert short_of_accuracy({"curves": curves}).startswith(said)

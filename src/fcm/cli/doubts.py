@@ -14,7 +14,11 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     if not short:
         return ""
     count = len(summary["curves"])
-    which = "the curve has" if count == 1 else f"{len(short)} of {count} curves have"
+    which = (
+        "the curve has"
+        if count == 1
+        else f"{len(short)} of {count} curves {'has' if len(short) == 1 else 'have'}"
+    )
     return f"{which} not the accuracy that was asked for: {short[0]}"
 
 
