@@ -113,6 +113,7 @@ def test_an_interruption_keeps_the_modes_that_are_finished(fcm, scene, monkeypat
     found = json.loads(done.out)["curves"]
     assert done.code == 3 and [one["mode"] for one in found[:2]] == [one["mode"] for one in every[:2]]
     assert [one["complete"] for one in found] == [True, True, False]
+    assert done.err.endswith("; what was traced is reported\n")  # and to no file was it written
     begun[:] = [None]  # of the first mode it is the second time, with more harmonics
     first, *rest = json.loads(fcm(*mode, "--accuracy", 1e-4).out)["curves"]
     assert first["mode"] == every[0]["mode"] and first["reason"].endswith("known with 3 harmonics")

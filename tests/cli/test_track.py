@@ -215,6 +215,7 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypat
     monkeypatch.setattr(f"fcm.track.{where}.{stops_at}", Mock(side_effect=KeyboardInterrupt))
     done = fcm("respond", scene, "--harmonics", "1", "-o", "best.nc", "--sensitivity")
     assert done.code == 3 and "the least so far" in done.out and "the optimum was sought for" in done.err
+    assert done.err.endswith("; what was traced is reported and written\n")
     assert "--resume" not in done.err  # nothing is kept from which the search could go on
     with netCDF4.Dataset("best.nc") as data:
         numbers, peak = np.array(data["optimum_number"][0]), float(data["optimum_peak"][0])

@@ -28,6 +28,7 @@ class Outputs:
     ) -> None:
         self.messages, self.output, self.csv, self.history_csv = messages, output, csv, history_csv
         self.checkpoint: Checkpoint | None = None
+        self.written = False  # whether there is a file of this run
 
     @contextmanager
     def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
@@ -91,6 +92,7 @@ class Outputs:
                 self.messages.info(f"{plain(path)} is left as it was")
                 return
         write(response, path)
+        self.written = True
         if part is not None:
             part.wrote(path, points)
         self.messages.info(f"wrote {plain(path)}")

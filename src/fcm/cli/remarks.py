@@ -32,7 +32,7 @@ def announce(messages: Messages, scene: Scene, asked: Asked) -> None:
         messages.info(f"at least {points} points: {curves} in steps of {scene.max_step:g} at most")
 
 
-def close(messages: Messages, result: dict[str, Any], defects: list[str]) -> None:
+def close(messages: Messages, result: dict[str, Any], defects: list[str], written: bool) -> None:
     """What the run left out, cost, and how wrong it is; the exit code of one that stopped early."""
     for text in dict.fromkeys(defects):
         messages.detail(text)
@@ -56,5 +56,6 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str]) -> Non
     if stopped := " and ".join(
         filter(None, (incomplete(result), track.incomplete(result), schedule.incomplete(histories)))
     ):
-        messages.error(f"error: {stopped}; what was traced is reported and written")
+        done = "reported and written" if written else "reported"
+        messages.error(f"error: {stopped}; what was traced is {done}")
         click.get_current_context().exit(DEFECT if all_lost_to_defects(result) else NOT_COMPLETED)

@@ -53,7 +53,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
         response.notes, response.units = list(loaded.notes), loaded.units
         response.drawn = loaded.drawn
         result = outputs.write(response, asked.to_json)
-    close(messages, result, response.defects)
+    close(messages, result, response.defects, outputs.written)
 
 
 def _compare(messages: Messages, scene: str, asked: Asked) -> None:
