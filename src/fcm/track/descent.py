@@ -88,8 +88,7 @@ class Valley:
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
             for condition, z in special_points(here, conditions)[0]:
-                spot = land(way, condition, np.append(z, 0.0))
-                if spot is not None:
+                if (spot := land(way, condition, np.append(z, 0.0))) is not None:
                     found.append((condition, target.dof, spot))
         return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]
 
