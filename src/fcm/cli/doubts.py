@@ -13,13 +13,9 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
     if not short:
         return ""
-    count = len(summary["curves"])
-    which = (
-        "the curve has"
-        if count == 1
-        else f"{len(short)} of {count} curves {'has' if len(short) == 1 else 'have'}"
-    )
-    return f"{which} not the accuracy that was asked for: {short[0]}"
+    count, verb = len(summary["curves"]), "has" if len(short) == 1 else "have"
+    which = "the curve" if count == 1 else f"{len(short)} of {count} curves"
+    return f"{which} {verb} not the accuracy that was asked for: {short[0]}"
 
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:

@@ -228,10 +228,12 @@ def _errors(tracked: Mapping[str, Any], unit: str) -> str:
 
 def cost(result: Mapping[str, Any]) -> str:
     """What a run took that has traced no curve of the response."""
-    count, seconds = len(result["tracked"]["curves"]), f"{result['seconds']:.2f} s"
+    from fcm.scene.errors import counted
+
+    seconds = f"{result['seconds']:.2f} s"
     if result["tracked"]["what"] == "optimum":
         return f"the optimum was sought for {seconds}"
-    return f"{count} tracked curve{'' if count == 1 else 's'} in {seconds}"
+    return f"{counted(len(result['tracked']['curves']), 'tracked curve')} in {seconds}"
 
 
 def incomplete(result: Mapping[str, Any]) -> str:

@@ -68,9 +68,7 @@ class Valley:
     ) -> None:
         self.system, self.numbers, self.targets = system, tuple(numbers), targets
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
-        self.lowest: tuple[FloatArray, float, Member] | None = (
-            None  # of the responses that were traced until now
-        )
+        self.lowest: tuple[FloatArray, float, Member] | None = None  # of all that were traced until now
 
     def line(self, q: FloatArray, direction: FloatArray) -> Line:
         """From q along a direction, both scaled."""

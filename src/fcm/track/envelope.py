@@ -26,7 +26,7 @@ ROUGH = 0.7  # of the highest by the chords: what is lower is not looked at
 GAP = 1e-3  # of the span, in which no piece is known
 EQUAL = 1e-7  # relative: peaks that are one at a crossing
 UNFINISHED = "unfinished"  # what the least so far is of, where it was still sought
-UNKNOWN = 10.0  # of the highest: what counts where nothing is known, as differences of infinities are none
+UNKNOWN = 10.0  # of the highest: what counts where no peak is known, as differences of infinities are none
 
 
 class Target(NamedTuple):

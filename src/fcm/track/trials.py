@@ -9,13 +9,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from fcm.track.envelope import Least
+from fcm.track.envelope import UNKNOWN, Least
 from fcm.track.lowest import Search
 
 EVEN = 5  # values over the range, both ends among them
 CLOSER = 4  # values about the lowest of those
 NEAR = 1e-4  # of the range: nearer to it none is tried
-NONE = 10.0  # of the highest: what a response without a peak counts as
 
 
 def by_trials(search: Search) -> Least | None:
@@ -41,7 +40,7 @@ def _greatest(search: Search, value: float) -> float:
     """The greatest at a value; where there is no peak, none that could be least."""
     if value not in search.seen:
         search.look(value)
-    return search.seen[value].value or NONE * max(height.value for height in search.seen.values())
+    return search.seen[value].value or UNKNOWN * max(height.value for height in search.seen.values())
 
 
 def _lowest(search: Search) -> float:
