@@ -1,9 +1,11 @@
-"""Degrees of freedom that are rotations, and the unit of each."""
+"""Degrees of freedom that are rotations, the unit of each, and which are told first."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
+MOST_DOFS = 4  # degrees of freedom whose peaks fit beside each other on a line of a table
 _ROTATION = re.compile(r"\d+[: _]?r[xyz]|\d+:[456]", re.IGNORECASE)
 
 
@@ -23,3 +25,12 @@ def unit_of(dof: str, length: str) -> str:
     ('mm', 'rad', '')
     """
     return "rad" if length and is_rotation(dof) else length
+
+
+def greatest_first(dofs: Sequence[str], heights: Sequence[float]) -> list[int]:
+    """The places of degrees of freedom from the greatest height down: all displacements, then all rotations.
+
+    >>> greatest_first(["1x", "1rx", "2x"], [1.0, 9.0, 7.0])
+    [2, 0, 1]
+    """
+    return sorted(range(len(dofs)), key=lambda d: (is_rotation(dofs[d]), -heights[d]))

@@ -220,6 +220,8 @@ def test_the_least_so_far_of_an_interrupted_search_is_kept(fcm, scene, monkeypat
     with netCDF4.Dataset("best.nc") as data:
         numbers, peak = np.array(data["optimum_number"][0]), float(data["optimum_peak"][0])
         assert data["optimum_kind"][0] == "unfinished" and np.ma.is_masked(data["optimum_error"][0])
+    drawn = fcm("plot", "response", "best.nc", "-o", "best.png")
+    assert drawn.code == 2 and "the search for its optimum was interrupted" in drawn.err
     for name, value in zip(("n_0", "mu"), numbers, strict=False):
         text = re.sub(rf"^{name} *= .*$", f"{name} = {float(value)!r}", text, flags=re.MULTILINE)
     scene.write_text(text)

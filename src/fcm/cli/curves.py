@@ -7,14 +7,13 @@ from typing import Any
 
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, short, swept
 from fcm.cli.jump_table import jump_table
-from fcm.rotation import is_rotation, unit_of
+from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- not told: with more harmonics no solution was found near this peak"
 _OF_LEVELS = "- not told: what more harmonics would change could not be estimated at this peak"
-_MOST_DOFS = 4  # whose peaks fit beside each other on a line
 _MOST_FOLDS = 12  # of which a line has all
 
 
@@ -76,8 +75,8 @@ def _greatest(curves: Sequence[Curve]) -> list[str]:
         return max((value for value in found if value is not None), default=0.0)
 
     dofs = list(curves[0]["peak"])
-    chosen = sorted(dofs, key=lambda dof: (is_rotation(dof), -peak(dof)))[:_MOST_DOFS]
-    return [dof for dof in dofs if dof in chosen]
+    chosen = greatest_first(dofs, [peak(dof) for dof in dofs])[:MOST_DOFS]
+    return [dofs[d] for d in sorted(chosen)]
 
 
 def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: str, length: str) -> str:

@@ -11,6 +11,7 @@ from click.core import ParameterSource
 
 from fcm.cli.columns import aligned, number, swept
 from fcm.cli.messages import Messages
+from fcm.rotation import MOST_DOFS
 
 if TYPE_CHECKING:
     from fcm.motion import Histories
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
 
-_MOST_DOFS, _MOST_CONTACTS = 4, 3  # that fit beside each other on a line
+_MOST_CONTACTS = 3  # that fit beside the degrees of freedom on a line
 _OF_CURVES = {  # options that mean nothing without a range of frequencies
     "method": "--method", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
     "resume": "--resume", "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
@@ -76,7 +77,7 @@ def as_table(histories: Sequence[Summary], unit: str) -> str:
     first = next((one["phases"][0] for one in histories if one["phases"]), None)
     if first is None:
         return "\n".join(dict.fromkeys(f"no cycle of the schedule: {one['reason']}" for one in histories))
-    dofs, contacts = list(first["amplitude"])[:_MOST_DOFS], list(first["regime"])[:_MOST_CONTACTS]
+    dofs, contacts = list(first["amplitude"])[:MOST_DOFS], list(first["regime"])[:_MOST_CONTACTS]
     names = list(short_names(histories[0]["parameters"]).values())
     amplitudes = [f"amplitude {dof}" for dof in dofs]
     header = [*names, "phase", unit, "cycles", *amplitudes, "transitions", *contacts, "settled", ""]

@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
-from fcm.rotation import is_rotation
+from fcm.rotation import MOST_DOFS, greatest_first
 
-FEW = 4  # degrees of freedom, of which the first is drawn; a run's table of peaks has no more of them
 MOST_NAMED = 12  # degrees of freedom in a message
 
 
@@ -35,7 +34,7 @@ def column_of(dofs: Sequence[str], dof: str | None, whose: str = "the file has")
 
 
 def leading_column(dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray[np.float64]) -> int:
-    """As `column_of`, but by default of more than a few that of the greatest of amplitudes (any, dof).
+    """As `column_of`, but by default, of more than fit on a line, that of the greatest amplitude (any, dof).
 
     Displacements come before rotations, which are of another unit.
 
@@ -44,7 +43,7 @@ def leading_column(dofs: Sequence[str], dof: str | None, amplitudes: npt.NDArray
     >>> leading_column(["1x", "1y", "1rx", "2x", "2y"], None, np.array([[1.0, 2.0, 9.0, 7.0, np.nan]]))
     3
     """
-    if dof is not None or len(dofs) <= FEW:
+    if dof is not None or len(dofs) <= MOST_DOFS:
         return column_of(dofs, dof)
     height = np.fmax.reduce(amplitudes, axis=0, initial=0.0)
-    return min(range(len(dofs)), key=lambda d: (is_rotation(dofs[d]), -height[d]))
+    return greatest_first(dofs, height)[0]

@@ -101,7 +101,7 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
 
 
 def _hint(dataset: Any) -> str:
-    """Which command draws the file, if one does."""
+    """Which command draws the file, if one does; why none does where an optimum is all it has."""
     kinds = (
         ("history", {"displacement", "time"}),
         ("response", {"amplitude", "frequency"}),
@@ -110,6 +110,8 @@ def _hint(dataset: Any) -> str:
     )
     held = dataset.variables.keys()
     found = next((what for what, names in kinds if held >= names), "")
+    if not found and "optimum_number" in held:
+        return "; the search for its optimum was interrupted, before a response was traced"
     return f"; try fcm plot {found}" if found else ""
 
 
