@@ -554,6 +554,46 @@ def test_a_spike_is_gone_round_if_its_other_side_has_another_label(max_step):
     assert path.where(Mark.FOLD).size == 0
 
 
+class Touch(Problem):
+    """x = p, y = c p as long as x < 0, from where both feel I(x): a root of x, within the depth a power 3/2.
+
+    x = p + I and y = c p - I, where p falls again as soon as I' > 1.
+    """
+
+    def __init__(self, c, depth):
+        Problem.__init__(self, 2, 1, 0)
+        self.soft, self.c, self.depth = True, c, depth
+
+    def evaluate(self, z):
+        x, y, p = z
+        inside = max(x, 0.0)
+        impact = inside**1.5 / (inside + self.depth)
+        rate = (1.5 * inside**0.5 - impact) / (inside + self.depth)
+        self.residual[0], self.residual[1] = x - p - impact, y - self.c * p + impact
+        self.jacobian[0, 0], self.jacobian[0, 2] = 1.0 - rate, -1.0
+        self.jacobian[1, 0], self.jacobian[1, 1], self.jacobian[1, 2] = rate, 1.0, -self.c
+        return 0
+
+    def measure(self, z):
+        self.scale[0] = self.scale[1] = self.scale[2] = 1.0
+        return 0
+
+    def bound(self, z):
+        self.margin[0] = float(z[0] > 0.0)
+        return 0
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-4, 1e-5, 1e-6])
+@pytest.mark.parametrize("c", [10.0, 30.0, 100.0])
+def test_a_curve_that_turns_back_as_contacts_touch_goes_on_with_these_touching(c, depth):
+    """It turns within less than any step, and its other side is close to the way there."""
+    path = follow(Touch(c, depth), np.array([-0.2, -0.2 * c, -0.2]), (-0.2, 1.0), True, 0.05)
+    end = brentq(lambda x: x - x**1.5 / (x + depth) + 0.2, 0.01, 0.2)
+    assert path.status is Status.RETURNED and path.z[-1, 0] == pytest.approx(end, abs=1e-9)
+    (fold,) = path.where(Mark.FOLD)
+    assert abs(path.parameter[fold]) < depth and (path.z[fold + 1 :, 0] > 0.0).all()
+
+
 def shallow():
     """p = 3 - 0.02 |x|: a step passes the corner."""
 

@@ -18,6 +18,7 @@ from fcm.continuation.path import FloatArray, Mark, Status
 from fcm.continuation.place import Place
 from fcm.continuation.sharp import SHARP
 from fcm.continuation.trail import Trail
+from fcm.continuation.way_out import way_out
 
 SHORTEST = 1e-9  # a step that is still too long then leads nowhere
 ERROR = 5e-4  # distance of the curve from where it is predicted, in its own size, that a step aims at
@@ -38,8 +39,6 @@ TOUCHED = 1e-8  # a change of label this near is met: less than BEYOND
 MET = 1e-6  # and this near, where no curve is found up to there
 LOOKS = 5  # looks beyond one place, each ten times as far
 AWAY = 10.0  # times as far from the corner is the next place, at least: its guess is beyond by as much
-AROUND = 16  # directions in which a way out of a corner is sought at last,
-REACHES = (1e-6, 1e-5, 1e-4, 1e-3)  # this far
 BACK = -0.99  # cosine below which a curve goes back on the way that it came, unless its label there is new:
 SPIKE = -1.0 + 1e-6  # then below this one. Where damping is light, most unknowns may turn back at a corner
 SAME, LOOP = 1e-8, 20  # distance of two folds that are one; points that a closed curve has at least
@@ -84,14 +83,16 @@ class Soft:
     def __init__(self, front: Front, trail: Trail) -> None:
         self.front, self.trail = front, trail
         self.repeated = 0  # corners at one point
+        self.past = 0.0  # length beyond the last of them at which the direction was found
+        self.spike = False  # whether the curve has just gone back at one
         self.came: FloatArray = np.zeros(0)  # direction in which the curve came there,
         self.label: FloatArray = np.zeros(0)  # and its labels before
 
     def advance(self, follower: Follower, step: float) -> object:
         """One step; a status where the curve ends. Close to a change there may be no curve to be found."""
         front = self.front
-        step = asked = max(step, AFTER)  # what led to a corner may have been shorter
-        while step > SHORTEST:
+        step = asked = max(step, AFTER, AWAY * self.past)  # what led to a corner may have been shorter
+        while step > max(SHORTEST, self.past):  # one that ends short of there is in the corner yet
             if front.go(step) and self.good(follower):
                 at = follower.turning() if step > SHARP else 0.0
                 if at == 0.0:
@@ -102,14 +103,18 @@ class Soft:
                 step = max(SHARP, step * within(growth(front.newton.moved, front.prediction.cubic), *REFUSED))
                 continue
             reach = ahead(front, step)
-            if reach < min(step, TOUCHED):
-                return self.leave(follower, reach)
+            if reach < min(step, max(TOUCHED, self.past)):
+                return self.leave(follower, min(reach, TOUCHED))
             if reach < step and front.go(reach * (1.0 - SHORT_OF)) and self.good(follower):
                 status = self.smooth(follower, LONGER)
                 follower.aim(SHARP, False)
                 return status
             step = 0.25 * min(step, reach)
-        return self.leave(follower, ahead(front, MET))
+        return self.leave(follower, 0.0 if self.past else ahead(front, MET))
+
+    def apart(self) -> bool:
+        """Whether the next step depends on nothing that is known of a corner."""
+        return self.repeated == 0 and not self.spike
 
     def good(self, follower: Follower) -> bool:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
@@ -117,8 +122,8 @@ class Soft:
         same = front.there.orientation == front.here.orientation
         near = front.missed * front.step < MOST * ERROR
         if front.step <= SHARP:
-            on = (near or self.turned()) and self.went_on() and (same or self.straight())
-            return on and follower.good()
+            passes = same or (self.straight() and not self.returned())
+            return passes and (near or self.turned()) and self.went_on() and follower.good()
         return (
             not self.turned_twice()
             and not self.strayed()
@@ -142,6 +147,10 @@ class Soft:
         """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
         return self.front.cosine > STRAIGHT and self.front.missed < BESIDE
 
+    def returned(self) -> bool:
+        """Whether it has led from a spike to the curve that came there."""
+        return self.spike and np.array_equal(self.front.there.margin, self.label)
+
     def turned_twice(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
         here, there = self.front.here, self.front.there
@@ -163,7 +172,8 @@ class Soft:
         if self.trail.count > count:
             follower.aim(step * within(growth(error, cubic), SHORTER, longer), True)
             follower.aim(step * longer, False)
-            self.repeated = 0
+            self.repeated, self.past = 0, 0.0
+            self.spike = self.spike and step <= SHARP
         return status
 
     def goes_round(self, count: int) -> bool:
@@ -199,10 +209,10 @@ class Soft:
             front.problem.bound(np.asarray(front.here.z) + past * np.asarray(front.newton.scale) * new)
             cosine = float(new @ self.came)
             if self.leads_on(cosine) and (cosine < STRAIGHT or self.repeated == LOOKS):
-                if cosine > BACK:  # it is found from here
+                self.past = past if cosine < STRAIGHT else 0.0
+                self.spike = cosine <= BACK
+                if not self.spike:  # it is found from here
                     np.asarray(front.aside)[:] = 0.0
-                else:
-                    follower.aim(AWAY * past, True)
                 return None
         np.asarray(front.aside)[:] = 0.0
         return None if self.sought(follower) else Status.STALLED
@@ -213,38 +223,18 @@ class Soft:
         return cosine > (SPIKE if new else BACK)
 
     def sought(self, follower: Follower) -> bool:
-        """Whether the curve leaves a corner into any of the pieces around it: then it is left there."""
+        """Whether the curve leaves a corner by any way that is tried around it: then it is left there."""
         front = self.front
         if self.repeated > LOOKS:
             return False
         self.repeated += 1
-        directions = np.random.default_rng(0).normal(size=(AROUND, self.came.size))
-        for reach in REACHES:
-            for way in directions / np.linalg.norm(directions, axis=1, keepdims=True):
-                if self.leaves(reach, way):
-                    np.asarray(front.here.tangent)[:] = front.newton.row
-                    np.asarray(front.here.margin)[:] = front.problem.margin
-                    front.prediction.straighten()
-                    follower.aim(reach, True)
-                    return True
-        return False
-
-    def leaves(self, reach: float, way: FloatArray) -> bool:
-        """Whether there is a next point in the direction that the equations have beside the corner."""
-        newton, here = self.front.newton, np.asarray(self.front.here.z)
-        scale, orientation = np.asarray(newton.scale), self.front.here.orientation
-        np.asarray(newton.row)[:] = way
-        np.asarray(newton.z)[:] = here + reach * scale * way
-        if not newton.look():
+        way = way_out(front, self.came, self.leads_on)
+        if way is None:
             return False
-        sense = 1.0 if newton.orientation == orientation else -1.0
-        along = sense * np.array(newton.tangent)
-        np.asarray(newton.row)[:] = along
-        np.asarray(newton.z)[:] = here + reach * scale * along
-        if not newton.correct(2.0 * reach) or newton.orientation != orientation:
-            return False
-        step = (np.asarray(newton.z) - here) / scale
-        length = np.linalg.norm(step)
-        self.front.problem.bound(newton.z)
-        forward = np.asarray(newton.tangent) @ step > 0.5 * length
-        return bool(forward and self.leads_on(float(self.came @ step / length)))
+        np.asarray(front.here.tangent)[:] = way.direction
+        np.asarray(front.here.margin)[:] = front.problem.margin
+        front.prediction.straighten()
+        np.asarray(front.aside)[:] = way.aside
+        self.past, self.spike = 0.0, True
+        follower.aim(way.reach, True)
+        return True
