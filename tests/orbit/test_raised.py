@@ -8,6 +8,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from fcm import load_scene
+from fcm.continuation import Status
 from fcm.harmonic.system import System as Balanced
 from fcm.harmonic.work import TooLongError
 from fcm.motion import State, simulate
@@ -66,6 +68,26 @@ def test_what_a_level_passed_is_kept_when_its_time_is_over():
     assert part.over and not part.complete and 0 < len(part.motions) <= len(whole.motions)
     for z in part.motions:
         assert min(np.abs(z - other).max() for other in whole.motions) < 1e-9 * np.abs(z).max()
+
+
+def test_where_the_level_from_rest_stalls_it_is_followed_from_what_is_known(monkeypatch):
+    """Once is enough from rest: other steps end there, too."""
+    scene, omega, begun = load_scene("yang1998-n5"), 1.22, []
+    one = Balanced(scene, (1,))
+    whole = raised_at(scene, one, omega, (), without_end)
+    follow = raised.follow
+
+    def stalls(problem, start, *rest, **options):
+        begun.append(start[-1])
+        path = follow(problem, start, *rest, **options)
+        return replace(path, z=path.z[:2], status=Status.STALLED) if start[-1] == begun[0] else path
+
+    monkeypatch.setattr(raised, "follow", stalls)
+    found = raised_at(scene, one, omega, whole.motions[:1], without_end)
+    assert not found.complete and begun.count(begun[0]) == 1 and begun[0] != 1.0
+    assert len(whole.motions) == 3
+    for z in whole.motions:
+        assert min(np.abs(z - other).max() for other in found.motions) < 1e-9 * np.abs(z).max()
 
 
 def test_levels_have_equal_shares_of_the_time_and_what_others_leave(monkeypatch):

@@ -3,8 +3,8 @@
 At the frequencies at which a balance follows it (`fcm.harmonic.start`), the level is followed from nearly
 nothing, where the motion is linear, until it is well beyond where that of a few harmonics comes back to 1.
 Every passing of the level 1 is a motion, and an exact one straight away. From motions that are known there
-and that this curve does not pass it is followed as well, both ways. Where it turns short of 1 the window of
-several motions may be at other frequencies (`fcm.harmonic.turned`).
+and that this curve does not pass, or where it stalls does not come to, it is followed as well, both ways.
+Where it turns short of 1 the window of several motions may be at other frequencies (`fcm.harmonic.turned`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 Known = Callable[[float], Sequence[FloatArray]]
 
 STEP = 0.2  # longest, along the curve of a level,
-SHORTER = 0.25  # and of that, where the curve has stalled
+SHORTER = 0.25  # and of that, where the curve has come back
 BELOW = 0.5  # part of the level up to which contacts are linear, down to which others are followed
 
 
@@ -143,11 +143,15 @@ def _along(
 def _from_rest(
     problem: LevelProblem, linear: float, span: tuple[float, float], along: Follow
 ) -> tuple[Path] | None:
-    """The curve from where contacts are linear to the end of the span; None if it cannot be followed."""
+    """The curve from where contacts are linear to the end of the span; None if it cannot be followed.
+
+    One that stalls is as far as it goes: from there on it would not be followed by other steps either.
+    """
     for step in (STEP, SHORTER * STEP):
         for z in _begun(problem, linear):
             path = along(problem, z, (0.0, span[1]), True, step, (1.0,))
-            if path.status is Status.COMPLETE and path.parameter[-1] == span[1]:
+            whole = path.status is Status.COMPLETE and path.parameter[-1] == span[1]
+            if whole or (path.status is Status.STALLED and path.z.shape[0]):
                 return (path,)
     return None
 
