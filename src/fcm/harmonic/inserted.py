@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -40,9 +41,10 @@ class Inserted:
 
 @dataclass(frozen=True)
 class Crossing(Inserted):
-    """A point of the curve at which stability changes without a fold; it counts to the side that is stable,
-    or where that is not told."""
+    """A point of the curve at which stability changes without a fold, of which it is not told: a disturbance
+    neither grows nor dies out there, but by what more harmonics make of that."""
 
+    stable: float = math.nan
     kind: Kind = Kind.PAIR
 
     @property

@@ -126,11 +126,12 @@ class Multipliers:
             return found._replace(stable=math.nan) if doubtful(found, fine, plain, 1.0) else found
         slight = 0.0 < found.growth < max(SAFE, SLIGHT * self.finer.shift)
         if slight or doubtful(found, fine, plain, SLIGHT):
-            return self._refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
+            return self.refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
         return found
 
-    def _refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
-        """Of the solution with the harmonics of the finer motion balanced; None where there is none near."""
+    def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
+        """Of the solution with the harmonics of the finer motion, which was looked at last, balanced; None
+        where there is none near."""
         if self.further is None:
             refined = Refined(self.system, beyond([int(h) for h in self.system.harmonics]))
             self.further = refined, type(self)(refined.system, self.highest, last=True)

@@ -87,7 +87,11 @@ class _Along:
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
             stable[first : last + 1] = known[_nearer(at, first, last)]
-            crossings += self._crossings(places)
+            found = list(self._crossings(places))
+            for one in found:
+                for way in (range(one.after, first - 1, -1), range(one.after + 1, end)):
+                    stable[list(self._moved(stable, way))] = math.nan
+            crossings += found
         return Stability(stable, tuple(crossings), self.verdicts.evaluations, tuple(self._inside(stable)))
 
     def _even(self) -> npt.NDArray[np.bool_]:
@@ -193,13 +197,19 @@ class _Along:
                 if found is not None:
                     yield found
 
+    def _moved(self, stable: FloatArray, way: range) -> Iterator[int]:
+        """The points from a crossing on until further harmonics, balanced, confirm one: they may move it."""
+        for i in way:
+            if stable[i] != stable[way[0]] or self.verdicts.confirmed(i, stable[i]):
+                return
+            yield i
+
     def _crossing(self, a: float, b: float) -> Crossing | None:
         """Where the growth changes sign between two places."""
         first, found, enough = int(a), None, self.verdicts.enough(a, b)
         curve = self.verdicts.curve(first)
         before, after = (max(self.verdicts[t].growth, ENOUGH) for t in (a, b))
-        grows, decays = (self.verdicts[t] for t in ((a, b) if before > 0.0 else (b, a)))
-        kind = grows.kind
+        kind = self.verdicts[a if before > 0.0 else b].kind
         sides = Secants(a - first, b - first, before, after, may_jump=True)
         fine = FINE if enough else BETWEEN
         for _ in range(LOOKS):
@@ -211,8 +221,7 @@ class _Along:
             if math.isnan(now):
                 break
             kind = verdict.kind if now > 0.0 else kind
-            place = curve.z, curve.direction, curve.orientation, decays.stable
-            found = Crossing(first + at, *place, kind=kind)
+            found = Crossing(first + at, curve.z, curve.direction, curve.orientation, kind=kind)
             if abs(now) < ZERO:
                 break
             sides.saw(at, now)

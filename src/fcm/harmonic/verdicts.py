@@ -66,6 +66,14 @@ class Verdicts:
         self.evaluations += 1
         return self.multipliers.verdict(z, enough=enough)
 
+    def confirmed(self, i: int, stable: float) -> bool:
+        """Whether a point is as stable as told (1 or 0) with the further harmonics balanced, too."""
+        self.evaluations += 1
+        of, z = self.multipliers, self.path.z[i]
+        of.finer.at(z)
+        found = of.refined(z, persistent=True) if of.finer.shift > 0.0 else None
+        return of.finer.shift == 0.0 or (found is not None and found.stable == stable)
+
     def among(self, first: int, last: int) -> list[float]:
         """The places from one point to another of which there is a verdict, in order."""
         return self._places[bisect_left(self._places, first) : bisect_right(self._places, last)]

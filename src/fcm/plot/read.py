@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
+from fcm.untold import untold
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
@@ -158,13 +159,13 @@ def _curve(
     """Take the padding away; points of NaN between branches stay, so that no line joins them."""
     known = np.flatnonzero(np.isfinite(frequency))
     there = slice(0, known[-1] + 1 if known.size else 0)
-    untold = None if stable is None else np.isfinite(frequency[there]) & np.isnan(stable[there])
+    unknown = None if stable is None else np.isfinite(frequency[there]) & untold(stable[there])
     return DrawnCurve(
         parameters,
         frequency[there],
         amplitude[there],
         None if stable is None else stable[there] != 0,
-        untold,
+        unknown,
         frozenset() if regime is None else frozenset(map(str, np.unique(regime[known]))),
         *(None if error is None else error[there] for error in errors),
     )

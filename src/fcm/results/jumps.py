@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
+from fcm.untold import untold
 
 BoolArray = npt.NDArray[np.bool_]
 SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
@@ -106,14 +107,15 @@ def _sweep(
     lowest = np.where(usable, np.minimum(sign * frequency[:-1], sign * frequency[1:]), np.inf)
     begin = int(lowest.argmin())
     at = begin if rises[begin] > 0.0 else begin + 1
-    unsure = bool(np.isnan(stable).any())
+    unknown = untold(stable)
+    unsure = bool(unknown.any())
     visited: set[int] = set()
-    start, told = (float(frequency[at]), amplitude[at]), bool(stable[at] == 1.0)
+    start, told = (float(frequency[at]), amplitude[at]), not unknown[at]
     while at not in visited:
         walked = _walked(at, onwards)
         visited.update(walked)
         if unsure:
-            _note_untold(sweep, (frequency, amplitude, stable), walked, start, told, found)
+            _note_untold(sweep, (frequency, amplitude, unknown), walked, start, told, found)
         at = walked[-1]
         here, before = float(frequency[at]), amplitude[at]
         if here == (np.nanmax(frequency) if sweep == "up" else np.nanmin(frequency)):
@@ -129,7 +131,7 @@ def _sweep(
         onto, after = int(there[which]), landed[which]
         if not same[which]:
             found.jumps.append(Jump(sweep, here, before, after))
-        start, told = (here, after), bool((stable[onto : onto + 2] == 1.0).all())
+        start, told = (here, after), not unknown[onto : onto + 2].any()
         at = onto + 1 if rises[onto] > 0.0 else onto
 
 
@@ -148,16 +150,16 @@ def _walked(at: int, onwards: list[float]) -> list[int]:
 
 def _note_untold(
     sweep: str,
-    curve: tuple[FloatArray, FloatArray, FloatArray],
+    curve: tuple[FloatArray, FloatArray, BoolArray],
     walked: list[int],
     start: tuple[float, FloatArray],
     told: bool,
     found: Swept,
 ) -> None:
     """Note the ways on which stability is not told, of a walk that begins before its first point."""
-    frequency, amplitude, stable = curve
-    unknown = np.array([not told, *np.isnan(stable[walked]).tolist()])
-    if stable[walked[0]] == 0.0 or not unknown.any():
+    frequency, amplitude, there = curve
+    unknown = np.array([not told, *there[walked].tolist()])
+    if not unknown.any():
         return
     edges = np.diff(unknown.astype(int), prepend=0, append=0)
     sides = (np.flatnonzero(side).tolist() for side in (edges > 0, edges < 0))
