@@ -43,7 +43,13 @@ def test_of_many_stretches_without_a_stable_motion_the_widest_are_named():
     curves[1]["may_not_be_unique"] = 3  # another member of the family of motions may be stable
     said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
     assert "not found, or has another residual friction; " in said
-    del curves[1]["may_not_be_unique"]
+    curves[1]["no_stable_motion_not_looked_at"] = ways[3:]
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    assert "not found (in 2 of these ranges, the widest between 4 and 4.3, none was looked for), or" in said
+    curves[1]["no_stable_motion_not_looked_at"] = ways[4:]
+    said = nothing_stable({"curves": curves, "frequency_unit": "Hz", "method": "table"})
+    assert "not found (between 5 and 5.05 none was looked for), or" in said
+    del curves[1]["may_not_be_unique"], curves[1]["no_stable_motion_not_looked_at"]
     ring = nothing_stable(
         {"curves": curves[1:], "frequency_unit": "Hz", "method": "table", "notes": ["cyclic: so"]}
     )

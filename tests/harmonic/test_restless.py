@@ -54,6 +54,18 @@ def test_a_look_that_does_not_come_to_its_end_leaves_branches_unsure(monkeypatch
     assert low < at < high
 
 
+def test_stretches_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the_others_are_told(monkeypatch):
+    scene = load_scene(File(__file__).parent / "scenes/chaos.toml")
+    scene = replace(scene, frequency_range=(1.15, 1.45))
+    every = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
+    monkeypatch.setattr(restless, "SHARE", 0.1)
+    some = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
+    left, none = some["no_stable_motion_not_looked_at"], every.get("no_stable_motion_not_looked_at", [])
+    assert len(none) < len(left) < len(some["no_stable_motion"])
+    looked = [ends for ends in some["no_stable_motion"] if ends not in left]
+    assert max(high - low for low, high in left) <= max(high - low for low, high in looked)
+
+
 def test_a_window_of_stability_that_was_not_seen_is_where_a_look_finds_it():
     """At 1.425 rad/s a march of the exact motion settles at (2.2122, 1.0395) from each of 12 states."""
     given = {

@@ -38,17 +38,33 @@ def nothing_stable(summary: Mapping[str, Any]) -> str:
     if not found:
         return ""
     every = found[0]["no_stable_motion"]
-    widest = sorted(sorted(every, key=lambda ends: ends[0] - ends[1])[:_MOST_STRETCHES])
+    widest = sorted(_widest_first(every)[:_MOST_STRETCHES])
     ways = ", ".join(f"{low:.6g} and {high:.6g}" for low, high in widest)
     more = f" and in {len(every) - len(widest)} narrower ranges" if len(every) > len(widest) else ""
     given = ", ".join(f"{key} = {value:.6g}" for key, value in found[0]["parameters"].items())
     which = f" ({given}; on {len(found)} of {len(curves)} curves)" if len(curves) > 1 else ""
     shows = f"; {how} shows it" if (how := _how(summary)) else ""
-    other = ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
+    other = _not_looked_at(found[0])
+    other += ", or has another residual friction" if found[0].get("may_not_be_unique") else ""
     return (
         f"no stable motion was found between {ways} {unit}{more}{which}: what is approached there repeats "
         f"after several periods or never, or is on a branch that was not found{other}{shows}"
     )
+
+
+def _widest_first(stretches: list[list[float]]) -> list[list[float]]:
+    return sorted(stretches, key=lambda ends: ends[0] - ends[1])
+
+
+def _not_looked_at(curve: Mapping[str, Any]) -> str:
+    """In how many of the stretches without a stable motion no branch was looked for; empty if in none."""
+    missing = _widest_first(curve.get("no_stable_motion_not_looked_at", []))
+    if not missing:
+        return ""
+    widest = f"between {missing[0][0]:.6g} and {missing[0][1]:.6g}"
+    count = len(missing)
+    where = widest if count == 1 else f"in {count} of these ranges, the widest {widest},"
+    return f" ({where} none was looked for)"
 
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:

@@ -26,15 +26,14 @@ from fcm.harmonic.unstable import Stretch, unstable_stretches
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
-LOOKS = 3  # stretches in whose middle the level is followed, the widest first,
-SHARE = 0.2  # as long as that takes no more of the work before
+SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take
 
 
 def with_missed(
     found: Accurate, stable: Sequence[FloatArray], accuracy: float
 ) -> tuple[Accurate, list[FloatArray]]:
-    """A response with stable branches that were missed, and stable with windows that were; the same response
-    if no branch is found, and each look came to its end.
+    """A response with stable branches that were missed, and stable with windows that were; it says where it
+    was looked for them, and is the same where nothing had to be.
 
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known.
     """
@@ -53,7 +52,7 @@ def with_missed(
         if not passed:
             missed.append(z)
     if not missed:
-        return (found if all(one.complete for one in looked) else _having(found, looked)), known
+        return replace(found, traced=replace(found.traced, found=(*found.traced.found, *looked))), known
     traced = with_further(system, found.traced, looked, missed)
     further = traced.branches.paths[len(paths) :]
     shown = (*found.shown, *(reported(system, path) for path in further))
@@ -61,17 +60,14 @@ def with_missed(
     return replace(every, further=found.further, begun=found.begun), known
 
 
-def _having(found: Accurate, looked: Sequence[Found]) -> Accurate:
-    """A response that says where else its branches were looked for."""
-    return replace(found, traced=replace(found.traced, found=(*found.traced.found, *looked)))
-
-
 def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
-    """What the level passes in the middle of stretches, up to where few curves come back from: that takes
-    half as long as to its end."""
+    """What the level passes in the middle of stretches, the widest first, as long as it may take.
+
+    Up to where few curves come back from: that takes half as long as to its end.
+    """
     found = list[Found]()
     with system.work.up_to((1.0 + SHARE) * system.work.seconds):
-        for low, high in stretches[:LOOKS]:
+        for low, high in stretches:
             try:
                 found.append(solutions(system, 0.5 * (low + high), NEAR))
             except TooLongError:

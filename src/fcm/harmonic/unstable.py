@@ -26,6 +26,16 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
     return sorted(found, key=lambda ends: ends[0] - ends[1])
 
 
+def not_looked_at(stretches: Iterable[Stretch], frequencies: Iterable[float]) -> list[Stretch]:
+    """The stretches in which none of some frequencies lies.
+
+    >>> not_looked_at([(1.0, 2.0), (3.0, 3.5)], [0.5, 1.5])
+    [(3.0, 3.5)]
+    """
+    at = list(frequencies)
+    return [(low, high) for low, high in stretches if not any(low <= w <= high for w in at)]
+
+
 def _borne(frequency: FloatArray, stable: FloatArray) -> Iterator[Stretch]:
     """From where to where a motion may stay, along each part of a path; a point by itself is no such part."""
     may = np.concatenate(([False], stable != 0.0, [False]))

@@ -151,6 +151,7 @@ def _curve(followed: _Followed) -> Curve:
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
         loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
+        levels=[one.omega for one in found.traced.found],
     )
 
 

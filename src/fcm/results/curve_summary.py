@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.harmonic.unstable import not_looked_at
 from fcm.results.gist import Gist, gist_of, worst
 from fcm.results.jumps import Jump, Untold
 from fcm.results.orbits import Orbits, Stuck
@@ -32,6 +33,9 @@ def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
         out["branches_unsure_at"] = in_unit(curve.unsure, unit).tolist()
     if gist.unstable:
         out["no_stable_motion"] = in_unit(sorted(gist.unstable), unit).tolist()
+    missing = [] if curve.levels is None else not_looked_at(gist.unstable, curve.levels)
+    if missing:
+        out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
     if curve.loose:
         out["may_not_be_unique"] = curve.loose
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
