@@ -12,7 +12,7 @@ from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
 _EDGE = "*"  # beside the frequency of a peak where the range ends
-_UNTOLD = "- not told: with more harmonics no solution was found near this peak"
+_UNTOLD = "- not told: with more harmonics none was found near this peak, or a higher one elsewhere"
 _OF_LEVELS = "- not told: what more harmonics would change could not be estimated at this peak"
 _MOST_FOLDS = 12  # of which a line has all
 

@@ -70,7 +70,7 @@ def _with_led(system: System, found: Found, before: Found) -> Found:
     """With the solutions that those of fewer harmonics lead to and the level does not."""
     known = list(found.solutions)
     for z in before.solutions:
-        there = _led(system, padded(z, before.harmonics, system.harmonics))
+        there = led_to(system, padded(z, before.harmonics, system.harmonics))
         if there is not None and not any(same(there, other) for other in known):
             known.append(there)
     return replace(found, solutions=tuple(known))
@@ -82,7 +82,7 @@ def led(
     """Solutions that the points of paths of fewer harmonics at some frequencies lead to."""
     for path in paths:
         for z in path.z[np.isin(path.parameter, frequencies)]:
-            there = _led(system, padded(z, fewer, system.harmonics))
+            there = led_to(system, padded(z, fewer, system.harmonics))
             if there is not None:
                 yield there
 
@@ -112,7 +112,7 @@ def at_its_frequency(system: System, z: FloatArray, far: float = FAR) -> FloatAr
     return np.array(newton.z) if newton.correct(1.0) and newton.moved < far else None
 
 
-def _led(system: System, z: FloatArray) -> FloatArray | None:
+def led_to(system: System, z: FloatArray) -> FloatArray | None:
     """The solution that a guess z leads to at its frequency, by one step or by a way of many."""
     near = at_its_frequency(system, z)
     if near is not None:

@@ -22,7 +22,7 @@ from fcm.harmonic.outline import Outline
 from fcm.harmonic.start import NEAR, Found, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import with_further
-from fcm.harmonic.unstable import Stretch, unstable_stretches
+from fcm.harmonic.unstable import Stretch, stretches_of
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
@@ -38,8 +38,7 @@ def with_missed(
     stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known.
     """
     system, paths, known = found.system, found.traced.branches.paths, list(stable)
-    parts = [(path.parameter, one) for path, one in zip(paths, known, strict=True)]
-    stretches = unstable_stretches(parts, system.scene.frequency_range)
+    stretches = stretches_of(paths, known, system.scene.frequency_range)
     looked = _looked(system, stretches) if stretches else []
     if not looked:
         return found, known
@@ -53,11 +52,18 @@ def with_missed(
             missed.append(z)
     if not missed:
         return replace(found, traced=replace(found.traced, found=(*found.traced.found, *looked))), known
-    traced = with_further(system, found.traced, looked, missed)
-    further = traced.branches.paths[len(paths) :]
-    shown = (*found.shown, *(reported(system, path) for path in further))
+    return with_branches(found, looked, missed, accuracy), known
+
+
+def with_branches(
+    found: Accurate, looked: Sequence[Found], starts: Sequence[FloatArray], accuracy: float
+) -> Accurate:
+    """A response with the branches through further solutions, and where else it was looked for them."""
+    system, known = found.system, len(found.shown)
+    traced = with_further(system, found.traced, looked, starts)
+    shown = (*found.shown, *(reported(system, path) for path in traced.branches.paths[known:]))
     every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
-    return replace(every, further=found.further, begun=found.begun), known
+    return replace(every, further=found.further, begun=found.begun)
 
 
 def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:

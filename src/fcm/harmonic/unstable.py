@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from fcm.continuation import Path
 from fcm.scene.model import FloatArray
 
 Stretch = tuple[float, float]
@@ -24,6 +25,12 @@ def unstable_stretches(parts: Iterable[tuple[FloatArray, FloatArray]], span: Str
             found.append((reached, low))
         reached = max(reached, high)
     return sorted(found, key=lambda ends: ends[0] - ends[1])
+
+
+def stretches_of(paths: Sequence[Path], stable: Sequence[FloatArray], span: Stretch) -> list[Stretch]:
+    """The same of paths, with stable (path, point)."""
+    parts = ((path.parameter, one) for path, one in zip(paths, stable, strict=True))
+    return unstable_stretches(parts, span)
 
 
 def not_looked_at(stretches: Iterable[Stretch], frequencies: Iterable[float]) -> list[Stretch]:

@@ -14,6 +14,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.believed import astray, disbelieved
 from fcm.harmonic.choice import Accurate, accurate, enlarged, finer, given
 from fcm.harmonic.error import Reported, reported_at
+from fcm.harmonic.higher import with_higher
 from fcm.harmonic.lost import Lost, lost_along
 from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.rest import RestError
@@ -75,11 +76,13 @@ def traced_curve(
 class _Followed:
     """A response with the points at which stability changes, and whether each point is stable.
 
-    lost: how far the frequencies are off at which it changes without a fold, where harmonics are chosen."""
+    lost: how far the frequencies are off at which it changes without a fold, where harmonics are chosen.
+    exceeded: whether more harmonics have a higher branch, where they are given."""
 
     found: Accurate
     stable: list[FloatArray]
     lost: list[Lost]
+    exceeded: bool = False
 
 
 def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
@@ -126,6 +129,7 @@ def _curve(followed: _Followed) -> Curve:
     truncations = [one.truncation for one in found.errors]
     far = disbelieved(points.z[:, -1], truncations, stable, (points.mark & Mark.FOLD) > 0)
     stable[far & (stable == 1.0)] = np.nan
+    peak = np.full_like(found.peak, np.nan) if followed.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
     return Curve(
         parameters=dict(scene.parameters),
@@ -143,7 +147,7 @@ def _curve(followed: _Followed) -> Curve:
         truncation_error=pick(np.concatenate(truncations), rows),
         complete=not reason,
         reason=reason,
-        peaks=_peaks(scene.modal.dofs, points, found.peak, rounding, stable),
+        peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable),
         folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),
@@ -160,8 +164,11 @@ def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     followed = _with_stability(_Followed(found, [], []), accuracy)
     least = np.inf if accuracy is None else accuracy
     more, stable = with_missed(followed.found, followed.stable, least)
-    again = replace(followed, found=more, stable=stable)
-    return again if more is followed.found else _with_stability(again, accuracy)
+    followed = _with_stability(replace(followed, found=more, stable=stable), accuracy)
+    if accuracy is not None:
+        return followed
+    higher, exceeded = with_higher(followed.found, followed.stable)
+    return _with_stability(replace(followed, found=higher, exceeded=exceeded), accuracy)
 
 
 def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
@@ -199,7 +206,8 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
         stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
-    return _Followed(replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors)), stable, lost)
+    found = replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors))
+    return replace(followed, found=found, stable=stable, lost=lost)
 
 
 def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:
