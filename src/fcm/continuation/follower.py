@@ -118,12 +118,11 @@ class Follower:
             if watch is not None and self.soft is not None and self.soft.apart():
                 watch(self.stage())
             status = self.advance()
-            if status is Status.STALLED and self.taken_back():
-                continue
-            if status is not None:
+            if status is None:
+                if self.progress is not None and count % 16 == 0:
+                    self.progress(self.passage.covered())
+            elif status is not Status.STALLED or not self.taken_back():
                 return self.path(status)
-            if self.progress is not None and count % 16 == 0:
-                self.progress(self.passage.covered())
         return self.path(Status.TOO_LONG)
 
     def path(self, status: Status) -> Path:

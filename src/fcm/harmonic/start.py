@@ -64,21 +64,16 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
         few = system.with_harmonics(system.harmonics[: few_of(system)])
         reach = _followed(few, omega, linear, most).reach
     found = _followed(system, omega, linear, most if reach is None else min(reach, most))
-    known = found.solutions
     if linear >= 1.0:
-        known = (np.append(next(linear_responses(system, omega, 1.0)), omega), *known)
-    enough = len(system.harmonics) >= few_of(system)
-    return replace(
-        found,
-        solutions=known or tuple(_from_linear(system, omega)),
-        reach=found.reach if enough else np.inf,
-    )
+        at_rest = np.append(next(linear_responses(system, omega, 1.0)), omega)
+        return replace(found, solutions=(at_rest, *found.solutions))
+    return found if found.solutions else replace(found, solutions=tuple(_from_linear(system, omega)))
 
 
 def _followed(system: System, omega: float, linear: float, top: float) -> Found:
     """What the level passes on its way from where it is linear to its top."""
     if linear >= top:
-        return Found(omega, system.harmonics, (), True, FURTHER * NEAR)
+        return Found(omega, system.harmonics, (), True, _reach(system, Status.COMPLETE, np.empty(0)))
     return _shared(system, omega, top) or _found(system, omega, linear, top)
 
 
@@ -87,7 +82,7 @@ def _found(system: System, omega: float, linear: float, top: float) -> Found:
     found = path.z[path.parameter == 1.0]
     found[:, -1] = omega
     complete = path.status in (Status.COMPLETE, Status.RETURNED)
-    reach, turns = _reach(path.status, path.parameter), turns_of(path, omega)
+    reach, turns = _reach(system, path.status, path.parameter), turns_of(path, omega)
     return Found(omega, system.harmonics, tuple(found), complete, reach, turns)
 
 
@@ -106,7 +101,8 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
     found = None if path is None else passings(system, path, omega)
     if path is None or found is None:
         return None
-    reach, turns = _reach(path.status, system.unit * path.parameter), turns_of(path, omega, system.unit)
+    reach = _reach(system, path.status, system.unit * path.parameter)
+    turns = turns_of(path, omega, system.unit)
     return Found(omega, system.harmonics, tuple(found), True, reach, turns)
 
 
@@ -140,9 +136,9 @@ def few_of(system: System) -> int:
     return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
 
 
-def _reach(status: Status, levels: FloatArray) -> float:
-    """Up to which level the curve of more harmonics is to be followed."""
-    if status is not Status.COMPLETE:
+def _reach(system: System, status: Status, levels: FloatArray) -> float:
+    """Up to which level the curve of more harmonics is to be followed, if those of a system tell it."""
+    if status is not Status.COMPLETE or len(system.harmonics) < few_of(system):
         return np.inf
     near = np.flatnonzero(levels < NEAR)
     most = float(levels[: near[-1] + 1].max()) if near.size else NEAR
@@ -169,8 +165,7 @@ def level_curve(
             path = _raised(system, start, omega, whole, step, stations, hasty, lightly)
             if _back(path, low):
                 path = _raised(system, start, omega, whole, FINER * step, stations)
-            if _back(path, low):
-                path = replace(path, status=Status.STALLED)
+                path = replace(path, status=Status.STALLED) if _back(path, low) else path
             if path.z.shape[0]:
                 return path
     assert path is not None
