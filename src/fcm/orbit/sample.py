@@ -18,6 +18,7 @@ from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady, several
+from fcm.orbit.windows import with_windows
 from fcm.scene.model import FloatArray
 
 
@@ -97,7 +98,7 @@ def settled(omega: float, motion: Steady) -> Sample:
 
 
 def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sample]:
-    """The points of a path, with those added at which stability changes between folds.
+    """The points of a path, with those added at which stability changes between folds, and changes back.
 
     A fold belongs to the stable side, and so does a point at which stability changes.
     located : whether to add those; to find them takes three times as long as the rest.
@@ -108,7 +109,12 @@ def samples(problem: OrbitProblem, path: Path, located: bool = True) -> list[Sam
     turns = [k for k in range(1, len(points) - 1) if points[k].mark & Mark.FOLD]
     for k in turns:
         points[k] = replace(points[k], stable=points[k - 1].stable or points[k + 1].stable)
-    return _with_crossings(problem, path, points) if located else points
+    if not located:
+        return points
+    whole, inside = with_windows(problem, path, points)
+    for k in inside:
+        points.insert(k, sampled(problem, whole.z[k], whole.direction[k]))
+    return _with_crossings(problem, whole, points)
 
 
 def _with_crossings(problem: OrbitProblem, path: Path, points: Sequence[Sample]) -> list[Sample]:

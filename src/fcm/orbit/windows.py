@@ -1,0 +1,130 @@
+"""Windows of stability, or of its loss, between two points of an exact curve that agree.
+
+What tells of them are functions of the multipliers that vary smoothly where those do not; see
+`fcm.harmonic.windows`. Where the states of the contacts change on the way, multipliers may jump, and nothing
+tells of it: there the middle is looked at.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation import Between, Path
+from fcm.harmonic.spectrum import Kind, Verdict
+from fcm.harmonic.windows import MANY, Seen, dip, seen
+from fcm.orbit.periodic import within_unit_circle
+from fcm.orbit.problem import OrbitProblem
+from fcm.scene.model import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+DIPS = 4  # times that a way between two points is divided in search of a window
+SAFE = -0.3  # logarithm of the greatest multiplier of both, below which none is looked for
+
+
+class Point(Protocol):
+    """What is known of a point of a path."""
+
+    @property
+    def multipliers(self) -> ComplexArray: ...
+    @property
+    def stable(self) -> bool: ...
+    @property
+    def states(self) -> tuple[str, ...]: ...
+
+
+class Window(NamedTuple):
+    """A place at which stability is another than at the two points that it lies between."""
+
+    first: int  # of these
+    z: FloatArray
+    direction: FloatArray
+    orientation: float
+
+
+def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> tuple[Path, list[int]]:
+    """A path with a point inside each window, and the numbers of these points.
+
+    points : of the path, in its order.
+    """
+    if not points:
+        return path, []
+    ways = zip(_lengths(path), points, strict=True)
+    known = [_seen(length, one.multipliers, one.stable) for length, one in ways]
+    jumps = [one.states != other.states for one, other in pairwise(points)]
+    looked = (_window(problem, path, known, k, jump) for k, jump in enumerate(jumps))
+    found = [one for one in looked if one is not None]
+    if not found:
+        return path, []
+    behind = [one.first + 1 for one in found]
+
+    def filled(values: FloatArray, rows: list[FloatArray] | list[float]) -> FloatArray:
+        return np.asarray(np.insert(values, behind, np.array(rows), axis=0))
+
+    whole = replace(
+        path,
+        z=filled(path.z, [one.z for one in found]),
+        direction=filled(path.direction, [one.direction for one in found]),
+        orientation=filled(path.orientation, [one.orientation for one in found]),
+        mark=np.insert(path.mark, behind, np.zeros(len(found), dtype=np.int64)),
+        shift=filled(path.shift, [0.0] * len(found)),
+    )
+    return whole, [k + i for i, k in enumerate(behind)]
+
+
+def _window(problem: OrbitProblem, path: Path, known: Sequence[Seen], k: int, jumps: bool) -> Window | None:
+    """A place in a window between a point and the next, if what is known of the points tells of one.
+
+    jumps : whether multipliers may jump there.
+    """
+    low, high = known[k : k + 2]
+    if low.stable != high.stable or max(low.growth, high.growth) < SAFE:
+        return None
+    between: Between | None = None
+
+    def inside(before: Sequence[Seen], low: Seen, high: Seen, after: Sequence[Seen], times: int) -> bool:
+        """Whether one is found, the way divided so often already; `between` is there then."""
+        nonlocal between
+        alike = [one for one in (*before, low, high, *after) if one.stable == low.stable]
+        length = dip(low, high, alike, times) if times < DIPS else None
+        if length is None and jumps and times == 0:
+            length = 0.5 * (low.length + high.length)
+        if length is None:
+            return False
+        between = between or Between(problem, path, k)
+        if not between.put((length - known[k].length) / (known[k + 1].length - known[k].length)):
+            return False
+        shot = problem.shot(between.z)
+        if shot is None:
+            return False
+        there = _seen(length, shot.multipliers, within_unit_circle(shot.multipliers))
+        return (
+            there.stable != low.stable
+            or inside(before, low, there, [high], times + 1)
+            or inside([low], there, high, after, times + 1)
+        )
+
+    if not inside(known[max(k - 1, 0) : k], low, high, known[k + 2 : k + 3], 0) or between is None:
+        return None
+    return Window(k, between.z, between.direction, between.orientation)
+
+
+def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
+    """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
+    values = tuple(multipliers[multipliers != 1.0].tolist()[:MANY])
+    growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
+    return seen(length, Verdict(float(stable), growth, Kind.PAIR, values=values))
+
+
+def _lengths(path: Path) -> list[float]:
+    """Way along the path up to each point, in the greatest sizes of its unknowns."""
+    size = np.maximum(np.abs(path.z).max(axis=0), np.finfo(float).tiny)
+    steps = np.linalg.norm(np.diff(path.z, axis=0) / size, axis=1)
+    return [0.0, *np.cumsum(steps).tolist()]
