@@ -115,7 +115,7 @@ class Follower:
         """Step by step to where the curve ends."""
         count: cython.int
         for count in range(LONGEST):
-            if watch is not None and self.soft is not None and self.soft.apart():
+            if watch is not None and self.soft is not None and self.soft.repeated == 0:
                 watch(self.stage())
             status = self.advance()
             if status is None:

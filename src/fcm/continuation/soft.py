@@ -84,7 +84,6 @@ class Soft:
         self.front, self.trail = front, trail
         self.repeated = 0  # corners at one point
         self.past = 0.0  # length beyond the last of them at which the direction was found
-        self.spike = False  # whether the curve has just gone back at one
         self.came: FloatArray = np.zeros(0)  # direction in which the curve came there,
         self.label: FloatArray = np.zeros(0)  # and its labels before
 
@@ -112,17 +111,13 @@ class Soft:
             step = 0.25 * min(step, reach)
         return self.leave(follower, 0.0 if self.past else ahead(front, MET))
 
-    def apart(self) -> bool:
-        """Whether the next step depends on nothing that is known of a corner."""
-        return self.repeated == 0 and not self.spike
-
     def good(self, follower: Follower) -> bool:
         """Whether a step was, and does not go back: there is no margin to tell that of a corner."""
         front = self.front
         same = front.there.orientation == front.here.orientation
         near = front.missed * front.step < MOST * ERROR
         if front.step <= SHARP:
-            passes = same or (self.straight() and not self.returned())
+            passes = same or (self.straight() and np.array_equal(front.there.margin, front.here.margin))
             return passes and (near or self.turned()) and self.went_on() and follower.good()
         return (
             not self.turned_twice()
@@ -147,10 +142,6 @@ class Soft:
         """Whether a step went straight on; what it misses by more than the turn explains is beside it."""
         return self.front.cosine > STRAIGHT and self.front.missed < BESIDE
 
-    def returned(self) -> bool:
-        """Whether it has led from a spike to the curve that came there."""
-        return self.spike and np.array_equal(self.front.there.margin, self.label)
-
     def turned_twice(self) -> bool:
         """Whether the parameter went against the direction at both ends: there are two folds between."""
         here, there = self.front.here, self.front.there
@@ -173,7 +164,6 @@ class Soft:
             follower.aim(step * within(growth(error, cubic), SHORTER, longer), True)
             follower.aim(step * longer, False)
             self.repeated, self.past = 0, 0.0
-            self.spike = self.spike and step <= SHARP
         return status
 
     def goes_round(self, count: int) -> bool:
@@ -210,8 +200,7 @@ class Soft:
             cosine = float(new @ self.came)
             if self.leads_on(cosine) and (cosine < STRAIGHT or self.repeated == LOOKS):
                 self.past = past if cosine < STRAIGHT else 0.0
-                self.spike = cosine <= BACK
-                if not self.spike:  # it is found from here
+                if cosine > BACK:  # it is found from here
                     np.asarray(front.aside)[:] = 0.0
                 return None
         np.asarray(front.aside)[:] = 0.0
@@ -235,6 +224,6 @@ class Soft:
         np.asarray(front.here.margin)[:] = front.problem.margin
         front.prediction.straighten()
         np.asarray(front.aside)[:] = way.aside
-        self.past, self.spike = 0.0, True
+        self.past = 0.0
         follower.aim(way.reach, True)
         return True
