@@ -96,17 +96,18 @@ class Integrals:
                 self.short_stick(p, begin, length)
         else:
             sign = 1.0 if state == POSITIVE else -1.0
-        stick: float = 1.0 if state == STICK else 0.0
         for m in range(self.highest + 1):
             if m > 0:
                 c = (self.power_sin[end, m] - self.power_sin[begin, m]) * self.reciprocal[m]
                 s = (self.power_cos[begin, m] - self.power_cos[end, m]) * self.reciprocal[m]
-            self.cos_sum[STICKS, m] += stick * c
-            self.sin_sum[STICKS, m] += stick * s
-            self.cos_sum[SIGNED_SLIPS, m] += sign * c
-            self.sin_sum[SIGNED_SLIPS, m] += sign * s
             self.cos_sum[CONTACT, m] += c
             self.sin_sum[CONTACT, m] += s
+            if state != STICK:
+                self.cos_sum[SIGNED_SLIPS, m] += sign * c
+                self.sin_sum[SIGNED_SLIPS, m] += sign * s
+                continue
+            self.cos_sum[STICKS, m] += c
+            self.sin_sum[STICKS, m] += s
             self.cos_sum[LONG, m] += long * c
             self.sin_sum[LONG, m] += long * s
             if m <= self.most:
