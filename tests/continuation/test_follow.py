@@ -737,6 +737,40 @@ def test_slight_corners_of_many_unknowns_are_stepped_over(step):
     assert path.evaluations < 1.5 * plain.evaluations
 
 
+@pytest.mark.parametrize("step", (0.2, 0.05))
+def test_slight_corners_of_some_unknowns_are_stepped_over_where_the_parameter_goes_on_evenly(step):
+    """The folds are landed on as closely, with half the work of landing on every corner."""
+    of, fewer = Many(80, 1e-3), Many(40, 1e-3)
+    path, landed = (
+        follow(one, np.append(np.full(one.unknowns, -1.32), 1.02), (1.02, 3.0), True, step)
+        for one in (of, fewer)
+    )
+    exact = [brentq(lambda x: of.curve(x)[1], a, b, xtol=1e-14) for a, b in ((-1.0, 0.0), (0.0, 1.0))]
+    assert path.status is Status.COMPLETE
+    assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([of.curve(x)[0] for x in exact], abs=1e-10)
+    assert path.evaluations < 0.5 * landed.evaluations
+
+
+class Narrow(Many):
+    """p = x + 2 - 6 (max(x - a, 0)^(3/2) - max(x - b, 0)^(3/2)), which falls near b alone."""
+
+    def __init__(self, unknowns, first):
+        Many.__init__(self, unknowns, 6.0)
+        self.corners = np.append([first, first + 0.02], np.full(18, 9.0))
+
+    def curve(self, x):
+        beyond = np.maximum(x - self.corners[:2], 0.0)
+        return x + 2.0 - 6.0 * np.dot([1.0, -1.0], beyond**1.5), 1.0 - 9.0 * np.dot([1.0, -1.0], beyond**0.5)
+
+
+@pytest.mark.parametrize("first", np.linspace(-0.5, 0.5, 11))
+def test_no_pair_of_folds_between_two_corners_is_stepped_over(first):
+    """However the steps lie to it: p' = 0 at 1/81 of a unit beyond a, and where the roots differ by 1/9."""
+    path = follow(Narrow(80, first), np.append(np.full(80, -0.9), 1.1), (1.1, 2.9), True, 0.2)
+    beyond = [1.0 / 81.0, (0.02 * 9.0 + 1.0 / 9.0) ** 2 / 4.0]
+    assert path.z[path.where(Mark.FOLD), 0] - first == pytest.approx(beyond, abs=1e-6)
+
+
 class Widened(Problem):
     """A problem of two unknowns with a hundred more, which are zero."""
 

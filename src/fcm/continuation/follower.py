@@ -22,14 +22,14 @@ if cython.compiled:
     from cython.cimports.fcm.continuation.ahead import ahead
     from cython.cimports.fcm.continuation.front import PRELIMINARY
     from cython.cimports.fcm.continuation.leaving import before_corner
-    from cython.cimports.fcm.continuation.margins import crosses, detour, dip, turning
+    from cython.cimports.fcm.continuation.margins import crosses, detour, dip, even, turning
     from cython.cimports.fcm.continuation.newton import CLOSE
     from cython.cimports.fcm.continuation.step_rule import clear, extent, good, next_step
 else:
     from fcm.continuation.ahead import ahead
     from fcm.continuation.front import PRELIMINARY
     from fcm.continuation.leaving import before_corner
-    from fcm.continuation.margins import crosses, detour, dip, turning
+    from fcm.continuation.margins import crosses, detour, dip, even, turning
     from fcm.continuation.newton import CLOSE
     from fcm.continuation.step_rule import clear, extent, good, next_step
 
@@ -45,6 +45,8 @@ AFTER = cython.declare(cython.double, 1e-5)  # the first step beyond a corner,
 SAME = cython.declare(cython.double, 0.1)  # or this share of that before it, where every place counts
 LESS = cython.declare(cython.double, 0.25)  # of a hasty step that does not go over all corners: it may
 LONGEST = 20_000  # steps
+# unknowns from which on slight corners are stepped over by longer steps where the parameter goes on evenly
+MANY = cython.declare(cython.int, 64)
 BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
 
 Progress = Callable[[float], None]  # fraction of the range that has been covered
@@ -142,15 +144,15 @@ class Follower:
         """One step; a status where the curve ends."""
         front: Front = self.front
         step: cython.double = self.step
-        reach: cython.double
-        hidden: cython.double
         if self.soft is not None:
             return self.soft.advance(self, step)
         step = self.narrow.up_to(front, step)
         if self.problem.dear and (self.over(step) or (self.hasty and self.over(LESS * step))):
             return self.smooth()
         while step > SHORTEST:
-            reach = ahead(front, step)
+            reach: cython.double = ahead(front, step)
+            if reach < step and step > self.near and self.problem.unknowns >= MANY and self.over(step):
+                return self.smooth()
             if reach < min(step, TOUCHED):
                 front.drift(reach)
                 return self.leave(front.here, 0.0)
@@ -163,7 +165,7 @@ class Follower:
                     if status is not Status.STALLED:
                         return status
                 elif reach >= step and good(front):
-                    hidden = self.hidden() or self.narrow.across(front, step)
+                    hidden: cython.double = self.hidden() or self.narrow.across(front, step)
                     if hidden == 0.0:
                         return self.smooth()
                     step = hidden
@@ -178,11 +180,11 @@ class Follower:
     @cython.exceptval(-1, check=False)
     def over(self, step: cython.double) -> cython.bint:
         """Whether a step goes on past all margins as if there were none: where they are many, most corners
-        are slight."""
+        are slight. Unless the problem is dear, only if none of them can hide a pair of folds."""
         front: Front = self.front
         if not front.go(step) or not good(front) or self.narrow.across(front, step) > 0.0:
             return False
-        return detour(front, self.passage.most) == 0.0
+        return detour(front, self.passage.most) == 0.0 and (self.problem.dear or even(front))
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

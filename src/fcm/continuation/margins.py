@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import cython
-from cython.cimports.libc.math import sqrt
+from cython.cimports.libc.math import fabs, sqrt
 
 from fcm.continuation.front import Front
 
@@ -14,6 +14,9 @@ RISE = cython.declare(
 NEARLY_GREATEST = cython.declare(
     cython.double, 0.9
 )  # of the greatest so far: below that no peak is looked for
+EVEN = cython.declare(
+    cython.double, 0.2
+)  # of the lesser slope at the ends: a parameter whose slope changes by less goes on evenly
 DOUBTFUL = cython.declare(
     cython.double, 0.25
 )  # of the lesser slope at the ends: a cubic less steep between them may hide a way back
@@ -83,6 +86,22 @@ def turning(front: Front) -> cython.double:
         front.there.tangent[n] * unit / front.spread(),
         0.0,
     )
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def even(front: Front) -> cython.bint:
+    """Whether the parameter goes on so evenly that corners within the step hide no pair of folds.
+
+    Beyond a corner its slope may change as a root, and back at the next one: the slope at the ends then
+    differs, or the way does from that at their mean. Either alone vanishes somewhere.
+    """
+    n: cython.Py_ssize_t = front.problem.unknowns
+    unit: cython.double = front.step * front.newton.scale[n]
+    begin: cython.double = front.here.tangent[n] * unit
+    end: cython.double = front.there.tangent[n] * unit / front.spread()
+    off: cython.double = fabs(2.0 * (front.there.z[n] - front.here.z[n]) - (begin + end))
+    return begin * end > 0.0 and max(off, fabs(end - begin)) < EVEN * min(fabs(begin), fabs(end))
 
 
 @cython.cfunc
