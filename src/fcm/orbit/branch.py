@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -16,6 +16,7 @@ from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.raised import Raised, raised
+from fcm.orbit.restless import approached_there
 from fcm.orbit.sample import Sample, samples
 from fcm.orbit.start import along_balance, first_point, starts
 from fcm.scene.modal import UNITS
@@ -109,6 +110,8 @@ def explore(
     bounded = Bounded(look, most)
     if not sought:
         paths = _with_others(problem, paths, apart, branches, bounded)
+    if not bounded.given_up:
+        paths = _with(problem, paths, approached_there(problem, paths, look), branches)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
     return list(paths), "; ".join([*(missed[end] for end in ends), *bounded.given_up])
 
@@ -149,7 +152,7 @@ def _with_others(
 def _with(
     problem: OrbitProblem,
     paths: tuple[Path, ...],
-    motions: Sequence[FloatArray],
+    motions: Iterable[FloatArray],
     branches: Callable[..., Branches],
 ) -> tuple[Path, ...]:
     """Paths, and those through motions that none of them passes."""
