@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
+from fcm.cli.exact import remarks
 from fcm.motion import simulate
+from fcm.response.exact import trace_exact
 from fcm.response.unreached import unreached
 from fcm.run import Report
 
@@ -72,8 +74,10 @@ def test_from_rest_a_motion_of_three_periods_is_come_to():
     """Beside a motion of one period, which the balance has: least and greatest amplitude of its cycles by a
     march of the contact's law in 4000 steps a period, by Verlet's differences."""
     stop = load_scene(Path(__file__).parent / "scenes" / "stop.toml")
-    curve = curve_of(stop, at=[1.074])
+    response = trace_exact(stop, at=[1.074])
+    (curve,) = response.curves
     assert curve.orbits.repeats.tolist() == [1, 1, 3]
+    assert any("1, at 1.074 rad/s one of 3 periods with" in said for said in remarks(response))
     assert curve.orbits.cycle_least[2, 0] == pytest.approx(1.1344, abs=1e-3)
     assert curve.orbits.cycle_greatest[2, 0] == pytest.approx(1.9960, abs=1e-3)
 

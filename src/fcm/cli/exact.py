@@ -180,23 +180,31 @@ def _untold(orbits: Orbits) -> int:
 
 
 def _unreached(response: Response) -> list[str]:
-    """How many stable motions no sweep came to, and the first few of them."""
+    """How many lasting motions no sweep came to, and the first few of them."""
     from fcm.units import in_unit
 
-    found = [(curve, k) for curve in response.curves if curve.orbits for k in curve.orbits.unreached]
+    found = [(curve, one, k) for curve in response.curves if (one := curve.orbits) for k in one.unreached]
     if not found:
         return []
     named = []
-    for curve, k in found[:MOST_NAMED]:
+    for curve, orbits, k in found[:MOST_NAMED]:
         swept = "".join(f"{key} = {value:g}, " for key, value in curve.parameters.items())
         where = f"{float(in_unit(curve.frequency[k], response.frequency_unit)):.6g} {response.frequency_unit}"
         sizes = zip(response.dofs[:MOST_NAMED], curve.amplitude[k], strict=False)
-        named.append(f"{swept}{where} with " + ", ".join(f"{dof} {size:.5g}" for dof, size in sizes))
+        again = _again(int(orbits.repeats[k]))
+        named.append(f"{swept}{where}{again} with " + ", ".join(f"{dof} {size:.5g}" for dof, size in sizes))
     more = "; ..." if len(found) > MOST_NAMED else ""
     return [
-        f"stable motions that neither sweep comes to (points without a sweep): {len(found)}, at "
+        f"motions that neither sweep comes to (points without a sweep): {len(found)}, at "
         f"{'; at '.join(named)}{more}"
     ]
+
+
+def _again(periods: int) -> str:
+    """How a motion repeats, if it does not after every period."""
+    if periods == 1:
+        return ""
+    return f" one of {periods} periods" if periods else " one that is quasi-periodic or irregular"
 
 
 def _stuck(response: Response) -> list[str]:

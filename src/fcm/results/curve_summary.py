@@ -122,7 +122,7 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
         "repeats": sorted({int(x) for x in orbits.repeats[here]}),
         **({"period_doubles": in_unit(np.array(orbits.doubles), unit).tolist()} if orbits.doubles else {}),
         "not_unique": int(known.sum()),
-        **({"unreached": _unreached(curve, orbits.unreached, unit)} if orbits.unreached else {}),
+        **({"unreached": _unreached(curve, orbits, unit)} if orbits.unreached else {}),
         **({} if orbits.span is None else {"only": "peaks"}),
         **({"peak_range": families} if families else {}),
         **(
@@ -133,16 +133,17 @@ def _of_orbits(curve: Curve, orbits: Orbits, unit: str) -> dict[str, Any]:
     }
 
 
-def _unreached(curve: Curve, points: list[int], unit: str) -> list[dict[str, Any]]:
-    """Stable motions at visited frequencies to which neither sweep came."""
+def _unreached(curve: Curve, orbits: Orbits, unit: str) -> list[dict[str, Any]]:
+    """Motions at visited frequencies to which neither sweep came, those without a period too (repeats 0)."""
     frequency = in_unit(curve.frequency, unit)
     return [
         {
             "frequency": float(frequency[k]),
+            "repeats": int(orbits.repeats[k]),
             "regime": curve.regime[k].tolist(),
             "amplitude": dict(zip(curve.peaks, curve.amplitude[k].tolist(), strict=True)),
         }
-        for k in points
+        for k in orbits.unreached
     ]
 
 
