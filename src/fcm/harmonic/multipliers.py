@@ -4,6 +4,8 @@ The growth over a period of a small disturbance, slow or fast, is an eigenvalue 
 motion. Its motion is the `Finer` one; that of the harmonics balanced alone tells how sure the verdict is.
 Where it is in doubt, as of light impacts, whose multipliers change severalfold where amplitudes change by a
 hundredth, the further harmonics are balanced too (`Refined`).
+Where no contact changes its state the motion is linear, and stable. That an extreme of its limit holds a
+slider is no matter then: with a little less residual friction the slider rests, in the same motion.
 Neither is quite a periodic solution of the structure, so that a real multiplier passes +1 beside the fold of
 the curve of solutions. The parity of the balance's determinant is, in the limit of many harmonics, that of
 the number of real multipliers above +1, and changes exactly at the folds: it decides.
@@ -93,8 +95,8 @@ class Multipliers:
         if self.finer.shift == 0.0:
             if not self.see(plain, z):
                 return UNKNOWN
-            if plain.moving + plain.held == 0:
-                return PASSIVE  # nor does the finer motion, which has no further harmonics
+            if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
+                return PASSIVE._replace(held=plain.held)
         if not self.see(fine, self.finer.x):
             return UNKNOWN
         values = self._values(self.fine, omega)

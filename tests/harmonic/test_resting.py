@@ -1,0 +1,55 @@
+"""Stability where no contact slips, but an extreme of its limit just holds the slider."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fcm.motion import State, simulate
+from fcm.response import trace
+from fcm.scene import scene_from_dict
+
+SPAN, OMEGA = (1.5, 1.58), 1.5333
+SHAPES = np.array([[0.6, 0.5, 0.6], [1.0, -0.3, 0.2], [0.3, 0.8, -0.9]])
+NATURAL, DAMPING = np.array([0.4, 1.0, 2.3]), np.array([0.02, 0.02, 0.01])
+ALONG, ACROSS = SHAPES @ [1.0, 0.0, -0.5], SHAPES @ [0.0, 1.0, 0.0]
+
+
+def wedged():
+    """A contact whose load the residual friction raises by more than its limit needs: it can lock itself."""
+    contact = {"name": "c", "tangential": {"x": 1.0, "z": -0.5}, "normal": "y"}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["x", "y", "z"],
+                "frequency": NATURAL.tolist(),
+                "damping": DAMPING.tolist(),
+                "shapes": SHAPES.tolist(),
+            },
+            "contact": [contact | {"mu": 1e3, "k_u": 2.0, "k_v": 1.0, "n_0": 1.0}],
+            "force": [{"dof": "z", "amplitude": 1.0}],
+            "response": {"frequency": list(SPAN), "harmonics": 1},
+        }
+    )
+
+
+def stuck(omega):
+    """The response of the structure with the contact's springs, linear."""
+    stiffness = np.diag(NATURAL**2) + 2.0 * np.outer(ALONG, ALONG) + 1.0 * np.outer(ACROSS, ACROSS)
+    dynamic = stiffness - omega**2 * np.eye(3) + 2j * omega * np.diag(DAMPING * NATURAL)
+    return np.linalg.solve(dynamic, SHAPES @ [0.0, 0.0, 1.0])
+
+
+def test_the_motion_with_a_slider_held_at_its_limit_is_stable():
+    """With less residual friction the slider rests, in the same linear motion, to which what is disturbed
+    comes back: no more of the motion is asked for than of any other that always sticks."""
+    (curve,) = trace(wedged()).curves
+    assert set(curve.regime[:, 0]) == {"E"} and (curve.stable == 1.0).all()
+    linear = [np.abs(stuck(omega) @ SHAPES) for omega in curve.frequency]
+    assert curve.amplitude == pytest.approx(np.array(linear), rel=1e-9)
+    assert np.ptp(curve.mean[:, 1]) > 0.01  # the slider is held: the load would be lost without its friction
+    rest = simulate(wedged(), OMEGA, 400)
+    for size in (-0.1, 0.1):
+        begin = State(rest.end.q * (1.0 + size), rest.end.velocity * (1.0 - size), rest.end.friction)
+        amplitude = simulate(wedged(), OMEGA, 400, begin).measures(last=1)[0].amplitude
+        assert amplitude == pytest.approx(np.abs(stuck(OMEGA) @ SHAPES), rel=1e-6)
