@@ -63,9 +63,9 @@ class Stability:
 def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None = None) -> Stability:
     """Stability of the points of a path followed in the frequency, and where it changes between folds.
 
-    A fold counts to the stable side. What is stable with the balanced harmonics and not with the next ones
-    that their forces make, or the other way round, is nan; and so is what is beyond belief (point,) and that
-    the determinant allows to be stable, which is not looked at.
+    A fold counts to the stable side, a crossing to neither. What is stable with the balanced harmonics and
+    not with the next ones that their forces make, or the other way round, is nan; and so is what is beyond
+    belief (point,) and that the determinant allows to be stable, which is not looked at.
     """
     return _Along(system, path).run(np.zeros(path.z.shape[0], dtype=np.bool_) if beyond is None else beyond)
 
