@@ -183,6 +183,42 @@ def test_the_errors_of_a_curve_of_levels_are_those_of_the_exact_motion(harmonics
     assert curve.peaks["v"].error == curve.error[np.nanargmax(curve.amplitude[:, 1]), 1] < 0.25
 
 
+def test_a_curve_of_levels_has_the_harmonics_that_an_accuracy_takes():
+    """Of `isola` at 1.22 rad/s a march of the contact law settles at 17.82 in v; one harmonic has 22.77."""
+    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0)).curves
+    high = np.flatnonzero(curve.level == 1.0)[-1]
+    assert abs(17.82 / curve.amplitude[high, 1] - 1.0) < 1e-2
+    assert curve.error[high, 1] < 1e-2 and curve.peaks["v"].error < 1e-2 and not curve.short_of
+
+
+def test_a_curve_of_levels_that_has_not_the_accuracy_says_so():
+    (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0), accuracy=1e-12).curves
+    assert curve.complete and curve.short_of.startswith(f"with {len(curve.harmonics)} harmonics an estimated")
+
+
+@pytest.mark.parametrize(("stops_at", "kept"), [(1, 0), (2, 1), (4, 2)])
+def test_an_interruption_keeps_the_curves_of_levels_that_are_finished(monkeypatch, stops_at, kept):
+    """Each is followed with one harmonic and with three: one that is known with one alone is kept as well."""
+    begun = []
+
+    def interrupted(*args):
+        begun.append(args)
+        if len(begun) == stops_at:
+            raise KeyboardInterrupt
+        return level_curve(*args)
+
+    monkeypatch.setattr("fcm.response.level.level_curve", interrupted)
+    if not kept:
+        with pytest.raises(KeyboardInterrupt):
+            trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0))
+        return
+    response = trace_levels(isola(), [1.22, 1.23, 1.24], (0.0, 2.0))
+    assert [curve.level.size > 0 for curve in response.curves] == [i < kept for i in range(3)]
+    assert [curve.complete for curve in response.curves] == [i < kept - 1 for i in range(3)]
+    assert response.curves[kept - 1].reason == "interrupted before it was known with 3 harmonics"
+    assert response.curves[kept].reason == "interrupted before it was traced" and response.interrupted
+
+
 def test_a_solution_that_may_not_be_there_is_not_called_stable():
     """The branch of large amplitudes of `isola` begins at the level 0.86, and with one harmonic at 0.53."""
     (curve,) = trace_levels(isola(), [1.22], (0.0, 2.0), harmonics=1).curves

@@ -60,7 +60,6 @@ def level(_ctx: click.Context, _param: click.Parameter, text: str | None) -> tup
 def check_level(
     span: tuple[float, float] | None,
     at: tuple[float, ...] | None,
-    error: float | None,
     method: str,
     mode: int | None = None,
 ) -> None:
@@ -76,8 +75,6 @@ def check_level(
         raise click.UsageError(
             "--level is of no use with --method exact: levels are followed by the balance."
         )
-    if error is not None:
-        raise click.UsageError("--accuracy is of no use with --level: give --harmonics.")
     from fcm.response.level import level_fault
 
     if fault := level_fault(*span):

@@ -41,7 +41,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
         options["limit"] = None if asked.time_limit is None else math.inf  # that of the run is enough
         return exact.traced(messages, scene, asked.at, options)
     if asked.level is not None:
-        return _levels(scene, asked)
+        return _levels(messages, scene, asked)
     if scene.has_range:
         return _traced(messages, scene, asked, {**run, **_balanced(asked)})
     from fcm.response import Response
@@ -83,11 +83,14 @@ def _mode(messages: Messages, scene: Scene, asked: Asked) -> Response:
     return response
 
 
-def _levels(scene: Scene, asked: Asked) -> Response:
+def _levels(messages: Messages, scene: Scene, asked: Asked) -> Response:
     from fcm.response.level import trace_levels
 
     assert asked.level is not None and asked.at is not None  # --level needs --at
-    return trace_levels(scene, asked.at, asked.level, harmonics=asked.harmonics)
+    chosen: dict[str, Any] = {"harmonics": asked.harmonics, "accuracy": asked.accuracy}
+    response = trace_levels(scene, asked.at, asked.level, progress=messages.progress, **chosen)
+    messages.clear()
+    return response
 
 
 def _traced(messages: Messages, scene: Scene, asked: Asked, options: dict[str, Any]) -> Response:

@@ -72,7 +72,7 @@ def _check_options(asked: Asked) -> None:
     nonlinear_mode.check_options(mode, level, asked.at, asked.force_levels)
     track.check_options(asked.track, asked.over, asked.low, asked.high, method)
     exact.check_options(method, asked.at, asked.only, asked.periods, level)
-    balance.check_level(level, asked.at, asked.accuracy, method, mode)
+    balance.check_level(level, asked.at, method, mode)
     balance.check_peaks_only(asked.peaks_only, level, asked.csv)
     balance.check_options(asked.harmonics, asked.accuracy, method, asked.table)
     if asked.table is not None and method != "table":

@@ -13,6 +13,7 @@ from fcm.continuation.follow import Progress
 from fcm.continuation.front import Front
 from fcm.harmonic.condensed import rank_of
 from fcm.harmonic.system import System
+from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
@@ -42,6 +43,19 @@ def seconds_with(system: System, evaluations: int, harmonics: int) -> float:
     evaluations are those that its own took: they grow as the harmonics do, with the corners and folds.
     """
     return seconds_of(system, evaluations, harmonics) * harmonics / max(len(system.harmonics), 1)
+
+
+def with_twice_as_many(system: System, evaluations: int) -> System | None:
+    """A system with the harmonics up to twice the highest and one more, for what is followed again with more
+    and more of them; None where none are left, or that takes too long.
+
+    evaluations: what following it with its own harmonics took.
+    """
+    highest = system.harmonics[-1]
+    more = min(2 * highest + 1, MOST_HARMONICS)
+    if more == highest or seconds_with(system, evaluations, more) > AGAIN:
+        return None
+    return system.with_harmonics(harmonics_up_to(more))
 
 
 def paid(system: System, front: Front, progress: Progress | None, follow: Callable[[Progress], Path]) -> Path:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,22 +18,28 @@ from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
 from fcm.harmonic.believed import BELIEVED
 from fcm.harmonic.believed_levels import errors_at_levels, evenness, stable_at_levels
+from fcm.harmonic.cost import with_twice_as_many
+from fcm.harmonic.foreseen import NOTHING
 from fcm.harmonic.linear_contacts import highest
 from fcm.harmonic.record import cycles, loops, recorded_at_levels
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
+from fcm.response.groups import lost_curve
+from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.peak import Peak, stability_at_top
-from fcm.results.result import Curve, Response
+from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
+from fcm.run import Progress
+from fcm.scene.errors import counted
 from fcm.scene.model import Scene
 from fcm.units import UNIT, in_unit
 
 AT = "excitation.frequency"  # under which each curve says its own
 FAR = 1e6  # a level beyond this is a mistake of units
-NOTHING = 1e-3  # a level below which there is but rest
+REST = 1e-3  # a level below which there is but rest
 
 
 def trace_levels(
@@ -41,17 +48,22 @@ def trace_levels(
     span: tuple[float, float],
     *,
     harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+    progress: Progress | None = None,
 ) -> Response:
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
-    with the harmonics given, or those of the scene, or one. The errors are what the harmonics left out would
-    change at the same level, NaN where that cannot be told, as beside folds.
+    with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
+    motions at the level 1 takes; without either as the scene says. The errors are what the harmonics left out
+    would change at the same level, NaN where that cannot be told, as beside folds.
 
     Raises
     ------
     ResponseError
         If the span or a frequency is out of range.
+    KeyboardInterrupt
+        If nothing is finished then; else what is finished is returned.
     """
     low, high = span
     if fault := level_fault(low, high):
@@ -59,16 +71,16 @@ def trace_levels(
     if not all(np.isfinite(f) and f > 0.0 for f in at):
         raise ResponseError("a frequency must be finite and greater than 0")
     begin = time.perf_counter()
-    chosen = wanted_of(
-        scene, 1 if harmonics is None and scene.harmonics is None else harmonics, None
-    ).harmonics
-    assert chosen is not None
-    check_modes(scene, Wanted(chosen))
-    curves = [
-        _level(curve, chosen, frequency * UNIT[scene.frequency_unit], span)
-        for curve in scene.each_curve()
-        for frequency in at
+    wanted = wanted_of(scene, harmonics, accuracy)
+    check_modes(scene, wanted)
+    ways = [
+        (curve, frequency * UNIT[scene.frequency_unit]) for curve in scene.each_curve() for frequency in at
     ]
+    tasks = [
+        (_without(curve, omega, NOT_BEGUN), partial(_level, curve, wanted, omega, span))
+        for curve, omega in ways
+    ]
+    curves = one_by_one(tasks, progress)
     contacts = tuple(contact.name for contact in scene.contacts)
     response = Response(
         scene.title, scene.modal.dofs, contacts, curves, "level of the forces", scene.frequency_unit
@@ -88,29 +100,67 @@ def level_fault(low: float, high: float) -> str:
         return fault
     if high > FAR:
         return f"a level beyond {FAR:g} is a mistake of units"
-    return "" if high > NOTHING else f"up to a level of {NOTHING:g} there is but rest"
+    return "" if high > REST else f"up to a level of {REST:g} there is but rest"
 
 
-def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[float, float]) -> Curve:
-    from fcm.response.groups import lost_curve
+def _without(scene: Scene, omega: float, reason: str) -> Curve:
+    """A curve without points, and why."""
+    parameters = {**scene.parameters, AT: float(in_unit(omega, scene.frequency_unit))}
+    return replace(lost_curve(scene, reason), parameters=parameters, level=np.empty(0))
 
-    begin = time.perf_counter()
-    system = System(scene, harmonics)
-    frequency = float(in_unit(omega, scene.frequency_unit))
-    parameters = {**scene.parameters, AT: frequency}
+
+def _level(scene: Scene, wanted: Wanted, omega: float, span: tuple[float, float]) -> Curve:
+    """With the harmonics that are wanted; with ever more until they are enough for the accuracy."""
+    begin, stopped = time.perf_counter(), ""
+    system = System(scene, wanted.harmonics or (1,))
+    curve = _followed(system, omega, span)
+    while wanted.harmonics is None and curve.complete and not _worst(curve) <= wanted.accuracy:
+        more = with_twice_as_many(system, curve.evaluations)
+        if more is None:
+            break
+        try:
+            then = _followed(more, omega, span)
+        except KeyboardInterrupt:
+            stopped = f"{INTERRUPTED} before it was known with {len(more.harmonics)} harmonics"
+            break
+        if not then.complete:
+            break
+        system, curve = more, then
+    if stopped:
+        curve.complete, curve.reason = False, stopped
+    elif wanted.harmonics is None and curve.complete and not (worst := _worst(curve)) <= wanted.accuracy:
+        what = (
+            "the errors of some peaks cannot be told"
+            if np.isnan(worst)
+            else f"an estimated error of {worst:.1e} remains"
+        )
+        curve.short_of = f"with {counted(len(system.harmonics), 'harmonic')} {what}"
+    curve.seconds = time.perf_counter() - begin
+    return curve
+
+
+def _worst(curve: Curve) -> float:
+    """The greatest error of the peaks, and of those motions at the level 1 of which it is told; NaN where
+    that of a peak is not. What hardly moves is not asked for."""
+    assert curve.level is not None
+    height = np.nanmax(curve.amplitude, axis=0)
+    moves = height > NOTHING * height.max()
+    peaks = np.array([peak.error for peak in curve.peaks.values()])[moves]
+    there = curve.error[curve.level == 1.0][:, moves]
+    return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))
+
+
+def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
+    """The curve with the harmonics of a system."""
     try:
         system.rest  # noqa: B018  # computed, and kept
     except RestError as error:
-        return replace(lost_curve(scene, str(error)), parameters=parameters, level=np.empty(0))
+        return _without(system.scene, omega, str(error))
     # what folds back into the span from beyond it is part of the curve
     reach = (span[0], max(span[1], highest(system, omega)))
-    path = level_curve(system, omega, reach, scene.max_step, (1.0, span[1]))
+    path = level_curve(system, omega, reach, system.scene.max_step, (1.0, span[1]))
     inside = np.flatnonzero((path.parameter >= span[0]) & (path.parameter <= span[1]))
-    curve = replace(
-        lost_curve(scene, "no response was found at the least level"),
-        parameters=parameters,
-        level=np.empty(0),
-    )
+    curve = _without(system.scene, omega, "no response was found at the least level")
     if inside.size:
         curve = replace(curve, **_points(system, path, inside, omega))
         tops = np.nanargmax(curve.amplitude, axis=0)
@@ -120,9 +170,8 @@ def _level(scene: Scene, harmonics: tuple[int, ...], omega: float, span: tuple[f
             for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
         }
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
-        curve.complete, curve.harmonics, curve.evaluations = whole, harmonics, path.evaluations
+        curve.complete, curve.harmonics, curve.evaluations = whole, system.harmonics, path.evaluations
         curve.reason = "" if whole else f"stopped at level {last:.6g}: {path.status.value}"
-        curve.seconds = time.perf_counter() - begin
     return curve
 
 

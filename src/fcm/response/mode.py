@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from fcm.continuation import Mark, Status
-from fcm.harmonic.cost import AGAIN, seconds_with
+from fcm.harmonic.cost import with_twice_as_many
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
+from fcm.response.groups import lost_curve
+from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
@@ -22,7 +25,6 @@ from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Progress
 from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Scene
-from fcm.scene.rules import MOST_HARMONICS
 from fcm.units import in_unit
 
 WIDEST = 1e15  # ratio of amplitudes beyond which a span is a mistake
@@ -66,7 +68,13 @@ def trace_modes(
     wanted = wanted_of(scene, harmonics, accuracy)
     levels = tuple(float(level) for level in force_levels)
     try:
-        curves = _curves(scene, lambda one: _curve(one, number, span, wanted, levels), progress)
+        curves = one_by_one(
+            [
+                (lost_curve(one, NOT_BEGUN), partial(_curve, one, number, span, wanted, levels))
+                for one in scene.each_curve()
+            ],
+            progress,
+        )
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
     contacts = tuple(contact.name for contact in scene.contacts)
@@ -74,27 +82,6 @@ def trace_modes(
     response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
     response.seconds = time.perf_counter() - begin
     return response
-
-
-def _curves(scene: Scene, followed: Callable[[Scene], Curve], progress: Progress | None) -> list[Curve]:
-    """That of each curve of a scene; of those that an interruption leaves out, that it did."""
-    from fcm.response.groups import lost_curve
-
-    curves: list[Curve] = []
-    every = scene.each_curve()
-    for i, one in enumerate(every):
-        if progress is not None:
-            progress(i / len(every), f"{i} of {len(every)} curves")
-        if curves and curves[-1].reason.startswith(INTERRUPTED):
-            curves.append(lost_curve(one, NOT_BEGUN))
-            continue
-        try:
-            curves.append(followed(one))
-        except KeyboardInterrupt:
-            if not curves:
-                raise
-            curves.append(lost_curve(one, f"{INTERRUPTED} at the start"))
-    return curves
 
 
 def check_free(scene: Scene) -> None:
@@ -111,8 +98,10 @@ def _curve(
     system = System(scene, wanted.harmonics or (1,))
     mode = nonlinear_mode(system, number, span, scene.max_step)
     error, stopped = truncation(mode), ""
-    while wanted.harmonics is None and not _enough(mode, error, wanted.accuracy):
-        enlarged = system.with_harmonics(tuple(range(1, _more(mode) + 1)))
+    while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:
+        enlarged = with_twice_as_many(mode.system, mode.path.evaluations)
+        if enlarged is None:
+            break
         try:
             more = nonlinear_mode(enlarged, number, span, scene.max_step)
             if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
@@ -136,21 +125,7 @@ def _worst(error: FloatArray) -> float:
     return float(known.max()) if known.size else np.inf
 
 
-def _enough(mode: Mode, error: FloatArray, accuracy: float) -> bool:
-    """Whether no more harmonics are needed, or can be afforded."""
-    if _worst(error) <= accuracy or mode.system.harmonics[-1] == MOST_HARMONICS:
-        return True
-    return seconds_with(mode.system, mode.path.evaluations, _more(mode)) > AGAIN
-
-
-def _more(mode: Mode) -> int:
-    """How many harmonics come next."""
-    return min(2 * mode.system.harmonics[-1] + 1, MOST_HARMONICS)
-
-
 def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, ...]) -> Curve:
-    from fcm.response.groups import lost_curve
-
     system, path = mode.system, mode.path
     scene, first = system.scene, system.harmonics.index(1)
     empty = lost_curve(scene, "no motion was found at the least amplitude; try another")
