@@ -13,6 +13,7 @@ from scipy.optimize import minimize_scalar
 import fcm
 from fcm.continuation import Mark, Status, follow
 from fcm.continuation.newton import Newton
+from fcm.continuation.path import Path as Followed
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
 from fcm.orbit import OrbitProblem, harmonic_state, periodic, raised, sample
@@ -79,6 +80,23 @@ def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
     (curve,) = trace_exact(scene).curves
     assert not curve.complete and "was given up: the level of the forces cannot" in curve.reason
     assert curve.frequency[0] == pytest.approx(scene.frequency_range[0])
+
+
+def test_no_branches_are_looked_for_without_end_where_those_that_are_followed_break_off():
+    """Contacts that rattle have countless unstable motions; here every branch ends where it begins."""
+
+    def broken(problem, z, *_):
+        begun.append(z[-1])
+        one, nothing = np.array(z)[None], np.zeros(1)
+        return Followed(one, 0.0 * one, nothing.astype(int), nothing, nothing, Status.STALLED, 0)
+
+    scene, begun = fcm.load_scene(SCENES / "closed_inside.toml"), []
+    problem = OrbitProblem(scene)
+    paths, missed = explore(problem, broken)
+    assert len(paths) == len(begun) == len(starts(problem, lambda: None)[0])
+    assert missed == "the search for further branches was given up: 3 that were followed break off"
+    said = incomplete(scene, paths, missed)
+    assert said.startswith("stopped at ") and said.endswith(missed)
 
 
 def test_a_motion_between_points_of_a_path_is_on_it_and_on_no_other():

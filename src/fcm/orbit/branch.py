@@ -25,6 +25,8 @@ from fcm.scene.model import FloatArray, Scene
 Progress = Callable[[float, str], None]
 SPREAD = 7  # motions of a branch that are looked for on the others
 ENDED = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+BROKEN = 3  # branches that break off, after which no others are looked for: where contacts rattle, with ten
+# impacts a period and more, unstable motions are countless, and the search for their branches has no end
 
 
 @dataclass
@@ -110,6 +112,8 @@ def explore(
     bounded = Bounded(look, most)
     if not sought:
         paths = _with_others(problem, paths, apart, branches, bounded)
+    if _broken(paths) >= BROKEN:
+        bounded.note(f"{BROKEN} that were followed break off")
     if not bounded.given_up:
         paths = _with(problem, paths, approached_there(problem, paths, look), branches)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
@@ -143,6 +147,8 @@ def _with_others(
     for one in bounded.each(raised(scene, there, bounded)):
         paths = _with(problem, paths, one.motions, branches)
         last[one.omega] = one
+        if _broken(paths) >= BROKEN:
+            return paths
     for one in (each for each in last.values() if not each.complete):
         failed = f"takes more than its share of {bounded.most:.3g} s" if one.over else "cannot be followed"
         bounded.note(f"the level of the forces {failed} at {shown(scene, one.omega)}")
@@ -155,12 +161,19 @@ def _with(
     motions: Iterable[FloatArray],
     branches: Callable[..., Branches],
 ) -> tuple[Path, ...]:
-    """Paths, and those through motions that none of them passes."""
+    """Paths, and those through motions that none of them passes, unless too many break off."""
     for z in motions:  # what is passed already is known without being followed again
+        if _broken(paths) >= BROKEN:
+            break
         if not known(paths, [z], problem):
             more = branches([z], known=paths).paths[len(paths) :]
             paths += tuple(path for path in more if not known(paths, spread(path), problem))
     return paths
+
+
+def _broken(paths: Sequence[Path]) -> int:
+    """How many paths have come to no end."""
+    return sum(path.status not in ENDED for path in paths)
 
 
 def known(paths: Sequence[Path], motions: Sequence[FloatArray], problem: OrbitProblem) -> bool:
@@ -185,7 +198,8 @@ def incomplete(scene: Scene, paths: Sequence[Path], problem: str) -> str:
     reasons = dict.fromkeys(
         f"stopped at {shown(scene, path.parameter[-1])}: {path.status.value}" for path in broken
     )
-    return "; ".join(reasons) or problem or ("" if paths else "no solution was found to start from")
+    missing = [*reasons, *filter(None, [problem])]
+    return "; ".join(missing) or ("" if paths else "no solution was found to start from")
 
 
 def reached(scene: Scene, paths: Sequence[Path]) -> str:
