@@ -8,6 +8,8 @@ import numpy.typing as npt
 FloatArray = npt.NDArray[np.float64]
 
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
+CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # as the conventions for netCDF files write them
+EXCITATION = "excitation.frequency"  # key of where a curve over the level of the forces is
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 

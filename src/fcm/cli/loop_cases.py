@@ -16,7 +16,7 @@ from fcm.cli.drawing import shorten
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
-    from fcm.plot.loop_file import LoopPoint
+    from fcm.plot.loop_file import LoopFile, LoopPoint
 
 WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
 LONGEST = 24  # characters of a contact's name
@@ -169,20 +169,21 @@ def of_file(
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         for point in points if solution is None else points[solution - 1 : solution]:
-            cases.append(_at_point(point, file.unit))
+            cases.append(_at_point(point, file))
     return cases
 
 
-def _at_point(point: LoopPoint, unit: str) -> Case:
+def _at_point(point: LoopPoint, file: LoopFile) -> Case:
     from fcm.contact import hysteresis_loop
     from fcm.plot.labels import curve_label
 
+    unit = file.unit
     symbol = "$f$" if unit == "Hz" else r"$\omega$"
     at = f"{point.frequency:.5g} {unit}"
     swept = ", ".join(f"{key} = {value:g}" for key, value in point.parameters.items())
     names: tuple[Name, ...] = (
         Name(shorten(point.contact, LONGEST).replace("$", r"\$"), point.contact),
-        Name(curve_label(point.parameters), swept),
+        Name(curve_label(point.parameters, units=file.units), swept),
         Name(f"{symbol} = {at}", at),
     )
     if len(point.harmonics) > 1:

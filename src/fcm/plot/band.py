@@ -55,7 +55,7 @@ def draw_bands(
             axes.set_xscale("log")
         _finish(axes, bands, log)
         axes.set_title(f"median, and {span[0]:g} to {span[1]:g} % of the draws", loc="right", fontsize=8)
-        name_at_side(figure, axes.get_lines(), [band.parameters for band in bands])
+        name_at_side(figure, axes.get_lines(), [band.parameters for band in bands], response.units)
     return figure
 
 

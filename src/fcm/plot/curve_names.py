@@ -95,13 +95,18 @@ def _dense(x: FloatArray, y: FloatArray) -> FloatArray:
     return np.column_stack([np.interp(at, nodes, x), np.interp(at, nodes, y)])
 
 
-def name_at_side(figure: Figure, lines: Sequence[Line2D], parameters: Sequence[Mapping[str, float]]) -> None:
+def name_at_side(
+    figure: Figure,
+    lines: Sequence[Line2D],
+    parameters: Sequence[Mapping[str, float]],
+    units: Mapping[str, str],
+) -> None:
     """Name lines by what was swept, in a legend beside the axes; very many by a bar of their colours."""
     if not parameters[0]:
         return
     names = [curve_label(one, False) for one in parameters]
     if len(names) > MOST_NAMES:
-        colour_bar(figure, names, ", ".join(symbols(parameters[0])))
+        colour_bar(figure, names, ", ".join(symbols(parameters[0], units)))
         return
-    title = ",\n".join(symbols(parameters[0]))
+    title = ",\n".join(symbols(parameters[0], units))
     figure.legend(lines, names, title=title, loc="outside right upper")

@@ -47,8 +47,9 @@ def draw_history(history: DrawnHistory, window: Window | None = None) -> Figure:
             axes.margins(y=0.05)
             axes.set_xlim(shown)
             axes.minorticks_on()
+            named = curve_label(motion.parameters, units=history.units)
             name = f"Displacement {history.dof}".replace("$", r"\$")
-            axes.set_ylabel("\n".join(filter(None, (name, *curve_label(motion.parameters).split(", ")))))
+            axes.set_ylabel("\n".join(filter(None, (name, *named.split(", ")))))
         panels[-1].set_xlabel("Time (s)" if history.axis == "time" else "Cycles")
         _name_phases(panels[0], history, shown)
         if handles := max((axes.get_legend_handles_labels()[0] for axes in panels), key=len):

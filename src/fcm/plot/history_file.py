@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.read import FloatArray, floats, opened, swept_values
+from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 
 _CYCLES = ("cycle_start", "cycle_elapsed", "cycle_part", "cycle_greatest", "cycle_least", "cycle_mean")
 _PHASES = ("schedule_frequency", "schedule_cycles", "schedule_start")
@@ -40,6 +41,7 @@ class DrawnHistory:
     frequency: FloatArray  # (phase,)
     boundaries: FloatArray  # (phase + 1,) where the phases begin and the last one ends
     motions: tuple[DrawnMotion, ...]
+    units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
 def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> DrawnHistory:
@@ -55,9 +57,10 @@ def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> Dr
         )
         unit = str(getattr(data, "frequency_unit", "rad/s"))
         frequency = floats(data["schedule_frequency"])
+        units = swept_units(data.variables, swept)
     if not any(motion.least.size for motion in motions):
         raise PlotError(f"{path}: holds no cycle of the schedule")
-    return DrawnHistory(axis, dofs[column], unit, frequency, boundaries, motions)
+    return DrawnHistory(axis, dofs[column], unit, frequency, boundaries, motions, units)
 
 
 def _edges(data: Any, axis: str) -> tuple[FloatArray, FloatArray]:

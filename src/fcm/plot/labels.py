@@ -30,23 +30,29 @@ def symbols(keys: Iterable[str], units: Mapping[str, str] | None = None) -> list
     ['$n_{0}$ (N)', '$\\\\mu$']
     """
     return [
-        with_unit(
-            _SYMBOLS.get(name, name.replace("$", r"\$")), (units or {}).get(key, "").replace("$", r"\$")
-        )
+        with_unit(_SYMBOLS.get(name, name.replace("$", r"\$")), _unit(key, units))
         for key, name in short_names(keys).items()
     ]
 
 
-def curve_label(parameters: Mapping[str, float], named: bool = True) -> str:
-    """What was swept; without names only the values.
+def curve_label(
+    parameters: Mapping[str, float], named: bool = True, units: Mapping[str, str] | None = None
+) -> str:
+    """What was swept, with units of keys; without names only the values.
 
-    >>> curve_label({"contact.shroud.n_0": -5.0, "contact.shroud.mu": 0.4})
-    '$n_{0}$ = −5, $\\\\mu$ = 0.4'
+    >>> curve_label({"contact.shroud.n_0": -5.0, "contact.shroud.mu": 0.4}, units={"contact.shroud.n_0": "N"})
+    '$n_{0}$ = −5 N, $\\\\mu$ = 0.4'
     """
     values = [f"{value:.4g}".replace("-", "−") for value in parameters.values()]
     if not named:
         return ", ".join(values)
-    return ", ".join(f"{name} = {value}" for name, value in zip(symbols(parameters), values, strict=True))
+    each = zip(symbols(parameters), values, parameters, strict=True)
+    return ", ".join(f"{name} = {value} {_unit(key, units)}".rstrip() for name, value, key in each)
+
+
+def _unit(key: str, units: Mapping[str, str] | None) -> str:
+    """Of a key, as text beside mathematical text."""
+    return (units or {}).get(key, "").replace("$", r"\$")
 
 
 def with_unit(text: str, unit: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,6 +48,7 @@ class LoopFile:
     loop: FloatArray  # (5, curve, point, contact)
     harmonics: tuple[int, ...]
     states: npt.NDArray[np.str_]  # (curve, point, contact)
+    units: Mapping[str, str]  # of swept keys, if the file says them
 
 
 def read_loops(path: Path) -> LoopFile:
@@ -72,7 +74,7 @@ def read_loops(path: Path) -> LoopFile:
         states = np.full(shape, "", dtype="<U1")
     return LoopFile(
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
-        tuple(int(h) for h in orders), states,
+        tuple(int(h) for h in orders), states, response.units,
     )  # fmt: skip
 
 

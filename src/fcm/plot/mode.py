@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ import numpy as np
 from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
-from fcm.plot.read import FloatArray, floats, opened, swept_values
+from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, new_figure, sequence_colours
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ class DrawnModes:
     title: str
     frequency_unit: str
     modes: tuple[DrawnMode, ...]
+    units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
 def read_modes(path: Path) -> DrawnModes:
@@ -55,7 +57,9 @@ def read_modes(path: Path) -> DrawnModes:
         if not found:
             raise PlotError(f"{path}: the file holds no point of any mode")
         unit = str(getattr(data, "frequency_unit", "rad/s"))
-        return DrawnModes(str(getattr(data, "title", "")), unit, tuple(found))
+        return DrawnModes(
+            str(getattr(data, "title", "")), unit, tuple(found), swept_units(data.variables, swept)
+        )
 
 
 def draw_modes(drawn: DrawnModes) -> Figure:
@@ -75,7 +79,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
         lower.set_ylim(bottom=0.0)
         lower.margins(x=0.0)
         lower.set_ylim(top=1.12 * lower.get_ylim()[1])
-        name_at_side(figure, upper.get_lines(), [one.parameters for one in modes])
+        name_at_side(figure, upper.get_lines(), [one.parameters for one in modes], drawn.units)
     return figure
 
 

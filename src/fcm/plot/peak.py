@@ -161,7 +161,8 @@ def _finish_axes(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, 
 def _name_lines(
     figure: Figure, axes: Axes, peaks: Peaks, others: Sequence[str], lines: Sequence[IntArray]
 ) -> None:
-    names = [curve_label({name: float(peaks.parameters[name][line[0]]) for name in others}) for line in lines]
+    values = [{name: float(peaks.parameters[name][line[0]]) for name in others} for line in lines]
+    names = [curve_label(each, units=peaks.units) for each in values]
     figure.legend(axes.get_lines(), names, loc="outside right upper")
 
 
@@ -173,7 +174,8 @@ def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, k
     upper.plot([x], [y], "o", markersize=7, markerfacecolor="none", color=_MARK, markeredgewidth=1.0)
     for axes in (upper, lower):
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
-    where = curve_label({name: float(values[least]) for name, values in peaks.parameters.items()})
+    values = {name: float(values[least]) for name, values in peaks.parameters.items()}
+    where = curve_label(values, units=peaks.units)
     upper.set_title(f"least peak {y:.4g} at {where}", loc="right", fontsize=8, color=_MARK)
 
 

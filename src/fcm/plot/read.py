@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
+from fcm.units import CF_UNIT
 from fcm.untold import untold
 
 FloatArray = npt.NDArray[np.float64]
@@ -21,6 +22,7 @@ BoolArray = npt.NDArray[np.bool_]
 
 _WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 _SWEPT = "swept value"  # how the description of a swept value begins
+_READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
 
@@ -181,8 +183,9 @@ def swept_values(variables: Any) -> dict[str, FloatArray]:
 
 
 def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
-    """The units of swept values, empty where the file does not say them."""
-    return {key: str(getattr(variables[key], "units", "")) for key in keys}
+    """The units of swept values as they are read, empty where the file does not say them."""
+    written = {key: str(getattr(variables[key], "units", "")) for key in keys}
+    return {key: _READ.get(unit, unit) for key, unit in written.items()}
 
 
 def floats(variable: Any) -> FloatArray:

@@ -200,9 +200,9 @@ def _split(amplitude: FloatArray, unstable: BoolArray) -> tuple[FloatArray, Floa
     return np.where(unstable, np.nan, amplitude), np.where(beside, amplitude, np.nan)
 
 
-def _named(curve: DrawnCurve, names: bool = True) -> str:
+def _named(curve: DrawnCurve, units: Mapping[str, str], names: bool = True) -> str:
     state = {frozenset({"E"}): " (stuck)", frozenset({"S"}): " (open)"}.get(curve.regimes, "")
-    return (curve_label(curve.parameters, names) + state).strip()
+    return (curve_label(curve.parameters, names, units) + state).strip()
 
 
 def _finish_axes(axes: Axes, response: DrawnResponse, column: int, log: bool) -> None:
@@ -221,7 +221,7 @@ def _name_curves(
     figure: Figure, axes: Axes, curves: list[DrawnCurve], column: int, units: Mapping[str, str]
 ) -> None:
     """At the peaks if there is room for every name, otherwise in a legend beside the axes."""
-    names = [_named(curve, names=i == 0) for i, curve in enumerate(curves)]
+    names = [_named(curve, units, names=i == 0) for i, curve in enumerate(curves)]
     lines = [(curve.frequency, curve.amplitude[:, column]) for curve in curves]
     if len(curves) <= MOST_NAMES and label_at_peaks(figure, axes, lines, names):
         return
@@ -234,12 +234,12 @@ def _legend(figure: Figure, axes: Axes, curves: list[DrawnCurve], units: Mapping
     lines = [line for line in axes.get_lines() if line.get_label() != _UNNAMED]
     several = len(curves[0].parameters) > 1
     if len(lines) > MOST_NAMES:
-        names = [_named(curve, names=False) for curve in curves]
+        names = [_named(curve, units, names=False) for curve in curves]
         colour_bar(figure, names, ", ".join(symbols(curves[0].parameters, units)))
         return
     figure.legend(
         lines,
-        [_named(curve, names=not several) for curve in curves],
+        [_named(curve, units, names=not several) for curve in curves],
         title=",\n".join(symbols(curves[0].parameters, units)) if several else None,
         loc="outside right upper",
     )

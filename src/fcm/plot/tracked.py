@@ -191,4 +191,5 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
     for axes in (upper, lower):
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     (symbol,) = symbols([drawn.key])
-    upper.set_title(f"least peak {y:.5g} at {symbol} = {x:.5g}", loc="right", fontsize=8, color=_MARK)
+    at = f"{symbol} = {x:.5g} {drawn.unit}".rstrip()
+    upper.set_title(f"least peak {y:.5g} at {at}", loc="right", fontsize=8, color=_MARK)

@@ -35,9 +35,8 @@ from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Progress
 from fcm.scene.errors import counted
 from fcm.scene.model import Scene
-from fcm.units import UNIT, in_unit
+from fcm.units import EXCITATION, UNIT, in_unit
 
-AT = "excitation.frequency"  # under which each curve says its own
 FAR = 1e6  # a level beyond this is a mistake of units
 REST = 1e-3  # a level below which there is but rest
 
@@ -105,7 +104,7 @@ def level_fault(low: float, high: float) -> str:
 
 def _without(scene: Scene, omega: float, reason: str) -> Curve:
     """A curve without points, and why."""
-    parameters = {**scene.parameters, AT: float(in_unit(omega, scene.frequency_unit))}
+    parameters = {**scene.parameters, EXCITATION: float(in_unit(omega, scene.frequency_unit))}
     return replace(lost_curve(scene, reason), parameters=parameters, level=np.empty(0))
 
 

@@ -8,11 +8,10 @@ import numpy as np
 
 from fcm.results.field import Field
 from fcm.results.gist import gist_of
-from fcm.results.meanings import CF_UNIT
 from fcm.results.padded import by_fold
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
-from fcm.units import in_unit
+from fcm.units import CF_UNIT, in_unit
 
 
 def gist_fields(response: Response) -> dict[str, Field]:

@@ -12,12 +12,12 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
-from fcm.results.meanings import CF_UNIT, CYCLE, ENERGIES, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
+from fcm.results.meanings import CYCLE, ENERGIES, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
 from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
 from fcm.rotation import is_rotation
-from fcm.units import in_unit, unit_of_number
+from fcm.units import CF_UNIT, EXCITATION, in_unit, unit_of_number
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:
@@ -50,7 +50,8 @@ def fields_of(response: Response) -> dict[str, Field]:
     for key in swept[0] if swept else ():
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}
-        unit = unit_of_number(key, *response.units)
+        at = key == EXCITATION
+        unit = CF_UNIT[response.frequency_unit] if at else unit_of_number(key, *response.units)
         attrs = {"long_name": f"swept value of {key}"} | drawn | ({"units": unit} if unit else {})
         out[key] = Field(("curve",), values, attrs)
     if response.curves or (response.histories is None and response.tracking is None):

@@ -68,6 +68,5 @@ LENGTHS = (
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
     "harmonic_amplitude", "slip_path", "peak_percentile", "tracked_amplitude", "optimum_peak",
 )  # fmt: skip
-CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}
 FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
 ENERGIES = ("dissipated_energy",)
