@@ -59,6 +59,7 @@ def test_stretches_are_looked_at_the_widest_first_as_long_as_it_may_take_and_the
     scene = replace(scene, frequency_range=(1.15, 1.45))
     every = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
     monkeypatch.setattr(restless, "SHARE", 0.1)
+    monkeypatch.setattr(restless, "UNNOTICED", 0.0)
     some = traced_curve(scene, Wanted(tuple(range(1, 6)), 1e-2)).summary()
     left, none = some["no_stable_motion_not_looked_at"], every.get("no_stable_motion_not_looked_at", [])
     assert len(none) < len(left) < len(some["no_stable_motion"])

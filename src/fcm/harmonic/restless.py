@@ -26,7 +26,8 @@ from fcm.harmonic.unstable import Stretch, stretches_of
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
-SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take
+SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take,
+UNNOTICED = 0.1  # and seconds of work that it may in any case: of small scenes all stretches are looked at
 
 
 def with_missed(
@@ -72,7 +73,8 @@ def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
     Up to where few curves come back from: that takes half as long as to its end.
     """
     found = list[Found]()
-    with system.work.up_to((1.0 + SHARE) * system.work.seconds):
+    before = system.work.seconds
+    with system.work.up_to(before + max(SHARE * before, UNNOTICED)):
         for low, high in stretches:
             try:
                 found.append(solutions(system, 0.5 * (low + high), NEAR))
