@@ -9,7 +9,7 @@ how far they are from the motion's.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,11 +17,9 @@ from fcm.harmonic.carried import led_to
 from fcm.harmonic.choice import Accurate
 from fcm.harmonic.error import reported_at
 from fcm.harmonic.further import padded
-from fcm.harmonic.restless import with_branches
-from fcm.harmonic.start import NEAR, solutions
+from fcm.harmonic.restless import looks, with_branches
 from fcm.harmonic.system import System
 from fcm.harmonic.unstable import Stretch, stretches_of
-from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
 
 MANY = 9  # harmonics, with which a peak is within a thousandth or so: the branches of more are theirs, too
@@ -58,20 +56,10 @@ def _higher(
     system: System, stretches: Sequence[Stretch], most: FloatArray
 ) -> list[tuple[FloatArray, FloatArray]]:
     """The first solutions with a higher amplitude (dof,) than the most, with that; none if none is found."""
-    for found in _looked(system, stretches):
-        amplitudes = (reported_at(system, z[None], np.eye(z.size)[-1:]).amplitude[0] for z in found)
-        higher = [(z, one) for z, one in zip(found, amplitudes, strict=True) if (one > most).any()]
+    for found in looks(system, stretches, SHARE * system.work.seconds):
+        passed = found.solutions
+        amplitudes = (reported_at(system, z[None], np.eye(z.size)[-1:]).amplitude[0] for z in passed)
+        higher = [(z, one) for z, one in zip(passed, amplitudes, strict=True) if (one > most).any()]
         if higher:
             return higher
     return []
-
-
-def _looked(system: System, stretches: Sequence[Stretch]) -> Iterator[tuple[FloatArray, ...]]:
-    """What the level passes in the middle of stretches, the widest first, as long as it may take."""
-    with system.work.up_to((1.0 + SHARE) * system.work.seconds):
-        for low, high in stretches:
-            try:
-                found = solutions(system, 0.5 * (low + high), NEAR)
-            except TooLongError:
-                return
-            yield found.solutions

@@ -40,7 +40,7 @@ def with_missed(
     """
     system, paths, known = found.system, found.traced.branches.paths, list(stable)
     stretches = stretches_of(paths, known, system.scene.frequency_range)
-    looked = _looked(system, stretches) if stretches else []
+    looked = list(looks(system, stretches, max(SHARE * system.work.seconds, UNNOTICED)))
     if not looked:
         return found, known
     of = multipliers_of(system, system.scene.frequency_range[1])
@@ -67,20 +67,17 @@ def with_branches(
     return replace(every, further=found.further, begun=found.begun)
 
 
-def _looked(system: System, stretches: Sequence[Stretch]) -> list[Found]:
-    """What the level passes in the middle of stretches, the widest first, as long as it may take.
+def looks(system: System, stretches: Sequence[Stretch], seconds: float) -> Iterator[Found]:
+    """What the level passes in the middle of stretches, the widest first, for so many more seconds of work.
 
     Up to where few curves come back from: that takes half as long as to its end.
     """
-    found = list[Found]()
-    before = system.work.seconds
-    with system.work.up_to(before + max(SHARE * before, UNNOTICED)):
+    with system.work.up_to(system.work.seconds + seconds):
         for low, high in stretches:
             try:
-                found.append(solutions(system, 0.5 * (low + high), NEAR))
+                yield solutions(system, 0.5 * (low + high), NEAR)
             except TooLongError:
-                break
-    return found
+                return
 
 
 def _stable(of: Multipliers, looked: Sequence[Found]) -> Iterator[FloatArray]:

@@ -27,7 +27,7 @@ ComplexArray = npt.NDArray[np.complex128]
 
 DIPS = 4  # times that a way between two points is divided in search of a window
 SAFE = -0.3  # logarithm of the greatest multiplier of both, below which none is looked for
-EVEN = math.log(2.0)  # of a product over neighbouring points: one that changes less does not vanish between
+EVEN = math.log(2.0)  # of a product over neighbouring points: of one that changes less no dip is expected
 
 
 class Point(Protocol):
