@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.spectrum import Verdict
+from fcm.scene.model import FloatArray
 
 DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,
 CLOSER = 0.5  # and this part of it where the way was divided: differences fall by squares, errors by cubes
@@ -110,3 +111,37 @@ def _lowest(s: list[float], f: list[float]) -> tuple[float, float]:
         return math.nan, math.nan
     at = 0.5 * (s[0] + s[1] - first / bend)
     return at, f[0] + (at - s[0]) * (first + bend * (at - s[1]))
+
+
+def products(values: npt.NDArray[np.complex128]) -> tuple[FloatArray, FloatArray]:
+    """The logarithms of both products, (place,) each, of multipliers (place, n); 0 is none.
+
+    >>> [each.round(2).tolist() for each in products(np.array([[-0.9, 0.9j, -0.9j]]))]
+    [[-1.71], [-1.16]]
+    """
+    values = np.where(np.abs(values) > LESS, values, 0.0)
+    flip: FloatArray = np.log(np.abs(1.0 + values) + LEAST).sum(axis=1)
+    pair = np.zeros(len(values))
+    for i in range(values.shape[1] - 1):
+        pair += np.log(np.abs(1.0 - values[:, i, None] * values[:, i + 1 :]) + LEAST).sum(axis=1)
+    return flip, pair
+
+
+def foretold(s: FloatArray, f: FloatArray, logarithms: bool) -> tuple[npt.NDArray[np.bool_], ...]:
+    """Whether `dip` finds a place by any three in a row of the values f at lengths s, all alike: between the
+    first two of them, and between the last two; (place - 2,) each."""
+    three = np.array([f[:-2], f[1:-1], f[2:]])
+    if logarithms:
+        three = np.exp(three - three.max(axis=0))
+    width = np.diff(s)
+    with np.errstate(over="ignore", invalid="ignore"):  # by points at one place, which foretell nothing
+        slope = np.diff(three, axis=0) / np.maximum((width[:-1], width[1:]), LEAST)
+        bend = (slope[1] - slope[0]) / np.maximum(s[2:] - s[:-2], LEAST)
+        up = bend > 0.0
+        at = 0.5 * (s[:-2] + s[1:-1] - slope[0] / np.where(up, bend, 1.0))
+        least = three[0] + (at - s[:-2]) * (slope[0] + bend * (at - s[1:-1]))
+        deep = up & (DOUBT * (three.max(axis=0) - least) > least)
+    near = NEAR * width
+    low, high = s[:-1] + near, s[1:] - near
+    wide = width >= NARROW
+    return tuple(deep & (low[k] < at) & (at < high[k]) & wide[k] for k in (slice(-1), slice(1, None)))

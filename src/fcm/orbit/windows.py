@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from fcm.continuation import Between, Path
 from fcm.harmonic.spectrum import Kind, Verdict
-from fcm.harmonic.windows import MANY, Seen, dip, seen
+from fcm.harmonic.windows import LEAST, MANY, Seen, dip, foretold, products, seen
 from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray
@@ -27,7 +27,6 @@ ComplexArray = npt.NDArray[np.complex128]
 
 DIPS = 4  # times that a way between two points is divided in search of a window
 SAFE = -0.3  # logarithm of the greatest multiplier of both, below which none is looked for
-EVEN = math.log(2.0)  # of a product over neighbouring points: of one that changes less no dip is expected
 
 
 class Point(Protocol):
@@ -50,6 +49,40 @@ class Window(NamedTuple):
     orientation: float
 
 
+class _Known(NamedTuple):
+    """What is known of the points of a path, (point,) each: see `Seen`."""
+
+    length: FloatArray
+    stable: npt.NDArray[np.bool_]
+    growth: FloatArray
+    flip: FloatArray
+    pair: FloatArray
+
+    def places(self, first: int, end: int) -> list[Seen]:
+        """Those from the first to before the end."""
+        rows = zip(*(values[first:end].tolist() for values in self), strict=True)
+        return [Seen(*row) for row in rows]
+
+    def suspected(self, jumps: npt.NDArray[np.bool_]) -> list[int]:
+        """The points after which there may be a window: where a dip is foretold, or multipliers may jump."""
+        low, high = self.stable[:-1], self.stable[1:]
+        dips = np.where(low, self._dips(self.flip, self.pair), self._dips(self.growth))
+        near = np.maximum(self.growth[:-1], self.growth[1:]) >= SAFE
+        found: list[int] = np.flatnonzero((low == high) & near & (jumps | dips)).tolist()
+        return found
+
+    def _dips(self, *functions: FloatArray) -> npt.NDArray[np.bool_]:
+        """Whether a dip of any of them is foretold after each point but the last."""
+        s, before = self.length, self.stable[:-2] == self.stable[1:-1]
+        alike = before & (self.stable[1:-1] == self.stable[2:])
+        found = np.zeros(max(s.size - 1, 0), dtype=bool)
+        for values in functions:
+            sides = foretold(s, values, logarithms=len(functions) > 1)
+            for k, side in enumerate(sides):  # between the first two of three points, and the last two
+                found[k : found.size - 1 + k] |= side & alike
+        return found
+
+
 def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> tuple[Path, list[int]]:
     """A path with a point inside each window, and the numbers of these points.
 
@@ -57,10 +90,9 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
     """
     if not points:
         return path, []
-    ways = zip(_lengths(path), points, strict=True)
-    known = [_seen(length, one.multipliers, one.stable) for length, one in ways]
-    jumps = [one.states != other.states for one, other in pairwise(points)]
-    looked = (_window(problem, path, known, k, jump) for k, jump in enumerate(jumps))
+    known = _known(path, points)
+    jumps = np.array([one.states != other.states for one, other in pairwise(points)], dtype=bool)
+    looked = (_window(problem, path, known, k, bool(jumps[k])) for k in known.suspected(jumps))
     found = [one for one in looked if one is not None]
     if not found:
         return path, []
@@ -80,16 +112,12 @@ def with_windows(problem: OrbitProblem, path: Path, points: Sequence[Point]) -> 
     return whole, [k + i for i, k in enumerate(behind)]
 
 
-def _window(problem: OrbitProblem, path: Path, known: Sequence[Seen], k: int, jumps: bool) -> Window | None:
+def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: bool) -> Window | None:
     """A place in a window between a point and the next, if what is known of the points tells of one.
 
     jumps : whether multipliers may jump there.
     """
-    low, high = known[k : k + 2]
-    if low.stable != high.stable or max(low.growth, high.growth) < SAFE:
-        return None
-    if not jumps and low.stable and _even(known[max(k - 1, 0) : k + 3]):
-        return None
+    first, (low, high) = max(k - 1, 0), known.places(k, k + 2)
     between: Between | None = None
 
     def inside(before: Sequence[Seen], low: Seen, high: Seen, after: Sequence[Seen], times: int) -> bool:
@@ -102,7 +130,7 @@ def _window(problem: OrbitProblem, path: Path, known: Sequence[Seen], k: int, ju
         if length is None:
             return False
         between = between or Between(problem, path, k)
-        if not between.put((length - known[k].length) / (known[k + 1].length - known[k].length)):
+        if not between.put((length - start) / width):
             return False
         shot = problem.shot(between.z)
         if shot is None:
@@ -114,15 +142,10 @@ def _window(problem: OrbitProblem, path: Path, known: Sequence[Seen], k: int, ju
             or inside([low], there, high, after, times + 1)
         )
 
-    if not inside(known[max(k - 1, 0) : k], low, high, known[k + 2 : k + 3], 0) or between is None:
+    start, width = low.length, high.length - low.length
+    if not inside(known.places(first, k), low, high, known.places(k + 2, k + 3), 0) or between is None:
         return None
     return Window(k, between.z, between.direction, between.orientation)
-
-
-def _even(places: Sequence[Seen]) -> bool:
-    """Whether the products change little from place to place: told in a tenth of the time of `dip`."""
-    flips, pairs = [one.flip for one in places], [one.pair for one in places]
-    return max(flips) - min(flips) < EVEN and max(pairs) - min(pairs) < EVEN
 
 
 def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
@@ -132,8 +155,18 @@ def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
     return seen(length, Verdict(float(stable), growth, Kind.PAIR, values=values))
 
 
-def _lengths(path: Path) -> list[float]:
+def _known(path: Path, points: Sequence[Point]) -> _Known:
+    """The points of a path, all at once."""
+    values = np.array([point.multipliers for point in points])
+    kept = (values != 1.0) & (np.cumsum(values != 1.0, axis=1) <= MANY)
+    growth = np.log(np.where(kept, np.abs(values), 0.0).max(axis=1, initial=0.0) + LEAST)
+    stable = np.array([point.stable for point in points])
+    flip, pair = (np.where(stable, each, 0.0) for each in products(np.where(kept, values, 0.0)))
+    return _Known(_lengths(path), stable, growth, flip, pair)
+
+
+def _lengths(path: Path) -> FloatArray:
     """Way along the path up to each point, in the greatest sizes of its unknowns."""
     size = np.maximum(np.abs(path.z).max(axis=0), np.finfo(float).tiny)
     steps = np.linalg.norm(np.diff(path.z, axis=0) / size, axis=1)
-    return [0.0, *np.cumsum(steps).tolist()]
+    return np.concatenate(([0.0], np.cumsum(steps)))
