@@ -25,7 +25,9 @@ ROUGH = cython.declare(cython.double, 1e-9)  # and one that does not shrink, tho
 LEFT = cython.declare(cython.double, 1e-10)  # and one that grows: longer ones have met a corner
 CHORD = cython.declare(cython.double, 1e-6)  # a step after which the Jacobian from before it will do
 HOPELESS = cython.declare(cython.double, 0.5)  # of the step before, from the fourth on, where each is dear
-SLIGHT = cython.declare(cython.double, 1e-3)  # of the most: a second step this short is no sign of failure
+# of the most: a second step this short is no sign of failure. Of very unstable motions, and across a corner
+# close by, it may be as long as the first, and those after it shrink
+SLIGHT = cython.declare(cython.double, 0.02)
 CHORDS = cython.declare(cython.int, 3)  # steps with that Jacobian
 KEPT = cython.declare(cython.int, 16)  # the same where to solve takes far less than to factor,
 SHRINKING = cython.declare(cython.double, 0.3)  # and each is at most this part of the one before
