@@ -12,7 +12,7 @@ def solver(matrix):
     return one
 
 
-@pytest.mark.parametrize("size", [1, 2, 7, 39, 40, 41, 119, 120, 130])
+@pytest.mark.parametrize("size", [1, 2, 7, 39, 40, 41, 42, 43, 97, 399, 400])
 def test_solutions_and_the_sign_of_the_determinant(size):
     rng = np.random.default_rng(size)
     matrix = rng.normal(size=(size, size))
@@ -25,7 +25,7 @@ def test_solutions_and_the_sign_of_the_determinant(size):
         assert one.right == pytest.approx(np.linalg.solve(matrix, right), rel=1e-9, abs=1e-10)
 
 
-@pytest.mark.parametrize("size", [1, 39, 40, 119, 120])
+@pytest.mark.parametrize("size", [1, 39, 40, 119, 399, 400])
 def test_the_inverse(size):
     matrix = np.random.default_rng(size).normal(size=(size, size))
     one = solver(matrix)
@@ -33,7 +33,7 @@ def test_the_inverse(size):
     assert one.inverse() @ matrix == pytest.approx(np.eye(size), abs=1e-10)
 
 
-@pytest.mark.parametrize("size", [3, 50, 125])
+@pytest.mark.parametrize("size", [3, 50, 402])
 def test_what_has_no_solution_is_said(size):
     singular = np.ones((size, size))
     assert not solver(singular).factor()
@@ -41,7 +41,7 @@ def test_what_has_no_solution_is_said(size):
     assert not solver(singular).factor()
 
 
-@pytest.mark.parametrize("size", [45, 119, 125])
+@pytest.mark.parametrize("size", [45, 119, 402])
 def test_a_stiff_row_costs_no_digits_of_the_others(size):
     rng = np.random.default_rng(0)
     matrix = np.eye(size) + 0.1 * rng.normal(size=(size, size))

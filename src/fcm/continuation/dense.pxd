@@ -7,5 +7,3 @@ cdef class Solver:
     cdef object factors
     cpdef bint factor(self) except -1
     cpdef int solve(self) except -1
-    cdef bint eliminate(self) noexcept
-    cdef void substitute(self) noexcept
