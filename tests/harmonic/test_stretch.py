@@ -33,16 +33,20 @@ def test_where_the_work_is_limited_the_error_cannot_be_told(monkeypatch):
     assert np.isnan(errors("beam")).any()
 
 
+def needed(curve, first, last) -> float:
+    """The effort that a stretch takes if its further harmonics have as many more corners and folds."""
+    few, more = len(curve.corrector.system.harmonics), len(curve.sets(np.array([first, last])))
+    assert few < more
+    unknowns = len(curve.corrector.system.scene.contacts) * (2 + 4 * more)
+    return curve.path.evaluations * (last - first) / len(curve.path.z) * more / few * unknowns**2
+
+
 def test_a_stretch_that_takes_too_long_with_its_further_harmonics_is_not_begun(monkeypatch):
     """They make more corners and folds, so that more evaluations are needed than the curve itself took."""
     own, begun = stretch._followed, []
 
     def just_short(curve, first, last):
-        few, more = len(curve.corrector.system.harmonics), len(curve.sets(np.array([first, last])))
-        unknowns = len(curve.corrector.system.scene.contacts) * (2 + 4 * more)
-        needed = curve.path.evaluations * (last - first) / len(curve.path.z)
-        curve.effort = 0.9 * needed * more / few * unknowns**2
-        assert few < more
+        curve.effort = 0.9 * needed(curve, first, last)
         return heights(curve, first, last)
 
     heights = stretch.heights
@@ -50,6 +54,19 @@ def test_a_stretch_that_takes_too_long_with_its_further_harmonics_is_not_begun(m
     monkeypatch.setattr(stretch, "_followed", lambda *a: begun.append(a) or own(*a))
     assert np.isnan(errors("beam")).any()
     assert not begun
+
+
+def test_of_stretches_that_together_take_too_long_none_is_begun(monkeypatch):
+    """Where one fits into the effort, and is begun, it is not for the same error if that takes two."""
+    own, efforts, begun = stretch.heights, [], []
+    monkeypatch.setattr("fcm.harmonic.crest.heights", lambda *a: efforts.append(needed(*a)) or own(*a))
+    monkeypatch.setattr(stretch, "_followed", lambda *a: begun.append(a))
+    errors("beam")
+    assert len(efforts) == len(begun) == 1
+    monkeypatch.setattr(corrected, "EFFORT", 1.5 * efforts[0])
+    monkeypatch.setattr("fcm.harmonic.crest.runs", lambda missed: 2 * list(runs(missed)))
+    assert np.isnan(errors("beam")).any()
+    assert len(begun) == 1
 
 
 def test_where_an_error_cannot_be_told_no_other_stretch_is_followed_for_it(monkeypatch):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,7 +11,7 @@ from fcm.continuation import Mark
 from fcm.harmonic.believed import runs
 from fcm.harmonic.corrected import TOGETHER, Corrected, Indices
 from fcm.harmonic.shifted import rises
-from fcm.harmonic.stretch import TRIES, heights
+from fcm.harmonic.stretch import TRIES, effort_of, heights
 from fcm.scene.model import FloatArray
 
 RIVAL = 0.8  # of the greatest amplitude: what is this high may become the greatest
@@ -54,10 +56,10 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
             greatest = (
                 greatest if beyond is None else np.maximum(greatest, np.where(tops == top, beyond, 0.0))
             )
-    unknown = np.zeros(len(tops), dtype=np.bool_)
-    for first, end in runs(np.isnan(change[:, 0])):
-        may = _may_exceed(corrected, change, first, end, now) if end - first > FEW else d < 0
-        rivals = (may | ((first <= tops) & (tops < end))) & ~unknown
+    stretches = list(_rivals(corrected, change, tops, now))
+    unknown = _too_long(corrected, stretches, len(tops))
+    for first, end, rivals in stretches:
+        rivals = rivals & ~unknown
         if rivals.any():
             followed = heights(corrected, first - 1, end)
             more = None if followed is None else _settling(corrected, (first - 1, end))
@@ -67,6 +69,30 @@ def crests(corrected: Corrected, growth: FloatArray, change: FloatArray, tops: I
                 greatest = np.maximum(greatest, followed * (1.0 + more))
     known: FloatArray = np.where(unknown, np.nan, greatest)
     return known
+
+
+def _rivals(
+    corrected: Corrected, change: FloatArray, tops: Indices, now: FloatArray
+) -> Iterator[tuple[int, int, npt.NDArray[np.bool_]]]:
+    """Stretches without displacements, first to before end, with those (dof,) that may be highest there."""
+    for first, end in runs(np.isnan(change[:, 0])):
+        rivals = (first <= tops) & (tops < end)
+        if end - first > FEW:
+            rivals |= _may_exceed(corrected, change, first, end, now)
+        yield first, end, rivals
+
+
+def _too_long(
+    corrected: Corrected, stretches: list[tuple[int, int, npt.NDArray[np.bool_]]], dofs: int
+) -> npt.NDArray[np.bool_]:
+    """Those (dof,) whose stretches, each of which must be followed, together take more than is left of the
+    effort: then none of them need be."""
+    effort = np.zeros(dofs)
+    for first, end, rivals in stretches:
+        if rivals.any():
+            effort += rivals * effort_of(corrected, first - 1, end)
+    long: npt.NDArray[np.bool_] = effort > corrected.effort
+    return long
 
 
 def _settling(corrected: Corrected, ends: tuple[int, int]) -> FloatArray | None:

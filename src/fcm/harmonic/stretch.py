@@ -93,16 +93,13 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
     as far as that stays near the stretch. None if that is nothing, or too long, which is foreseen from
     how many evaluations the stretch itself took.
     """
-    path = corrected.path
-    inside = np.linspace(max(first, 0), min(last, len(path.z) - 1), 5)
-    more = corrected.sets(np.unique(inside.astype(np.intp)))
+    path, more = corrected.path, _harmonics(corrected, first, last)
     before = _end(corrected, more, range(first, max(first - TRIES, -1), -1))
     behind = _end(corrected, more, range(last, min(last + TRIES, len(path.z))))
     span = _span(corrected, before, behind)
     balance = corrected.corrector.system.with_harmonics(more).balance()
     budget = _Budget(corrected, balance.unknowns)
-    grown = len(more) / len(corrected.corrector.system.harmonics)  # as the corners and folds are
-    if grown * path.evaluations * (last - first) / len(path.z) > budget.left:
+    if _foreseen(corrected, more, first, last) > budget.left:
         return None
     pieces = []
     for begin, end in ((before, behind), (behind, before)):
@@ -115,6 +112,26 @@ def heights(corrected: Corrected, first: int, last: int) -> FloatArray | None:
             return piece.greatest
         pieces.append(piece.greatest)
     return np.max(pieces, axis=0) if pieces else None
+
+
+def effort_of(corrected: Corrected, first: int, last: int) -> float:
+    """What following the corrected curve between two points is foreseen to take of the effort."""
+    more = _harmonics(corrected, first, last)
+    unknowns = len(corrected.corrector.system.scene.contacts) * (2 + 4 * len(more))
+    return _foreseen(corrected, more, first, last) * float(unknowns**2)
+
+
+def _harmonics(corrected: Corrected, first: int, last: int) -> tuple[int, ...]:
+    """Those of the corrected curve between two points, which may be beyond the ends of the path."""
+    inside = np.linspace(max(first, 0), min(last, len(corrected.path.z) - 1), 5)
+    return corrected.sets(np.unique(inside.astype(np.intp)))
+
+
+def _foreseen(corrected: Corrected, more: tuple[int, ...], first: int, last: int) -> float:
+    """Evaluations that it takes with more harmonics, by those that the stretch itself took."""
+    path = corrected.path
+    grown = len(more) / len(corrected.corrector.system.harmonics)  # as the corners and folds are
+    return grown * path.evaluations * (last - first) / len(path.z)
 
 
 @dataclass(frozen=True)
