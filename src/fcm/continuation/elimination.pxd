@@ -9,11 +9,11 @@ cdef extern from *:
     #define FCM_WIDE
     #endif
 
-    /* From numbers of four rows a, one after another, those of four above, u, times by (row of a, row of u). */
+    /* From numbers of four rows a those of four above, u, times by (row of a, of u), one after another. */
     FCM_WIDE static void fcm_subtract(
-        double *restrict a0, double *restrict a1, double *restrict a2, double *restrict a3,
-        const double *restrict u0, const double *restrict u1, const double *restrict u2,
-        const double *restrict u3, const double *restrict by, ptrdiff_t count)
+        double *__restrict a0, double *__restrict a1, double *__restrict a2, double *__restrict a3,
+        const double *__restrict u0, const double *__restrict u1, const double *__restrict u2,
+        const double *__restrict u3, const double *__restrict by, ptrdiff_t count)
     {
         const double a = by[0], b = by[1], c = by[2], d = by[3], e = by[4], f = by[5], g = by[6], h = by[7],
             i = by[8], k = by[9], l = by[10], m = by[11], n = by[12], o = by[13], p = by[14], q = by[15];
