@@ -19,6 +19,7 @@ from fcm.harmonic.system import System
 from fcm.harmonic.windows import dip, seen
 from fcm.motion import State, simulate
 from fcm.orbit import periodic
+from fcm.response import trace
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
 
 from ..motion.cases import SCENES, one_mode, yang
@@ -297,6 +298,37 @@ def test_verdicts_of_spectra_with_an_even_number_above_one(fine, plain, stable):
     found = even(*(Spectrum([complex(v) for v in values]) for values in (fine, plain)))
     assert found.stable == stable or (math.isnan(stable) and math.isnan(found.stable))
     assert math.isnan(stable) or (found.growth > 0.0) == (stable == 0.0)
+
+
+GAPS = {
+    "structure": {
+        "dofs": ["a", "b"],
+        "mass": [[1.174, 0.1528], [0.1528, 0.9865]],
+        "stiffness": [[6.716, -0.7506], [-0.7506, 5.245]],
+        "damping": 0.0134,
+    },
+    "contact": [
+        {"name": "one", "tangential": {"a": 0.39}, "normal": {"b": -1.92}}
+        | {"mu": 0.442, "k_u": 0.745, "k_v": 4.082, "n_0": -2.485},
+        {"name": "other", "tangential": {"a": -0.74, "b": -0.23}, "normal": {"b": 0.42}}
+        | {"mu": 0.52, "k_u": 0.675, "k_v": 5.497, "n_0": -1.127},
+    ],
+    "force": [{"dof": "b", "amplitude": 1.0, "phase": 1.205}],
+    "load": [{"dof": "a", "force": -1.285}],
+}
+
+
+def test_a_window_that_begins_beside_a_place_that_was_looked_at_is_found():
+    """From 1.687 to 1.7115; what foretells a window leads to 1.7128, where two pairs have hardly parted."""
+    scene = scene_from_dict(GAPS | {"response": {"frequency": [1.5386, 2.872], "harmonics": 7}})
+    (curve,) = trace(scene).curves
+    inside = (curve.frequency > 1.688) & (curve.frequency < 1.71)
+    assert np.abs(exact(scene, 1.70)).max() > 1.0 and (curve.stable[inside] != 1.0).all()
+    crossings = curve.frequency[np.isnan(curve.stable) & (curve.frequency < 1.75)]
+    assert crossings.size == 2
+    for omega, growing in ((crossings.min(), 1.0), (crossings.max(), -1.0)):
+        sides = [np.abs(exact(scene, omega + d)).max() for d in (-0.005, 0.005)]
+        assert growing * (sides[1] - 1.0) > 0.0 > growing * (sides[0] - 1.0)
 
 
 def test_multipliers_beyond_all_bounds_are_no_trouble():

@@ -28,7 +28,7 @@ MANY = 60  # multipliers, of more of which two are always about to meet
 LESS = 0.5  # size of multipliers that matter: one of a pair of 0.75 is not less as the other leaves
 NARROW = 1e-3  # a way, relative to the size of the solution, that is not divided
 LEAST = 1e-300  # a product, or a length
-NEAR = 0.1  # of the way between two places: what is that near to one of them is known
+NEAR = 0.1  # of the way between two places: nearer to one no other is looked at, but a window may begin there
 
 
 class Seen(NamedTuple):
@@ -78,8 +78,9 @@ def dip(low: Seen, high: Seen, places: Sequence[Seen], divided: int = 0) -> floa
         lengths = [one.length for one in three]
         for values in _positive(three):
             place, least = _lowest(lengths, values)
-            if not low.length + near < place < high.length - near:
+            if not low.length <= place <= high.length:
                 continue
+            place = min(max(place, low.length + near), high.length - near)
             greatest = max(values)
             doubt = (DOUBT * CLOSER**divided * (greatest - least) - least) / greatest
             if doubt > most:
