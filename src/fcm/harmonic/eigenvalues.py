@@ -1,7 +1,7 @@
 r"""Eigenvalues of small real matrices, without leaving compiled code: Francis's implicit double shifts.
 
 The matrix is balanced by powers of two, reduced to Hessenberg form, and one or two eigenvalues at a time are
-split off at its end, where a subdiagonal element has become nothing beside its neighbours. All reflections
+split off at its end, where a subdiagonal element has become nothing beside its neighbours. All `Reflections`
 are orthogonal, so that the eigenvalues are those of a matrix within rounding of the balanced one.
 """
 
@@ -12,6 +12,11 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs, isfinite, sqrt
 
+if cython.compiled:
+    from cython.cimports.fcm.harmonic.reflections import Reflections
+else:
+    from fcm.harmonic.reflections import Reflections
+
 EPS = cython.declare(cython.double, 2.220446049250313e-16)
 ROUNDS = cython.declare(cython.int, 300)  # of shifts for one or two eigenvalues; 2 or 3 are usual
 UNUSUAL = cython.declare(
@@ -21,12 +26,12 @@ UNEVEN = cython.declare(cython.double, 0.95)  # a sum that balancing makes less 
 
 
 @cython.cclass
-class Eigenvalues:
+class Eigenvalues(Reflections):
     """`find` those of a matrix, of at most so many rows; re, im (n,) are then theirs, pairs side by side."""
 
     def __init__(self, most: cython.int) -> None:
-        self.a = np.zeros((most, most))
-        self.re, self.im, self.v = np.zeros((3, max(most, 3)))
+        Reflections.__init__(self, most)
+        self.re, self.im = np.zeros((2, most))
         self.n = 0
 
     def of(self, matrix: npt.NDArray[np.float64]) -> list[complex] | None:
@@ -88,7 +93,7 @@ class Eigenvalues:
         for k in range(n - 2):
             for i in range(n - 1 - k):
                 self.v[i] = self.a[k + 1 + i, k]
-            self.reflect(k + 1, n - 1 - k, k, 0, n)
+            self.reflect(k + 1, n - 1 - k, k, 0, n, n)
             for i in range(k + 2, n):
                 self.a[i, k] = 0.0
 
@@ -176,56 +181,10 @@ class Eigenvalues:
             if k > first:
                 for i in range(count):
                     self.v[i] = a[k + i, k - 1]
-            self.reflect(k, count, max(k - 1, first), first, end)
+            # below the bulge there is nothing but the subdiagonal
+            self.reflect(k, count, max(k - 1, first), first, min(k + 4, end), end)
             for i in range(1, count if k > first else 1):
                 a[k + i, k - 1] = 0.0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def reflect(
-        self,
-        at: cython.Py_ssize_t,
-        count: cython.Py_ssize_t,
-        left: cython.Py_ssize_t,
-        top: cython.Py_ssize_t,
-        end: cython.Py_ssize_t,
-    ) -> cython.void:
-        """A similarity by the reflection that turns v into the first axis.
-
-        It is of the rows and columns from `at` on: of the rows what is right of `left`, of the columns what
-        is below `top`, both before `end`.
-        """
-        a: cython.double[:, ::1] = self.a
-        v: cython.double[::1] = self.v
-        i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
-        most: cython.double = 0.0
-        square: cython.double = 0.0
-        total: cython.double
-        for i in range(count):
-            most = max(most, fabs(v[i]))
-        if most == 0.0:
-            return
-        for i in range(count):
-            v[i] /= most
-            square += v[i] * v[i]
-        total = sqrt(square) if v[0] >= 0.0 else -sqrt(square)
-        weight: cython.double = 1.0 + v[0] / total
-        for i in range(1, count):
-            v[i] /= v[0] + total
-        v[0] = 1.0
-        for j in range(left, end):
-            total = 0.0
-            for i in range(count):
-                total += v[i] * a[at + i, j]
-            for i in range(count):
-                a[at + i, j] -= weight * total * v[i]
-        for j in range(top, end):
-            total = 0.0
-            for i in range(count):
-                total += v[i] * a[j, at + i]
-            for i in range(count):
-                a[j, at + i] -= weight * total * v[i]
 
 
 @cython.cfunc

@@ -23,6 +23,7 @@ import numpy.typing as npt
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
+from fcm.harmonic.propagator import Propagator
 from fcm.harmonic.refined import Refined
 from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even
 from fcm.harmonic.stiffness import Stiffness
@@ -33,7 +34,7 @@ from fcm.scene.model import FloatArray
 ComplexArray = npt.NDArray[np.complex128]
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
-SMALL = 16  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
+SMALL = 60  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
 SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
 FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
@@ -58,8 +59,9 @@ class Multipliers:
         stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
-        self.fine = Monodromy(stiffness, Transitions(contact, finer))
-        self.plain = Monodromy(stiffness, Transitions(contact, harmonics), self.fine.propagator)
+        carried = system.propagators.setdefault(stiffness.modes, Propagator())
+        self.fine = Monodromy(stiffness, Transitions(contact, finer), carried)
+        self.plain = Monodromy(stiffness, Transitions(contact, harmonics), carried)
         self.eigenvalues = Eigenvalues(SMALL)
         self.further: tuple[Refined, Multipliers] | None = None
         self.take(system)

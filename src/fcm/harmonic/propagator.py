@@ -4,42 +4,90 @@ In time, not in angle, the equations of a state do not depend on the frequency:
 
     q' = v,    v' = -K q - D v + B w
 
-So they are decomposed once for each state that comes up again, on the whole of a curve.
+So they are decomposed once for each state that comes up again, for all that is followed of a curve.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
+import cython
 import numpy as np
 import numpy.typing as npt
+from cython.cimports.libc.math import cos, expm1, sin
 
 from fcm.scene.model import FloatArray
 
-MOST = 256  # states that are remembered
+MOST = cython.declare(cython.int, 256)  # states that are remembered
 WORST = 1e6  # condition of the eigenvectors, beyond which they are not used
 
 ComplexArray = npt.NDArray[np.complex128]
 
 
-class _Parts(NamedTuple):
-    """The eigenvalues of a state, by time, one of each pair; shares of them as real and imaginary parts."""
+@cython.cclass
+class Parts:
+    """A disturbance as the sum of those that grow by exp(value time), one value of each pair.
 
-    values: ComplexArray  # (value,)
-    still: npt.NDArray[np.intp]  # those that are 0
-    share: FloatArray  # (2 modes, 2 values) of (q, v)
-    driven: (
-        FloatArray | None
-    )  # (contact, 2 values) of the places, of which none counts where no contact sticks
-    back: FloatArray  # (2 values, 2 modes)
+    values (value,); real and imaginary parts side by side of share (2 values, 2 modes) of (q, v), and of
+    driven (2 values, contact) of the places, None where no contact sticks; back (2 modes, 2 values).
+    """
+
+    def __init__(
+        self, values: ComplexArray, share: FloatArray, driven: FloatArray | None, back: FloatArray
+    ) -> None:
+        self.re, self.im = np.array(values.real), np.array(values.imag)
+        self.share, self.driven, self.back = share, driven, back
+        self.modes, self.count = len(back) // 2, len(values)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def carry(self, time: cython.double, omega: cython.double, X: FloatArray) -> cython.int:
+        """Replace the rows (q, dq / dangle) of X, above those of w, by what they are after a time."""
+        rows: cython.double[:, :] = X
+        m: cython.Py_ssize_t = self.modes
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        for i in range(m, 2 * m):
+            for k in range(rows.shape[1]):
+                rows[i, k] *= omega
+        moving = X[: 2 * m]
+        parts = np.matmul(self.share, moving)
+        self.grow(time, parts, None if self.driven is None else np.matmul(self.driven, X[2 * m :]))
+        np.matmul(self.back, parts, out=moving)
+        for i in range(m, 2 * m):
+            for k in range(rows.shape[1]):
+                rows[i, k] /= omega
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def grow(
+        self, time: cython.double, part: cython.double[:, ::1], drive: cython.double[:, ::1]
+    ) -> cython.void:
+        """The parts (2 values, column), of which the places drive some, or None, after a time.
+
+        What is driven grows by (exp(value time) - 1) / value, of no value by the time.
+        """
+        i: cython.Py_ssize_t
+        re: cython.double
+        im: cython.double
+        for i in range(self.count):
+            less: cython.double = expm1(self.re[i] * time)
+            half: cython.double = sin(0.5 * self.im[i] * time)
+            re = less * cos(self.im[i] * time) - 2.0 * half * half
+            im = (1.0 + less) * sin(self.im[i] * time)
+            turn(part[2 * i], part[2 * i + 1], part[2 * i], part[2 * i + 1], re, im)
+            if drive is not None:
+                still: cython.bint = self.re[i] == 0.0 and self.im[i] == 0.0
+                re = time if still else re
+                turn(part[2 * i], part[2 * i + 1], drive[2 * i], drive[2 * i + 1], re, im)
 
 
 class Propagator:
     """States by their keys, each seen once before it is decomposed."""
 
     def __init__(self) -> None:
-        self.known: dict[bytes, _Parts | None] = {}
+        self.known: dict[bytes, Parts | None] = {}
         self.seen: set[bytes] = set()
 
     def through(
@@ -57,21 +105,12 @@ class Propagator:
         parts = self._parts(key, omega, system)
         if parts is None:
             return False
-        m, time = len(parts.share) // 2, angle / omega
-        X[m : 2 * m] *= omega
-        more = np.expm1(parts.values * time)
-        share = (X[: 2 * m].T @ parts.share).view(np.complex128)
-        share += more * share
-        if parts.driven is not None:
-            more[parts.still] = time
-            share += more * (X[2 * m :].T @ parts.driven).view(np.complex128)
-        X[: 2 * m] = (share.view(np.float64) @ parts.back).T
-        X[m : 2 * m] /= omega
+        parts.carry(angle / omega, omega, X)
         return True
 
     def _parts(
         self, key: bytes, omega: float, system: Callable[[], tuple[FloatArray, FloatArray, FloatArray]]
-    ) -> _Parts | None:
+    ) -> Parts | None:
         if key in self.known:
             return self.known[key]
         if key not in self.seen or len(self.known) >= MOST:
@@ -86,7 +125,7 @@ class Propagator:
         return self.known[key]
 
 
-def _decomposed(A: FloatArray, B: FloatArray) -> _Parts | None:
+def _decomposed(A: FloatArray, B: FloatArray) -> Parts | None:
     """None where the eigenvectors are nearly dependent."""
     try:
         values, vectors = np.linalg.eig(A)
@@ -99,12 +138,30 @@ def _decomposed(A: FloatArray, B: FloatArray) -> _Parts | None:
     one = values.imag >= 0.0
     values, vectors, inverse = values[one].astype(np.complex128), vectors[:, one], inverse[one]
     pair = np.where(values.imag > 0.0, 2.0, 1.0)
-    still = np.flatnonzero(values == 0.0)
-    # what drives grows by (exp(value time) - 1) / value, of no value by the time
     driven = _real((inverse @ B) / np.where(values == 0.0, 1.0, values)[:, None]) if B.any() else None
-    return _Parts(values, still, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
+    return Parts(values, _real(inverse), driven, _real(np.conj(vectors * pair).T).T.copy())
 
 
 def _real(rows: ComplexArray) -> FloatArray:
-    """(value, n) as (n, 2 values): real and imaginary parts side by side."""
-    return np.ascontiguousarray(rows.T, dtype=np.complex128).view(np.float64)
+    """(value, n) as (2 values, n): real and imaginary parts side by side."""
+    return np.stack((rows.real, rows.imag), axis=1).reshape(2 * len(rows), -1)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def turn(
+    re: cython.double[::1],
+    im: cython.double[::1],
+    by_re: cython.double[::1],
+    by_im: cython.double[::1],
+    times: cython.double,
+    times_im: cython.double,
+) -> cython.void:
+    """Add (times + i times_im) (by_re + i by_im) to re + i im, which it may be."""
+    k: cython.Py_ssize_t
+    one: cython.double
+    other: cython.double
+    for k in range(re.shape[0]):
+        one, other = by_re[k], by_im[k]
+        re[k] += times * one - times_im * other
+        im[k] += times * other + times_im * one
