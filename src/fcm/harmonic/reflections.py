@@ -1,4 +1,7 @@
-"""Reflections of a square matrix from both sides, which leave its eigenvalues as they are."""
+"""Reflections of a square matrix from both sides, which leave its eigenvalues as they are.
+
+Arrays have no local names here: to take one counts a reference, which lasts as long as a short row does.
+"""
 
 from __future__ import annotations
 
@@ -45,25 +48,24 @@ class Reflections:
     @cython.exceptval(check=False)
     def aim(self, count: cython.Py_ssize_t) -> cython.double:
         """Let 1 - weight v v' be the reflection that turns v into the first axis; the weight, 0 if v is 0."""
-        v: cython.double[::1] = self.v
         i: cython.Py_ssize_t
         most: cython.double = 0.0
         square: cython.double = 0.0
         part: cython.double
         for i in range(count):
-            most = max(most, fabs(v[i]))
+            most = max(most, fabs(self.v[i]))
         if most == 0.0:
             return 0.0
         part = 1.0 / most  # divisions take longest, and of a bulge's reflections as long as all else
         for i in range(count):
-            v[i] *= part
-            square += v[i] * v[i]
-        total: cython.double = sqrt(square) if v[0] >= 0.0 else -sqrt(square)
-        weight: cython.double = 1.0 + v[0] / total
-        part = 1.0 / (v[0] + total)
+            self.v[i] *= part
+            square += self.v[i] * self.v[i]
+        total: cython.double = sqrt(square) if self.v[0] >= 0.0 else -sqrt(square)
+        weight: cython.double = 1.0 + self.v[0] / total
+        part = 1.0 / (self.v[0] + total)
         for i in range(1, count):
-            v[i] *= part
-        v[0] = 1.0
+            self.v[i] *= part
+        self.v[0] = 1.0
         return weight
 
     @cython.cfunc
@@ -72,16 +74,15 @@ class Reflections:
         self, at: cython.Py_ssize_t, left: cython.Py_ssize_t, end: cython.Py_ssize_t, weight: cython.double
     ) -> cython.void:
         """Of a bulge, whose rows are short: what they make of one another is not stored between."""
-        a: cython.double[:, ::1] = self.a
         j: cython.Py_ssize_t
         second: cython.double = self.v[1]
         third: cython.double = self.v[2]
         total: cython.double
         for j in range(left, end):
-            total = weight * (a[at, j] + second * a[at + 1, j] + third * a[at + 2, j])
-            a[at, j] -= total
-            a[at + 1, j] -= total * second
-            a[at + 2, j] -= total * third
+            total = weight * (self.a[at, j] + second * self.a[at + 1, j] + third * self.a[at + 2, j])
+            self.a[at, j] -= total
+            self.a[at + 1, j] -= total * second
+            self.a[at + 2, j] -= total * third
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -89,16 +90,15 @@ class Reflections:
         self, at: cython.Py_ssize_t, top: cython.Py_ssize_t, bottom: cython.Py_ssize_t, weight: cython.double
     ) -> cython.void:
         """The same of its columns."""
-        a: cython.double[:, ::1] = self.a
         j: cython.Py_ssize_t
         second: cython.double = self.v[1]
         third: cython.double = self.v[2]
         total: cython.double
         for j in range(top, bottom):
-            total = weight * (a[j, at] + second * a[j, at + 1] + third * a[j, at + 2])
-            a[j, at] -= total
-            a[j, at + 1] -= total * second
-            a[j, at + 2] -= total * third
+            total = weight * (self.a[j, at] + second * self.a[j, at + 1] + third * self.a[j, at + 2])
+            self.a[j, at] -= total
+            self.a[j, at + 1] -= total * second
+            self.a[j, at + 2] -= total * third
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -111,21 +111,19 @@ class Reflections:
         weight: cython.double,
     ) -> cython.void:
         """a - weight v (v' a), row by row."""
-        a: cython.double[:, ::1] = self.a
-        w: cython.double[::1] = self.w
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         part: cython.double
         for j in range(left, end):
-            w[j] = 0.0
+            self.w[j] = 0.0
         for i in range(count):
             part = weight * self.v[i]
             for j in range(left, end):
-                w[j] += part * a[at + i, j]
+                self.w[j] += part * self.a[at + i, j]
         for i in range(count):
             part = self.v[i]
             for j in range(left, end):
-                a[at + i, j] -= part * w[j]
+                self.a[at + i, j] -= part * self.w[j]
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -138,8 +136,6 @@ class Reflections:
         weight: cython.double,
     ) -> cython.void:
         """a - weight (a v) v'; of each row's sum four parts at once, which need not wait for one another."""
-        a: cython.double[:, ::1] = self.a
-        v: cython.double[::1] = self.v
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         p: cython.double
@@ -150,14 +146,14 @@ class Reflections:
             p = q = r = s = 0.0
             i = 0
             while i + 4 <= count:
-                p += v[i] * a[j, at + i]
-                q += v[i + 1] * a[j, at + i + 1]
-                r += v[i + 2] * a[j, at + i + 2]
-                s += v[i + 3] * a[j, at + i + 3]
+                p += self.v[i] * self.a[j, at + i]
+                q += self.v[i + 1] * self.a[j, at + i + 1]
+                r += self.v[i + 2] * self.a[j, at + i + 2]
+                s += self.v[i + 3] * self.a[j, at + i + 3]
                 i += 4
             while i < count:
-                p += v[i] * a[j, at + i]
+                p += self.v[i] * self.a[j, at + i]
                 i += 1
             p = weight * (p + q + r + s)
             for i in range(count):
-                a[j, at + i] -= p * v[i]
+                self.a[j, at + i] -= p * self.v[i]
