@@ -26,8 +26,9 @@ def test_of_peaks_that_a_branch_of_more_harmonics_exceeds_no_error_is_told():
     assert all(np.isnan(peak.error) for peak in peaks)
 
 
-def test_a_higher_branch_of_more_harmonics_is_led_to_those_given():
-    found = curve(7, (1.1, 1.6))
+@pytest.mark.parametrize("span", [(1.1, 1.6), (1.23, 1.6)])  # it is in the middle of no stretch of the second
+def test_a_higher_branch_of_more_harmonics_is_led_to_those_given(span):
+    found = curve(7, span)
     off = found.frequency - 1.25
     passed = np.flatnonzero(off[:-1] * off[1:] < 0.0)
     part = (off[passed] / (off[passed] - off[passed + 1]))[:, None]

@@ -28,6 +28,7 @@ from fcm.scene.model import FloatArray
 
 SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take,
 UNNOTICED = 0.1  # and seconds of work that it may in any case: of small scenes all stretches are looked at
+WIDE = 0.1  # of the range: of a stretch that is wider more than the middle is looked at
 
 
 def with_missed(
@@ -70,14 +71,25 @@ def with_branches(
 def looks(system: System, stretches: Sequence[Stretch], seconds: float) -> Iterator[Found]:
     """What the level passes in the middle of stretches, the widest first, for so many more seconds of work.
 
-    Up to where few curves come back from: that takes half as long as to its end.
+    Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
+    is followed up to where few curves come back from: that takes half as long as to its end.
     """
+    first, last = system.scene.frequency_range
+    left = sorted(stretches, key=_width)
     with system.work.up_to(system.work.seconds + seconds):
-        for low, high in stretches:
+        while left:
+            low, high = left.pop()
+            middle = 0.5 * (low + high)
             try:
-                yield solutions(system, 0.5 * (low + high), NEAR)
+                yield solutions(system, middle, NEAR)
             except TooLongError:
                 return
+            if high - low > WIDE * (last - first):
+                left = sorted([*left, (low, middle), (middle, high)], key=_width)
+
+
+def _width(stretch: Stretch) -> float:
+    return stretch[1] - stretch[0]
 
 
 def _stable(of: Multipliers, looked: Sequence[Found]) -> Iterator[FloatArray]:
