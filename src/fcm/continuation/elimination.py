@@ -151,7 +151,9 @@ def _four_rows(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.void:
 @cython.exceptval(check=False)
 def _greatest(a: cython.double[:, ::1], i: cython.Py_ssize_t) -> cython.double:
     """Of a row, from the diagonal on, the greatest size: four at a time, that do not wait for one another.
-    Not 0 and not finite where one of them is not."""
+
+    What is no number is passed over here, and makes its column none in all rows below: the last has 0.
+    """
     n: cython.Py_ssize_t = a.shape[0]
     j: cython.Py_ssize_t = i
     p: cython.double = 0.0
