@@ -1,4 +1,4 @@
-"""Frequencies in the unit of a scene; units of the numbers of its contacts."""
+"""Frequencies in the unit of a scene; units of the numbers that are swept."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ FloatArray = npt.NDArray[np.float64]
 UNIT = {"rad/s": 1.0, "Hz": 2.0 * np.pi}  # one unit of frequency in rad/s
 CF_UNIT = {"rad/s": "rad s-1", "Hz": "Hz"}  # as the conventions for netCDF files write them
 EXCITATION = "excitation.frequency"  # key of where a curve over the level of the forces is
+NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its number of one
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 
@@ -35,14 +36,19 @@ def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
     return np.where(same, rounded, value)
 
 
-def unit_of_number(key: str, length: str, force: str) -> str:
-    """The unit of a number of a contact by its key path, empty where none is given or known.
+def unit_of_number(key: str, length: str, force: str, frequency: str) -> str:
+    """The unit of a number that is swept by its key path, empty where none is given or known.
 
-    >>> unit_of_number("contact.*.n_0", "mm", "N"), unit_of_number("contact.shroud.k_u", "mm", "N")
+    >>> given = "mm", "N", "Hz"
+    >>> unit_of_number("contact.*.n_0", *given), unit_of_number("contact.shroud.k_u", *given)
     ('N', 'N/mm')
-    >>> unit_of_number("contact.shroud.mu", "mm", "N"), unit_of_number("contact.shroud.k_u", "mm", "")
+    >>> unit_of_number("contact.shroud.mu", *given), unit_of_number("contact.shroud.k_u", "mm", "", "Hz")
     ('', '')
+    >>> unit_of_number("excitation.frequency", *given), unit_of_number("modal.frequency.0", *given)
+    ('Hz', 'Hz')
     """
+    if key in (EXCITATION, NATURAL) or key.startswith(f"{NATURAL}."):
+        return frequency
     if not key.startswith("contact."):
         return ""
     stiffness = f"{force}/{length}" if force and length else ""
@@ -50,11 +56,11 @@ def unit_of_number(key: str, length: str, force: str) -> str:
     return units.get(key.rpartition(".")[2], "")
 
 
-def headed(key: str, units: tuple[str, str]) -> str:
-    """The head of a column of numbers of a contact, with their unit where it is known.
+def headed(key: str, length: str, force: str, frequency: str) -> str:
+    """The head of a column of swept numbers, with their unit where it is known.
 
-    >>> headed("contact.shroud.n_0", ("mm", "N")), headed("contact.shroud.mu", ("mm", "N"))
+    >>> headed("contact.shroud.n_0", "mm", "N", "Hz"), headed("contact.shroud.mu", "mm", "N", "Hz")
     ('contact.shroud.n_0 [N]', 'contact.shroud.mu')
     """
-    unit = unit_of_number(key, *units)
+    unit = unit_of_number(key, length, force, frequency)
     return f"{key} [{unit}]" if unit else key

@@ -1,11 +1,18 @@
 """Units of swept values in the names of curves."""
 
+import csv
+
 import pytest
 
 from fcm.plot import draw_response, read_response
 from fcm.plot.peak import draw_peak, read_peaks
 from fcm.response import trace
+from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
+from fcm.response.mode import trace_modes
+from fcm.response.optimum import optimise
+from fcm.response.track import track
+from fcm.results.csv_file import write_csv
 from fcm.results.output import write_netcdf
 from fcm.scene import scene_from_dict
 
@@ -15,6 +22,7 @@ SCENE = {
     "force": [{"dof": "u", "amplitude": 1.0}],
     "response": {"frequency": [0.7, 1.6]},
 }  # fmt: skip
+UNITS = {"units": {"length": "mm", "force": "N"}}
 
 
 def written(figure):
@@ -33,12 +41,44 @@ def test_where_the_level_was_varied_is_said_in_its_unit(tmp_path, unit):
 
 
 def test_swept_values_have_the_unit_that_the_scene_says(tmp_path):
-    swept = SCENE | {"sweep": {"contact.c.n_0": [1.0, 2.0, 3.0]}}
+    swept = SCENE | UNITS | {"sweep": {"contact.c.n_0": [1.0, 2.0, 3.0]}}
     found = trace(scene_from_dict(swept))
-    found.units = ("mm", "N")
     write_netcdf(found, tmp_path / "swept.nc")
     for figure in (
         draw_response(read_response(tmp_path / "swept.nc")),
         draw_peak(read_peaks(tmp_path / "swept.nc")),
     ):
         assert any(name.partition("$n_{0}$ = ")[2][1:].startswith(" N") for name in written(figure))
+
+
+WAYS = {
+    "trace": lambda scene: trace(scene),
+    "exact": lambda scene: trace_exact(scene, only="peaks"),
+    "at": lambda scene: trace_exact(scene, [0.8]),
+    "level": lambda scene: trace_levels(scene, [0.8], (0.0, 2.0)),
+    "mode": lambda scene: trace_modes(scene, 1, (1e-3, 1e-2)),
+    "track": lambda scene: track(scene, "peaks", "contact.c.n_0", (2.0, 2.1), harmonics=1),
+    "optimum": lambda scene: optimise(scene, harmonics=1),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_every_response_has_the_units_of_its_scene(way):
+    aim = {"optimum": {"minimise": "peak.u", "vary": ["contact.c.n_0"], "bounds": [[2.0, 2.1]]}}
+    scene = scene_from_dict(SCENE | UNITS | (aim if way == "optimum" else {}))
+    assert WAYS[way](scene).units == ("mm", "N")
+
+
+def test_swept_values_in_tables_have_their_unit_at_the_head(tmp_path):
+    keys = ["contact.c.n_0", "contact.c.k_u", "contact.c.mu", "modal.frequency.0"]
+    swept = SCENE | UNITS | {"frequency_unit": "Hz", "sweep": {key: [1.0, 1.1] for key in keys}}
+    write_csv(trace_levels(scene_from_dict(swept), [1.2], (0.0, 0.1)), tmp_path / "levels.csv")
+    with (tmp_path / "levels.csv").open(newline="") as file:
+        heads = next(csv.reader(file))
+    assert heads[2:7] == [
+        "contact.c.n_0 [N]",
+        "contact.c.k_u [N/mm]",
+        "contact.c.mu",
+        "modal.frequency.0 [Hz]",
+        "excitation.frequency [Hz]",
+    ]

@@ -50,8 +50,6 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
         with TimeLimit(messages, asked.time_limit):
             response = calculated(messages, loaded, asked, place, keep)
         response = visible(response, loaded)
-        response.notes, response.units = list(loaded.notes), loaded.units
-        response.drawn = loaded.drawn
         result = outputs.write(response, asked.to_json)
     close(messages, result, response.defects, outputs.written)
 

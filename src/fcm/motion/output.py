@@ -16,7 +16,7 @@ from fcm.motion.histories import Histories
 from fcm.motion.record import NOT_REACHED, PhaseResult, Record
 from fcm.motion.state import State
 from fcm.motion.system import LETTERS
-from fcm.units import in_unit
+from fcm.units import CF_UNIT, in_unit
 
 Variable = tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]  # dimensions, values, attributes
 MEANINGS = "not_reached separation stick positive_slip negative_slip"  # of -1 and the indices of LETTERS
@@ -31,7 +31,7 @@ def variables(found: Histories) -> dict[str, Variable]:
 def _common(found: Histories) -> dict[str, Variable]:
     """What is the same for every curve: the instants, the cycles, the phases."""
     plan, phases = found.plan, found.scene.schedule
-    units = {"rad/s": "rad s-1", "Hz": "Hz"}[found.scene.frequency_unit]
+    units = CF_UNIT[found.scene.frequency_unit]
     frequency = in_unit([phase.frequency for phase in phases], found.scene.frequency_unit)
     begins, ends = "time at which the cycle begins", "length of the cycle, 1 unless it ends a phase early"
     return {

@@ -100,7 +100,6 @@ def respond(
         from fcm.response.sensitivity import add_sensitivities
 
         add_sensitivities(response, scene)
-    response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
     if scene.schedule:
         from fcm.motion import histories
 

@@ -131,8 +131,7 @@ class _Run:
         mark = fingerprint(METHOD, replace(self.work, limit=None))
         batches = [(one,) for one in scenes]
         curves = self.sweep.curves(self.work, batches, mark, progress, (*STATES, Unreached, *LEGS, *FOUND))
-        contacts = tuple(contact.name for contact in scenes[0].contacts)
-        return Response(scene.title, scene.modal.dofs, contacts, curves, METHOD, scene.frequency_unit)
+        return Response.of(scene, curves, METHOD)
 
 
 def _checked(scene: Scene, at: Sequence[float] | None) -> tuple[float, ...] | None:

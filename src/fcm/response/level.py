@@ -80,10 +80,7 @@ def trace_levels(
         for curve, omega in ways
     ]
     curves = one_by_one(tasks, progress)
-    contacts = tuple(contact.name for contact in scene.contacts)
-    response = Response(
-        scene.title, scene.modal.dofs, contacts, curves, "level of the forces", scene.frequency_unit
-    )
+    response = Response.of(scene, curves, "level of the forces")
     response.seconds = time.perf_counter() - begin
     return response
 

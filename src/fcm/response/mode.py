@@ -77,9 +77,7 @@ def trace_modes(
         )
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
-    contacts = tuple(contact.name for contact in scene.contacts)
-    method = f"nonlinear mode {number}"
-    response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
+    response = Response.of(scene, curves, f"nonlinear mode {number}")
     response.seconds = time.perf_counter() - begin
     return response
 

@@ -150,11 +150,8 @@ class _Sweep:
         batches = in_batches(tuple(replace(scene, draft=None) for scene in lighter.curves))
         samples = EACH_CHECKED if lighter.above is not None else 0
         work = Work(replace(self.wanted, table=self._table(lighter)), self.peaks_only, samples)
-        scene, contacts = self.scene, tuple(c.name for c in batches[0][0].contacts)
         curves = self.curves.curves(work, batches, self.mark, progress)
-        response = Response(
-            scene.title, scene.modal.dofs, contacts, curves, self.method, scene.frequency_unit
-        )
+        response = Response.of(self.scene, curves, self.method)
         response.peaks_only = self.peaks_only
         return response
 

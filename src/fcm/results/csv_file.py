@@ -33,12 +33,9 @@ def _columns(response: Response) -> list[str]:
     """Names of what `_rows` gives of each point."""
     exact, unit = response.method == "exact", response.frequency_unit
     kinds = ("amplitude", "phase", "mean", "fundamental", "error", *(ORBIT_KINDS if exact else ()))
-    columns = [
-        "curve",
-        "branch",
-        *(headed(key, response.units) for key in (response.parameters[0] if response.parameters else ())),
-        f"frequency [{unit}]",
-    ]
+    swept = response.parameters[0] if response.parameters else ()
+    heads = [headed(key, *response.units, unit) for key in swept]
+    columns = ["curve", "branch", *heads, f"frequency [{unit}]"]
     columns += ["level"] if any(curve.level is not None for curve in response.curves) else []
     if any(curve.mode is not None for curve in response.curves):
         columns += ["modal_amplitude", "damping_ratio"]
@@ -72,7 +69,7 @@ def write_tracked_csv(response: Response, path: str | Path) -> None:
     tracking = response.tracking
     assert tracking is not None
     swept = list(tracking.curves[0].parameters) if tracking.curves else []
-    keys = [headed(key, response.units) for key in (*swept, tracking.key)]
+    keys = [headed(key, *response.units, response.frequency_unit) for key in (*swept, tracking.key)]
     units = {dof: unit_of(dof, response.units[0]) for dof in response.dofs}
     amplitudes = [f"amplitude {dof} [{units[dof]}]" if units[dof] else f"amplitude {dof}" for dof in units]
     header = ["track", "what", *keys, f"frequency [{response.frequency_unit}]", *amplitudes]

@@ -17,7 +17,7 @@ from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
 from fcm.rotation import is_rotation
-from fcm.units import CF_UNIT, EXCITATION, in_unit, unit_of_number
+from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 
 def _of_mode(name: str) -> Callable[[Curve], Any]:
@@ -50,8 +50,7 @@ def fields_of(response: Response) -> dict[str, Field]:
     for key in swept[0] if swept else ():
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}
-        at = key == EXCITATION
-        unit = CF_UNIT[response.frequency_unit] if at else unit_of_number(key, *response.units)
+        unit = unit_of_number(key, *response.units, CF_UNIT[response.frequency_unit])
         attrs = {"long_name": f"swept value of {key}"} | drawn | ({"units": unit} if unit else {})
         out[key] = Field(("curve",), values, attrs)
     if response.curves or (response.histories is None and response.tracking is None):

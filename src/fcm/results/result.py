@@ -133,10 +133,17 @@ class Response:
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
 
     @staticmethod
+    def of(scene: Scene, curves: list[Curve], method: str) -> Response:
+        """Curves of a scene, with the names, units and notes of the scene."""
+        contacts = tuple(contact.name for contact in scene.contacts)
+        response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
+        response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
+        return response
+
+    @staticmethod
     def without_curves(scene: Scene) -> Response:
         """The response of a scene that has a schedule, but no range of frequencies."""
-        contacts = tuple(contact.name for contact in scene.contacts)
-        return Response(scene.title, scene.modal.dofs, contacts, [], "none", scene.frequency_unit)
+        return Response.of(scene, [], "none")
 
     @property
     def complete(self) -> bool:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from fcm.results.field import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
-from fcm.units import in_unit, unit_of_number
+from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"
 WHAT = "what of the response is tracked"
@@ -42,7 +42,7 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
     values["frequency"] = in_unit(values["frequency"], unit)
     more = {
         "number": {"key": tracking.key} | _unit_of(tracking.key, response),
-        "frequency": {"units": {"rad/s": "rad s-1", "Hz": "Hz"}[unit]},
+        "frequency": {"units": CF_UNIT[unit]},
     }
     what = np.array([curve.what for curve in curves], dtype=str)
     whole = np.array([int(curve.complete) for curve in curves], dtype=np.int8)
@@ -66,7 +66,7 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
 
 def _unit_of(key: str, response: Response) -> dict[str, str]:
     """The attribute of a number's unit, where it is known."""
-    unit = unit_of_number(key, *response.units)
+    unit = unit_of_number(key, *response.units, CF_UNIT[response.frequency_unit])
     return {"units": unit} if unit else {}
 
 
