@@ -24,6 +24,7 @@ from fcm.orbit.held import held
 from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
 from fcm.response import exact_work
 from fcm.response.exact import trace_exact
+from fcm.response.trace import traced_curve
 from fcm.scene import Force, Modal, scene_from_dict
 
 from ..interrupted import interrupted_after
@@ -313,6 +314,25 @@ def test_peaks_and_folds_alone_are_those_of_the_curve(n_0):
         last = simulate(yang(n_0), beyond, 300).measures(last=1)[0]
         if jump.sweep == "down":  # the lower motion is the one from rest
             assert last.amplitude == pytest.approx(jump.after, rel=1e-2)
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_of_peaks_alone_no_balance_is_followed_that_takes_longer_than_the_curve(monkeypatch, number):
+    """Dry friction takes six harmonics and more to 1e-2; a solution with these costs more than a motion."""
+    scene = replace(fcm.load_scene("den-hartog").each_curve()[number], curves=())
+    followed = list[int]()
+
+    def counted(*args):
+        found = traced_curve(*args)
+        followed.append(len(found.harmonics))
+        return found
+
+    monkeypatch.setattr("fcm.response.only_peaks.traced_curve", counted)
+    whole, alone = curve_of(scene), curve_of(scene, only="peaks")
+    assert max(followed) == 1 and alone.complete and alone.points < whole.points
+    for dof, (amplitude, omega, *_) in whole.peaks.items():
+        assert alone.peaks[dof][0] == pytest.approx(amplitude, rel=1e-8)
+        assert alone.peaks[dof][1] == pytest.approx(omega, rel=1e-5)
 
 
 def test_jumps_that_the_balance_does_not_have_at_folds_are_found_with_peaks_alone():

@@ -1,6 +1,7 @@
 """``--only peaks``: of exact curves the peaks, folds and jumps alone, sought near those of the balance.
 
-Where these are not the same one by one, the whole curve is followed, and the rest of it left out.
+Where these are not the same one by one, or one harmonic is far from the motion, the whole curve is followed,
+and the rest of it left out.
 """
 
 from __future__ import annotations
@@ -23,13 +24,14 @@ from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.orbit_curve import curve_of_points, orbit_curve
 from fcm.response.search import Search
 from fcm.response.trace import traced_curve
-from fcm.response.wanted import ACCURACY, Wanted
+from fcm.response.wanted import ACCURACY, ONE_HARMONIC, Wanted
 from fcm.results.jumps import Jump, Swept
 from fcm.results.result import Curve
 from fcm.run import Report
 from fcm.scene.model import FloatArray, Scene
 
 HIGH = 0.9  # of the greatest amplitude of a degree of freedom: peaks of the balance that may be the highest
+NEARLY = 0.1  # error of peaks by one harmonic, beyond which one that is near enough has too many
 
 
 @dataclass(frozen=True)
@@ -46,8 +48,11 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -
 
     known : to which points are added as they are found.
     """
+    if not _leads_on(traced_curve(scene, ONE_HARMONIC, look)):
+        return None
     balanced = traced_curve(scene, Wanted(None, ACCURACY), look)
-    if not balanced.complete:
+    swept = balanced.swept()
+    if not balanced.complete or swept.untold or not _at_folds(swept, balanced):
         return None
     problem, folds = OrbitProblem(scene), dict[float, Sample]()
     guesses = list(_guesses(scene, balanced))
@@ -62,10 +67,9 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -
     points = sorted(known, key=lambda one: one.frequency)
     if not _paired(folds, points):
         return None
-    swept = balanced.swept()
     jumps = [_jump(scene, jump, folds.get(jump.frequency)) for jump in swept.jumps]
     there = [jump for jump in jumps if jump is not None]
-    if swept.untold or len(there) < len(jumps):
+    if len(there) < len(jumps):
         return None
     return Alone(points, there, problem.periods)
 
@@ -93,6 +97,23 @@ def _curve(
         curve.orbits.span, curve.orbits.periods = scene.frequency_range, periods
         curve.orbits.swept = swept
     return curve
+
+
+def _leads_on(single: Curve) -> bool:
+    """Whether by one harmonic the peaks are nearly those of the motion, and it jumps at folds alone.
+
+    Else a balance that is near enough takes longer than to follow the exact curve, and often that is
+    followed after all.
+    """
+    near = all(peak.error <= NEARLY for peak in single.peaks.values())
+    swept = single.swept()
+    told = bool(single.folds) or not swept.untold  # beside folds more harmonics tell
+    return single.complete and near and told and _at_folds(swept, single)
+
+
+def _at_folds(swept: Swept, curve: Curve) -> bool:
+    """Whether each jump is at a fold, and none where stability is lost otherwise, which is not looked for."""
+    return all(jump.frequency in curve.folds for jump in swept.jumps)
 
 
 def _paired(folds: dict[float, Sample], points: list[Sample]) -> bool:
@@ -132,7 +153,7 @@ def _guess(scene: Scene, curve: Curve, k: int, dof: int | None) -> Guess:
 
 def _jump(scene: Scene, jump: Jump, fold: Sample | None) -> Jump | None:
     """The jump of the balance at the exact fold that belongs to it; None where there is no such jump."""
-    if fold is None or not fold.stable:  # it jumps where it loses its stability, which is not looked for
+    if fold is None or not fold.stable:
         return None
     after = _landed(scene, fold, jump.after)
     return None if after is None else Jump(jump.sweep, fold.frequency, fold.measure.amplitude, after)
