@@ -35,3 +35,12 @@ def test_the_greatest_damping_is_marked_where_it_is_more_than_rounding():
     rounded[7] = np.nextafter(0.007, 1.0)
     for damping in (rounded, np.linspace(0.01, 0.02, 41), np.linspace(0.02, 0.01, 41)):
         assert not rings(draw_modes(modes(1, damping)))
+
+
+def test_the_greatest_damping_is_named_inside_the_axes():
+    for top in (0.15, 1.0, 8.0):
+        figure = draw_modes(modes(1, 0.01 + 0.02 * np.exp(-(np.log(AMPLITUDE / top) ** 2))))
+        figure.draw_without_rendering()
+        (named,) = figure.axes[1].texts
+        box, axes = named.get_window_extent(), figure.axes[1].get_window_extent()
+        assert axes.x0 < box.x0 and box.x1 < axes.x1

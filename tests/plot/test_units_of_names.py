@@ -6,11 +6,13 @@ import pytest
 
 from fcm.plot import draw_response, read_response
 from fcm.plot.peak import draw_peak, read_peaks
+from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.response.level import trace_levels
 from fcm.response.mode import trace_modes
 from fcm.response.optimum import optimise
+from fcm.response.sensitivity import add_sensitivities
 from fcm.response.track import track
 from fcm.results.csv_file import write_csv
 from fcm.results.output import write_netcdf
@@ -82,3 +84,12 @@ def test_swept_values_in_tables_have_their_unit_at_the_head(tmp_path):
         "modal.frequency.0 [Hz]",
         "excitation.frequency [Hz]",
     ]
+
+
+def test_the_title_of_sensitivities_has_the_unit_of_what_was_swept(tmp_path):
+    scene = scene_from_dict(SCENE | UNITS | {"sweep": {"contact.c.n_0": [1.0, 2.0]}})
+    found = trace(scene, harmonics=1)
+    add_sensitivities(found, scene)
+    write_netcdf(found, tmp_path / "rates.nc")
+    title = draw_sensitivity(read_sensitivity(tmp_path / "rates.nc"), curve=1).get_suptitle()
+    assert "contact.c.n_0 = 2 N" in title

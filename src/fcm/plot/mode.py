@@ -74,7 +74,7 @@ def draw_modes(drawn: DrawnModes) -> Figure:
             _mark_greatest(lower, mode, colour, drawn.frequency_unit if len(modes) == 1 else "")
         upper.set_xscale("log")
         upper.set_ylabel(frequency_label(drawn.frequency_unit))
-        lower.set_ylabel("Damping ratio [%]")
+        lower.set_ylabel("Damping ratio (%)")
         lower.set_xlabel("Modal amplitude")
         lower.set_ylim(bottom=0.0)
         lower.margins(x=0.0)
@@ -92,4 +92,8 @@ def _mark_greatest(axes: Axes, mode: DrawnMode, colour: str, unit: str) -> None:
     axes.plot([x], [y], "o", markersize=6, markerfacecolor="none", color=colour, markeredgewidth=1.0)
     if unit:
         text = f"{y:.3g} % at {mode.frequency[top]:.4g} {unit}"
-        axes.annotate(text, (x, y), xytext=(8, 4), textcoords="offset points", fontsize=8)
+        inwards = -1 if x * x > mode.amplitude[0] * mode.amplitude[-1] else 1  # from the middle of a log axis
+        axes.annotate(
+            text, (x, y), xytext=(8 * inwards, 4), textcoords="offset points", fontsize=8,
+            ha="right" if inwards < 0 else "left",
+        )  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.read import FloatArray, floats, opened, swept_values
+from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import WIDTH, house_style, new_figure
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ class DrawnSensitivity:
     height: FloatArray  # (curve, dof, number) share of the peak by share of the number
     frequency: FloatArray  # (curve, dof, number) the same of the peak's frequency
     kind: tuple[tuple[str, ...], ...]  # of each curve and dof
+    units: dict[str, str]  # of the swept values
 
 
 def read_sensitivity(path: Path) -> DrawnSensitivity:
@@ -60,6 +61,7 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
             height * relative[0],
             frequency * relative[1],
             tuple(tuple(map(str, row)) for row in kind),
+            swept_units(variables, swept),
         )
 
 
@@ -79,7 +81,7 @@ def draw_sensitivity(drawn: DrawnSensitivity, dof: str | None = None, curve: int
         _bars(left, height[shown], names, "of the peak")
         _bars(right, frequency[shown], names, "of its frequency")
         figure.suptitle(_title(drawn, curve, column), fontsize=9, parse_math=False)
-        figure.supxlabel("Change [%] for 1 % of the number", fontsize=9)
+        figure.supxlabel("Change (%) for 1 % of the number", fontsize=9)
     return figure
 
 
@@ -105,6 +107,7 @@ def _bars(axes: Axes, values: FloatArray, names: list[str], title: str) -> None:
 def _title(drawn: DrawnSensitivity, curve: int, column: int) -> str:
     parts = [drawn.dofs[column]]
     if drawn.parameters[curve]:
-        parts.append(", ".join(f"{key} = {value:.4g}" for key, value in drawn.parameters[curve].items()))
+        each = drawn.parameters[curve].items()
+        parts.append(", ".join(f"{key} = {value:.4g} {drawn.units[key]}".rstrip() for key, value in each))
     parts.append(_REMARKS.get(drawn.kind[curve][column], ""))
     return "; ".join(filter(None, parts))
