@@ -142,7 +142,5 @@ def foretold(s: FloatArray, f: FloatArray, logarithms: bool) -> tuple[npt.NDArra
         at = 0.5 * (s[:-2] + s[1:-1] - slope[0] / np.where(up, bend, 1.0))
         least = three[0] + (at - s[:-2]) * (slope[0] + bend * (at - s[1:-1]))
         deep = up & (DOUBT * (three.max(axis=0) - least) > least)
-    near = NEAR * width
-    low, high = s[:-1] + near, s[1:] - near
-    wide = width >= NARROW
-    return tuple(deep & (low[k] < at) & (at < high[k]) & wide[k] for k in (slice(-1), slice(1, None)))
+    sides, wide = (slice(-1), slice(1, None)), width >= NARROW
+    return tuple(deep & (s[:-1][k] <= at) & (at <= s[1:][k]) & wide[k] for k in sides)
