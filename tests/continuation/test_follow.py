@@ -763,10 +763,11 @@ class Narrow(Many):
         return x + 2.0 - 6.0 * np.dot([1.0, -1.0], beyond**1.5), 1.0 - 9.0 * np.dot([1.0, -1.0], beyond**0.5)
 
 
+@pytest.mark.parametrize("unknowns", (80, 120))
 @pytest.mark.parametrize("first", np.linspace(-0.5, 0.5, 11))
-def test_no_pair_of_folds_between_two_corners_is_stepped_over(first):
+def test_no_pair_of_folds_between_two_corners_is_stepped_over(unknowns, first):
     """However the steps lie to it: p' = 0 at 1/81 of a unit beyond a, and where the roots differ by 1/9."""
-    path = follow(Narrow(80, first), np.append(np.full(80, -0.9), 1.1), (1.1, 2.9), True, 0.2)
+    path = follow(Narrow(unknowns, first), np.append(np.full(unknowns, -0.9), 1.1), (1.1, 2.9), True, 0.2)
     beyond = [1.0 / 81.0, (0.02 * 9.0 + 1.0 / 9.0) ** 2 / 4.0]
     assert path.z[path.where(Mark.FOLD), 0] - first == pytest.approx(beyond, abs=1e-6)
 

@@ -147,7 +147,7 @@ class Follower:
         if self.soft is not None:
             return self.soft.advance(self, step)
         step = self.narrow.up_to(front, step)
-        if self.problem.dear and (self.over(step) or (self.hasty and self.over(LESS * step))):
+        if self.problem.dear and (self.over(step) or self.over(LESS * step)):
             return self.smooth()
         while step > SHORTEST:
             reach: cython.double = ahead(front, step)
@@ -180,11 +180,11 @@ class Follower:
     @cython.exceptval(-1, check=False)
     def over(self, step: cython.double) -> cython.bint:
         """Whether a step goes on past all margins as if there were none: where they are many, most corners
-        are slight. Unless the problem is dear, only if none of them can hide a pair of folds."""
+        are slight. Only if none can hide a pair of folds, which a hasty curve may miss."""
         front: Front = self.front
         if not front.go(step) or not good(front) or self.narrow.across(front, step) > 0.0:
             return False
-        return detour(front, self.passage.most) == 0.0 and (self.problem.dear or even(front))
+        return detour(front, self.passage.most) == 0.0 and (self.hasty or not crosses(front) or even(front))
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
