@@ -81,37 +81,19 @@ def optimum(task: Task, harmonics: tuple[int, ...] | None, progress: Progress | 
             found = _downhill(task, chosen)
         if harmonics:
             break
-        more, taken = _enough(task, found[0], chosen, seconds)
+        more, taken = enough(task, found[0], chosen, seconds)
         if more == chosen:
             break
         chosen, seconds, task.fewer = more, seconds - taken, found[0]
     return replace(found[0], fewer=task.fewer), found[1]
 
 
-def with_the_same(tasks: list[Task], found: list[Found]) -> list[Found]:
-    """The optima with the same harmonics, as the curves of a response have: what any of them takes."""
-    every = {h for one, _ in found for h in one.harmonics}
-    if all(len(one.harmonics) == len(every) for one, _ in found):
-        return found
-    for _ in range(ROUNDS):
-        chosen = tuple(sorted(every))
-        found = [
-            one if one[0].harmonics == chosen else optimum(task, chosen, None)
-            for task, one in zip(tasks, found, strict=True)
-        ]
-        for task, one in zip(tasks, found, strict=True):
-            every |= set(_enough(task, one[0], chosen, AGAIN)[0])
-        if len(every) == len(chosen):
-            break
-    return found
-
-
 def _sharing(progress: Progress | None) -> Callable[[float], None] | None:
     return None if progress is None else lambda share: progress(share, "optimum")
 
 
-def _enough(
-    task: Task, found: Optimal, harmonics: tuple[int, ...], seconds: float
+def enough(
+    task: Task, found: Optimal, harmonics: tuple[int, ...], seconds: float = AGAIN
 ) -> tuple[tuple[int, ...], float]:
     """The harmonics that the accuracy of the peaks to be least takes at an optimum, from some on.
 

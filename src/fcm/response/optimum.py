@@ -5,18 +5,21 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fcm.response.around import check_no_ring
-from fcm.response.least import Found, Task, optimum, with_the_same, with_values
+from fcm.response.curve_sweep import checkpoint_of
+from fcm.response.least import Found, Task, with_values
+from fcm.response.optima import optima
 from fcm.response.sweep import trace
 from fcm.response.wanted import wanted_of
 from fcm.results.peak import stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
-from fcm.run import Progress
+from fcm.run import Checkpoint, Progress
 from fcm.run.progress import part
 from fcm.scene.address import replaced
 from fcm.scene.draft import Draft, Number, number_of
@@ -35,6 +38,8 @@ def optimise(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     progress: Progress | None = None,
+    keep: Path | Checkpoint | None = None,
+    resume: bool = False,
     **options: Any,
 ) -> Response:
     """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
@@ -43,6 +48,10 @@ def optimise(
     ----------
     harmonics, accuracy
         As of `trace`: with an accuracy, as many harmonics as the response at the optimum takes.
+    keep, resume
+        As of `trace`: what is kept are the optima that are found, and then the curves of the response.
+    options
+        What else `trace` takes, for the response.
 
     Raises
     ------
@@ -57,13 +66,16 @@ def optimise(
     numbers, free = _freed(scene, scene.optimum.vary)
     wanted = wanted_of(scene, harmonics, accuracy)
     tasks = [Task(curve, numbers, wanted.accuracy) for curve in free.each_curve()]
-    found, stopped = _optima(tasks, wanted.harmonics, progress)
-    tracking = _tracking(scene.optimum, found)
-    if stopped:
-        return _unfinished(free, tracking, len(tasks), begin)
-    there = _at(free, numbers, tracking.optima)
-    shown = None if progress is None else part(progress, SEEKING, 1.0)
-    response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
+    with checkpoint_of(keep, resume) as checkpoint:
+        found, stopped = optima(tasks, wanted.harmonics, checkpoint, part(progress, 0.0, SEEKING))
+        tracking = _tracking(scene.optimum, found)
+        if stopped:
+            return _unfinished(free, tracking, len(tasks), begin)
+        there, options = _at(free, numbers, tracking.optima), {**options, "keep": checkpoint}
+        shown = part(progress, SEEKING, 1.0)
+        response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
+        if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
+            checkpoint.done()
     tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
     tracking.problems += _higher(tracking, response)
     if wanted.harmonics is None:
@@ -79,30 +91,6 @@ def _freed(scene: Scene, keys: Iterable[str]) -> tuple[list[Number], Scene]:
     for number in numbers:
         scene = number.freed(scene)
     return numbers, scene
-
-
-def _optima(
-    tasks: list[Task], harmonics: tuple[int, ...] | None, progress: Progress | None
-) -> tuple[list[Found], bool]:
-    """That of each task, all with the same harmonics; or those so far, and that it was interrupted.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If nothing is found then.
-    """
-    found: list[Found] = []
-    try:
-        for i, task in enumerate(tasks):
-            shown = part(progress, SEEKING * i / len(tasks), SEEKING * (i + 1) / len(tasks))
-            found.append(optimum(task, harmonics, shown))
-        return found if harmonics else with_the_same(tasks, found), False
-    except KeyboardInterrupt:
-        last = tasks[len(found)].so_far() if len(found) < len(tasks) else None
-        found += [] if last is None else [(last, [])]
-        if not found:
-            raise
-        return found, True
 
 
 def _unfinished(free: Scene, tracking: Tracking, count: int, begin: float) -> Response:
