@@ -89,6 +89,8 @@ def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
         (["--method", "exact", "--at", "1:2:x"], "FROM:TO:COUNT"),
         (["--method", "exact", "--at", ""], "FROM:TO:COUNT"),
         (["--method", "exact", "--at", "1:2:0"], "the count must be"),
+        (["--method", "exact", "--at", "2:1:5"], "must rise"),
+        (["--method", "exact", "--at", "2:2:5"], "must rise"),
         (["--method", "exact", "--at", "1", "--max-step", "0.1"], "--max-step is of no use with --at"),
         (["--method", "exact", "--table", "t.nc"], "--table is of no use"),
     ],

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from unittest.mock import Mock
 
 import netCDF4
 import numpy as np
@@ -54,6 +55,27 @@ def test_a_contact_with_dimensions_is_that_of_its_ratios(fcm, undrawn):
     assert (one["n0_bar"], one["b_bar"]) == pytest.approx((0.32, 0.4))
     (ratios,) = loops(fcm("plot", "loop", "--n0-bar", 0.32, "--b-bar", 0.4, "--json"))
     assert ratios["sequence"] == other["sequence"]
+
+
+def test_parameters_and_axes_have_the_units_that_are_given(fcm, monkeypatch):
+    drawn = Mock(return_value=Mock())
+    monkeypatch.setattr("fcm.plot.loop.draw_loops", drawn)
+    monkeypatch.setattr("fcm.cli.loop.save_picture", lambda *_args: None)
+    done = fcm("plot", "loop", *CONTACT, "--harmonic", "v", 2, 0.3, "20deg", "--units", "mm", "N")
+    said = "mu = 0.4, k_u = 1 N/mm, k_v = 1 N/mm, n_0 = 0.8 N, a = 1 mm, b = 1 mm, phi = 45°, v_2 = 0.3 mm at"
+    assert f"{said} 20°" in done.err
+    _, axes, title = drawn.call_args.args
+    assert "$k_u$ = 1 N/mm" in title and "= 0.3 mm at 20°" in title and axes.over_angle == "Force (N)"
+
+
+def test_a_file_has_the_units_of_its_scene(fcm, tmp_path, monkeypatch):
+    scene, path = load_scene("yang1998-n5"), tmp_path / "a.nc"
+    write_netcdf(replace(trace(scene), units=("mm", "N")), path)
+    drawn = Mock(return_value=Mock())
+    monkeypatch.setattr("fcm.plot.loop.draw_loops", drawn)
+    monkeypatch.setattr("fcm.cli.loop.save_picture", lambda *_args: None)
+    assert fcm("plot", "loop", path).code == 0
+    assert drawn.call_args.args[1].displacement == "Displacement $u$ (mm)"
 
 
 def test_harmonics_of_the_motion(fcm, tmp_path):
@@ -162,6 +184,17 @@ def test_the_picture_is_beside_the_file(fcm, folded):
         (("--units", "m", "N"), "the axes have no dimension"),
         (("--n0-bar", 1, *(x for phi in range(13) for x in ("--phi", phi))), "13 loops are too many"),
         (("-o", "a.txt"), "has to end in"),
+        (("-o", "."), "it is a folder"),
+        (("--at", 1, "--contact", "c", "--units", "m", "N"), "--at, --contact are of no use without a FILE"),
+        (("--at", 1, "--units", "m", "N"), "--units is of no use: the axes have no dimension; --at is"),
+        (
+            (*CONTACT[:4], "--curve", 2, "--n0-bar", 1),
+            "--curve is of no use without a FILE; --n0-bar is of no",
+        ),
+        (
+            ("--mu", 1, "--b-bar", 1),
+            "and --b; the contact is not complete: --k-u, --k-v, --n0, --a, --b missing",
+        ),
     ],
 )
 def test_nonsense_is_said(fcm, tmp_path, args, said):

@@ -137,7 +137,7 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
         (["--over", "contact.shroud.n_0"], "--over needs --track"),
         (["--track", "folds"], "--track needs --over and --from and --to"),
         (["--track", "peaks", *FOLDS, "4", "--to", "5"], "--track is given 2 times (peaks, folds)"),
-        ([*FOLDS, "5", "--to", "4"], "must rise"),
+        ([*FOLDS, "5", "--to", "4"], "--from 5 --to 4: contact.shroud.n_0 must rise"),
         ([*FOLDS, "5", "--to", "5.0000000000001"], "too narrow"),
         (
             [*FOLDS, "4", "--to", "5", "--over", "level"],
@@ -146,12 +146,15 @@ def test_curves_of_a_sweep_say_of_which_values_they_are(fcm, scene):
         ([*FOLDS, "4", "--to", "5", "--sensitivity"], "--sensitivity is of no use with --track"),
         ([*FOLDS, "4", "--to", "5", "--peaks-only"], "--peaks-only is of no use with --track"),
         ([*FOLDS[:3], "modal.frequency.1", "--from", "0", "--to", "9"], "more rigid-body motions"),
-        ([*FOLDS[:3], "level", "--from", "0", "--to", "4"], "level is from 0"),
-        ([*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"], "must be at least 0"),
+        ([*FOLDS[:3], "level", "--from", "0", "--to", "4"], "--from 0: the level must be positive"),
+        (
+            [*FOLDS[:3], "contact.shroud.mu", "--from", "-1", "--to", "4"],
+            "--from -1: contact.shroud.mu must be at least 0",
+        ),
         ([*FOLDS[:3], "contact.shroud.n0", "--from", "1", "--to", "4"], "did you mean"),
         ([*FOLDS, "1", "--to", "4", "--resume"], "--resume needs the -o FILE"),
         ([*FOLDS[:4], "--from", "1", "--to", "4", "--method", "exact"], "--method exact"),
-        ([*FOLDS[:4], "--from", "nan", "--to", "4"], "must be finite"),
+        ([*FOLDS[:4], "--from", "nan", "--to", "4"], "--from nan: contact.shroud.n_0 must be finite"),
     ],
 )
 def test_what_is_wrong_is_said_and_nothing_is_written(fcm, scene, tmp_path, args, said):

@@ -51,6 +51,10 @@ def _values(text: str) -> list[float]:
         raise click.BadParameter(f"{text!r}: a frequency must be finite and greater than 0.")
     if not 1 <= count <= MOST_FREQUENCIES:
         raise click.BadParameter(f"{text!r}: the count must be from 1 to {MOST_FREQUENCIES}.")
+    if len(parts) == 3 and not ends[0] < ends[1]:
+        raise click.BadParameter(
+            f"{text!r}: the frequencies must rise; they are visited upward, then downward."
+        )
     return ends if len(parts) == 1 else [float(value) for value in np.linspace(ends[0], ends[1], count)]
 
 

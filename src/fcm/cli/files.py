@@ -47,10 +47,10 @@ def check_different(paths: dict[str, Path | None]) -> None:
 
 
 def _problem(path: Path, endings: tuple[str, ...]) -> str:
-    if path.suffix.lower() not in endings:
-        return f"the name has to end in {' or '.join(endings)}"
     if path.is_dir():
         return "it is a folder, not a file to write"
+    if path.suffix.lower() not in endings:
+        return f"the name has to end in {' or '.join(endings)}"
     if path.exists() and not path.is_file():
         return "it is no file that could be replaced"
     if not path.parent.is_dir():

@@ -17,7 +17,8 @@ from fcm.cli.files import check_output, output_option
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
-    from fcm.cli.loop_cases import Case, Harmonic
+    from fcm.cli.loop_cases import Case
+    from fcm.cli.loop_names import Harmonic
 
 MOST_LOOPS = 12  # in a picture: three rows
 HIGHEST = 100  # harmonic of a motion
@@ -55,7 +56,7 @@ def _harmonics(
     _ctx: click.Context, _param: click.Parameter, values: tuple[tuple[str, int, float, str], ...]
 ) -> tuple[Harmonic, ...]:
     """Callback: each harmonic of u and of v once, from the second on."""
-    from fcm.cli.loop_cases import Harmonic
+    from fcm.cli.loop_names import Harmonic
 
     found: dict[tuple[str, int], Harmonic] = {}
     for motion, order, amplitude, phase in values:
@@ -153,15 +154,15 @@ def loop(
     """
     begin = time.perf_counter()
     options["phases"] = tuple(dict.fromkeys(options["phases"]))
-    cases = _cases(ctx, file, options)
+    given = {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    _check(given, file is not None)
+    cases = _cases(given, file, options, units)
     if len(cases) > MOST_LOOPS:
         raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {MOST_LOOPS}.")
     if output is None:
         output = Path("loop.png") if file is None else file.with_name(f"{file.stem}-loop.png")
         check_output(output, ENDINGS)
     scaled = not options["dimensionless"] and (file is not None or bool(options["mu"]))
-    if units is not None and not scaled:
-        raise click.UsageError("--units is of no use: the axes have no dimension.")
     _draw(cases, output, scaled, units, cosine)
     if to_json:
         click.echo(json.dumps({"loops": [case.record(cosine) for case in cases]}, indent=2, allow_nan=False))
@@ -172,15 +173,13 @@ def loop(
     messages.info(f"wrote {output}: {how}, in {seconds:.2f} s")
 
 
-def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> list[Case]:
+def _cases(
+    given: set[str], file: Path | None, options: dict[str, Any], units: tuple[str, str] | None
+) -> list[Case]:
     """The loops of the one way, of three, in which they are given."""
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
 
-    given = {name for name in options if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     if file is not None:
-        _useless(
-            given, (*OF_RATIOS, *OF_CONTACT, "phases", "harmonics"), "with a FILE: its points have their own"
-        )
         return of_file(
             file,
             options["curves"] or [None],
@@ -189,34 +188,48 @@ def _cases(ctx: click.Context, file: Path | None, options: dict[str, Any]) -> li
             options["solution"],
         )
     if given.intersection(OF_CONTACT):
-        _useless(given, OF_FILE[:-1], "without a FILE")
-        _useless(given, OF_RATIOS, "beside --mu, --k-u, --k-v, --n0, --a and --b")
-        missing = [_option(name) for name in OF_CONTACT if name not in given]
-        if missing:
-            raise click.UsageError(f"the contact is not complete: {', '.join(missing)} missing.")
         return of_contact(
-            {name: options[name] for name in OF_CONTACT}, options["phases"], options["harmonics"]
+            {name: options[name] for name in OF_CONTACT}, options["phases"], options["harmonics"], units
         )
-    _useless(given, OF_FILE, "without a FILE")
-    _useless(given, ("harmonics",), "without --mu, --k-u, --k-v, --n0, --a and --b")
     return of_ratios(options["n0_bars"] or (0.8,), options["b_bars"] or (1.0,), options["phases"])
 
 
-def _useless(given: set[str], names: tuple[str, ...], why: str) -> None:
+def _check(given: set[str], of_file: bool) -> None:
+    """A usage error with everything that is wrong with which options are given."""
+    dimensionless = "dimensionless" in given or not (of_file or given.intersection(OF_CONTACT))
+    wrong = [_useless(given, ("units",), ": the axes have no dimension")] if dimensionless else []
+    if of_file:
+        others = (*OF_RATIOS, *OF_CONTACT, "phases", "harmonics")
+        wrong.append(_useless(given, others, " with a FILE: its points have their own"))
+    elif given.intersection(OF_CONTACT):
+        wrong.append(_useless(given, OF_FILE[:-1], " without a FILE"))
+        wrong.append(_useless(given, OF_RATIOS, " beside --mu, --k-u, --k-v, --n0, --a and --b"))
+        missing = [_option(name) for name in OF_CONTACT if name not in given]
+        wrong.append(f"the contact is not complete: {', '.join(missing)} missing" if missing else "")
+    else:
+        wrong.append(_useless(given, OF_FILE, " without a FILE"))
+        wrong.append(_useless(given, ("harmonics",), " without --mu, --k-u, --k-v, --n0, --a and --b"))
+    if any(wrong):
+        raise click.UsageError(f"{'; '.join(filter(None, wrong))}.")
+
+
+def _useless(given: set[str], names: tuple[str, ...], why: str) -> str:
+    """What is said of those of some options that are given; empty if none is."""
     wrong = [_option(name) for name in names if name in given]
-    if wrong:
-        raise click.UsageError(f"{', '.join(wrong)} is of no use {why}.")
+    return f"{', '.join(wrong)} {'are' if len(wrong) > 1 else 'is'} of no use{why}" if wrong else ""
 
 
 def _option(name: str) -> str:
-    return {"n_0": "--n0", "phases": "--phi"}.get(name, "--" + name.removesuffix("s").replace("_", "-"))
+    other = {"n_0": "--n0", "phases": "--phi", "dimensionless": "--dimensionless", "units": "--units"}
+    return other.get(name, "--" + name.removesuffix("s").replace("_", "-"))
 
 
 def _draw(cases: list[Case], output: Path, scaled: bool, units: tuple[str, str] | None, cosine: bool) -> None:
-    from fcm.cli.loop_cases import titles
+    from fcm.cli.loop_names import titles
     from fcm.plot.loop import DrawnLoop, LoopAxes, draw_loops
 
     common, panels = titles(cases)
+    units = units or cases[0].units
     drawn = [
         DrawnLoop(case.loop, title, case.amplitude, case.force) if scaled else DrawnLoop(case.loop, title)
         for case, title in zip(cases, panels, strict=True)

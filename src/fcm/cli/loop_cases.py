@@ -7,45 +7,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from fcm.cli.columns import ranges
 from fcm.cli.drawing import shorten
+from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
     from fcm.plot.loop_file import LoopFile, LoopPoint
 
-WIDE, NARROW, IN_A_ROW = 110, 50, 26  # characters of a title: of two columns, of one, of one loop of several
 LONGEST = 24  # characters of a contact's name
-_SYMBOL = {
-    "n0_bar": r"$\bar{n}_0$", "b_bar": r"$\bar{b}$", "mu": r"$\mu$", "k_u": "$k_u$", "k_v": "$k_v$",
-    "n_0": "$n_0$", "a": "$a$", "b": "$b$",
-}  # fmt: skip
-
-
-class Harmonic(NamedTuple):
-    """A harmonic of the motion beside the fundamental: amplitude sin(order theta + phase)."""
-
-    motion: str  # u or v
-    order: int
-    amplitude: float
-    phase: float  # [rad]
-
-    def name(self) -> Name:
-        """As it is written, in a picture and in a message."""
-        value = f"{self.amplitude:.4g} at {math.degrees(self.phase):.4g}°"
-        plain = f"{self.motion}_{self.order} = {value}"
-        return Name(f"${self.motion}_{{{self.order}}}$ = {value}".replace("-", "−"), plain)
-
-
-class Name(NamedTuple):
-    """A parameter with its value, in a picture and in a message."""
-
-    drawn: str
-    plain: str
 
 
 @dataclass(frozen=True)
@@ -59,6 +33,7 @@ class Case:
     amplitude: float = 1.0  # a
     force: float = 1.0  # k_u a
     facts: dict[str, Any] = field(default_factory=dict)  # for --json
+    units: tuple[str, str] | None = None  # of length and force, if both are known
 
     def record(self, from_greatest: bool) -> dict[str, Any]:
         """What ``--json`` prints of the loop; displacements and forces are divided by a and k_u a."""
@@ -99,16 +74,19 @@ def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterabl
 
     cases = []
     for n0_bar, b_bar, phi in product(n0_bars, b_bars, phases):
-        names = (_named("n0_bar", n0_bar), _named("b_bar", b_bar), _phase(phi))
+        names = (named("n0_bar", n0_bar), named("b_bar", b_bar), phase_of(phi))
         cases.append(Case(hysteresis_loop(n0_bar, b_bar, phi), (n0_bar, b_bar, phi), names))
     return cases
 
 
 def of_contact(
-    values: dict[str, Sequence[float]], phases: Iterable[float], harmonics: Sequence[Harmonic]
+    values: dict[str, Sequence[float]],
+    phases: Iterable[float],
+    harmonics: Sequence[Harmonic],
+    units: tuple[str, str] | None,
 ) -> list[Case]:
     """Every combination of mu, k_u, k_v, n_0, a, b and phase of one contact; all with the same harmonics."""
-    cases = []
+    cases, length = [], units[0] if units else ""
     for *numbers, phi in product(*values.values(), phases):
         one = dict(zip(values, numbers, strict=True))
         force = one["k_u"] * one["a"]
@@ -120,9 +98,9 @@ def of_contact(
                 f"mu n_0 / (k_u a) = {n0_bar:g} and mu k_v b / (k_u a) = {b_bar:g} have to be finite."
             )
         names = (
-            *(_named(key, value) for key, value in one.items()),
-            _phase(phi),
-            *(h.name() for h in harmonics),
+            *(named(key, value, unit_of(key, units)) for key, value in one.items()),
+            phase_of(phi),
+            *(h.name(length) for h in harmonics),
         )
         facts = {**one, "harmonics": [h._asdict() for h in harmonics]} if harmonics else one
         loop = _loop(one, (n0_bar, b_bar, phi), harmonics)
@@ -180,7 +158,9 @@ def _at_point(point: LoopPoint, file: LoopFile) -> Case:
     unit = file.unit
     symbol = "$f$" if unit == "Hz" else r"$\omega$"
     at = f"{point.frequency:.5g} {unit}"
-    swept = ", ".join(f"{key} = {value:g}" for key, value in point.parameters.items())
+    swept = ", ".join(
+        f"{key} = {value:g} {file.units.get(key, '')}".rstrip() for key, value in point.parameters.items()
+    )
     names: tuple[Name, ...] = (
         Name(shorten(point.contact, LONGEST).replace("$", r"\$"), point.contact),
         Name(curve_label(point.parameters, units=file.units), swept),
@@ -205,41 +185,5 @@ def _at_point(point: LoopPoint, file: LoopFile) -> Case:
         point.amplitude,
         point.force,
         facts,
+        file.dimensions,
     )
-
-
-def titles(cases: Sequence[Case]) -> tuple[str, list[str]]:
-    """What all loops share, for the picture; what tells each from the others, for its panel."""
-    columns = list(zip(*(case.names for case in cases), strict=True))
-    shared = {column[0] for column in columns if len(set(column)) == 1}
-    several = len(cases) > 1
-    common = _lines([column[0] for column in columns if column[0] in shared], WIDE if several else NARROW)
-    panels = []
-    for case in cases:
-        own = [name for name in case.names if name not in shared]
-        lines = _lines([*own, Name(case.note, case.note)], IN_A_ROW if several else NARROW)
-        panels.append("\n".join([*lines, case.loop.sequence]))
-    return "\n".join(common), panels
-
-
-def _lines(names: Iterable[Name], most: int) -> list[str]:
-    """The names in lines of at most so many characters, if each is short enough."""
-    lines: list[list[Name]] = []
-    for name in (name for name in names if name.plain):
-        if lines and sum(len(one.plain) + 2 for one in lines[-1]) + len(name.plain) <= most:
-            lines[-1].append(name)
-        else:
-            lines.append([name])
-    return [", ".join(one.drawn for one in line) for line in lines]
-
-
-def _named(key: str, value: float) -> Name:
-    number = f"{value:.4g}"
-    return Name(f"{_SYMBOL[key]} = {number}".replace("-", "−"), f"{key} = {number}")
-
-
-def _phase(phi: float) -> Name:
-    from fcm.plot.plane import phase_name
-
-    drawn = phase_name(phi)
-    return Name(drawn, drawn.replace(r"$\phi$", "phi"))

@@ -57,6 +57,7 @@ class LoopAxes:
 
     displacement: str = "Displacement $u/a$ (–)"
     force: str = "Friction force $f/k_u a$ (–)"
+    over_angle: str = "Force (–)"  # the same in the lower panel, which has less room
     limit: str = r"slip limits $\pm\mu n/k_u a$"
     from_greatest: bool = False  # angles count from the greatest displacement, u = a cos(theta)
 
@@ -67,6 +68,7 @@ class LoopAxes:
         return cls(
             f"Displacement $u${length}",
             f"Friction force $f${force}",
+            f"Force{force}",
             r"slip limits $\pm\mu n$",
             from_greatest,
         )
@@ -176,7 +178,7 @@ def _label(above: Axes, below: Axes, names: LoopAxes, left: bool, numbers: bool)
     """The axes' names; those of the forces at the left only, their numbers where they differ."""
     above.set_xlabel(names.displacement, fontsize=8)
     below.set_xlabel(r"Angle $\theta$ (°)", fontsize=8)
-    for axes, force in ((above, names.force), (below, "Force")):
+    for axes, force in ((above, names.force), (below, names.over_angle)):
         axes.tick_params(labelsize=_SMALL, labelleft=numbers)
         axes.xaxis.get_offset_text().set_fontsize(_SMALL)
         axes.yaxis.get_offset_text().set(fontsize=_SMALL, ha="right")  # not among the letters of the states

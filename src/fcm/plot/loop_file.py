@@ -49,6 +49,7 @@ class LoopFile:
     harmonics: tuple[int, ...]
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
+    dimensions: tuple[str, str] | None  # units of length and force, if it says both
 
 
 def read_loops(path: Path) -> LoopFile:
@@ -64,6 +65,7 @@ def read_loops(path: Path) -> LoopFile:
         frequency = floats(data["frequency"])
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
+        length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
         orders = data["harmonic"][:].tolist() if "harmonic" in data.variables else [1]
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
     shape = (*frequency.shape, len(contacts))
@@ -74,7 +76,7 @@ def read_loops(path: Path) -> LoopFile:
         states = np.full(shape, "", dtype="<U1")
     return LoopFile(
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
-        tuple(int(h) for h in orders), states, response.units,
+        tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
     )  # fmt: skip
 
 

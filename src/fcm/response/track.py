@@ -161,24 +161,22 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     check_no_ring(scene, "tracked points")
     if not scene.has_range:
         raise ResponseError("the scene has no range of frequencies; give [response] frequency = [from, to]")
-    for end in span:
+    for option, end in zip(("--from", "--to"), span, strict=True):
         if fault := number.rule.fault(end):
-            raise ResponseError(f"{number.key} {fault}")
+            raise ResponseError(f"{option} {end:g}: {number.key} {fault}")
     if not low < high:
-        raise ResponseError(f"{number.key} is from {low:g} to {high:g}, but must rise")
+        raise ResponseError(f"--from {low:g} --to {high:g}: {number.key} must rise")
     if high - low < NARROWEST * max(abs(low), abs(high)):
-        raise ResponseError(
-            f"{number.key} is from {low:.17g} to {high:.17g}: too narrow to follow anything in"
-        )
+        raise ResponseError(f"--from {low:.17g} --to {high:.17g}: too narrow to follow anything in")
     if number.key == LEVEL and low <= 0.0:
         raise ResponseError(
-            "level is from 0 or less, but must be positive: at 0 nothing moves, and nothing is special"
+            f"--from {low:g}: the level must be positive: at 0 nothing moves, and nothing is special"
         )
     rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
     if len(set(rigid)) > 1:
         raise ResponseError(
-            f"{number.key} is from {low:g} to {high:g}: at one end the structure has more rigid-body motions "
-            "than at the other, and what is tracked does not go on from there; leave that end out"
+            f"--from {low:g} --to {high:g}: at one end of {number.key} the structure has more rigid-body "
+            "motions than at the other, and what is tracked does not go on from there; leave that end out"
         )
 
 
