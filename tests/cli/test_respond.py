@@ -124,6 +124,7 @@ def test_a_shorter_step_gives_more_points(fcm, scene):
         (["-o", "a.txt"], "the name has to end in .nc"),
         (["--csv", "a.nc"], "the name has to end in .csv"),
         (["-o", "no/where/a.nc"], "there is no folder 'no/where'"),
+        (["-o", "scene.toml/a.nc"], "'scene.toml' is a file, and no folder"),
         (["-o", "x" * 300 + ".nc"], "it cannot be written: File name too long"),
         (["-o", "\udcff.nc"], "the name is not valid text"),
         (["--max-step", "0"], "must be greater than 0"),

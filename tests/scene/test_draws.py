@@ -114,6 +114,7 @@ WRONG = [
     ({"keys": [N_0, K_U], "matrix": [[1, "a"], [0, 1]]}, 'matrix[0][1]: must be a number, is the string "a"'),
     ({"keys": [N_0, K_U], "matrix": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}, "has 3 rows, but there are 2 keys"),
     ({"keys": [N_0, K_U], "matrix": 1}, "must be a list of rows"),
+    ({"keys": [N_0, K_U], "matrix": []}, "matrix: is empty; give a row for each key"),
     (
         {"keys": [N_0, K_U, "modal.damping"], "matrix": [[1, 0.9, 0.9], [0.9, 1, -0.9], [0.9, -0.9, 1]]},
         "negative eigenvalue",

@@ -95,6 +95,7 @@ CASES = [
     ("force", GONE, "force: missing; without a [[force]] the response is zero"),
     ("force", [], "force: missing; without a [[force]] the response is zero"),
     ("force", {}, "force: must be a list of tables, is a table; write [[force]]"),
+    ("response.harmonics", [1, "a"], "response.harmonics: must be a number from 1 to 50, or a list of them"),
     ("force.0.amplitud", 1, 'force[0].amplitud: unknown key; did you mean "amplitude"?'),
     ("force.0.amplitude", GONE, "force[0].amplitude: missing; give a number"),
     ("force.0.amplitude", inf, "force[0].amplitude: must be finite, is inf"),

@@ -54,6 +54,8 @@ def _problem(path: Path, endings: tuple[str, ...]) -> str:
     if path.exists() and not path.is_file():
         return "it is no file that could be replaced"
     if not path.parent.is_dir():
+        if path.parent.exists():
+            return f"{str(path.parent)!r} is a file, and no folder"
         return f"there is no folder {str(path.parent)!r}"
     str(path).encode()
     _try(path)

@@ -186,6 +186,9 @@ def _matrix(table: Section) -> FloatArray | None:
     if not isinstance(value, list | tuple | np.ndarray):
         table.wrong("matrix", f"must be a list of rows, is {kind(value)}")
         return None
+    if len(value) == 0:
+        table.wrong("matrix", "is empty; give a row for each key, as in [[1, 0.5], [0.5, 1]]")
+        return None
     rows = [table.numbers(row, table.at(f"matrix[{i}]"), ANY) for i, row in enumerate(value)]
     good = [row for row in rows if row is not None]
     if len(good) < len(rows):

@@ -8,6 +8,7 @@ import numpy as np
 
 from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray
+from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
 from fcm.structure.damping import check_dissipates, coupling_effect, projected, proportional, ratios
@@ -43,9 +44,12 @@ def modal_of_matrices(
     except StructureError as error:
         top.wrong("structure", str(error))
         return None, np.zeros((len(matrices.dofs), 0)), []
+    frequency = np.sqrt(found.modes.stiffness)
+    for value in frequency[RULES["frequency"].faulty(frequency)[:1, 0]].tolist():
+        top.wrong("structure", f"has a mode whose frequency in rad/s {RULES['frequency'].fault(value)}")
     draft = {
         "mass": np.ones(found.modes.count),
-        "frequency": np.sqrt(found.modes.stiffness),
+        "frequency": frequency,
         "damping": ratio,
         "added": found.modes.count - found.kept,
         "complete": not np.isfinite(found.beyond),

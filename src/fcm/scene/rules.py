@@ -89,8 +89,8 @@ def harmonics_fault(harmonics: Sequence[int]) -> str:
     whole = all(
         isinstance(h, int) and not isinstance(h, bool) and 1 <= h <= MOST_HARMONICS for h in harmonics
     )
-    rising = all(a < b for a, b in pairwise(harmonics))
-    if harmonics and whole and rising and harmonics[0] == 1:
+    rising = whole and all(a < b for a, b in pairwise(harmonics))
+    if harmonics and rising and harmonics[0] == 1:
         return ""
     return f"whole numbers from 1 to {MOST_HARMONICS}, rising, the first of them 1"
 

@@ -50,6 +50,8 @@ def _from_pipe(path: Path, source: str) -> bytes:
 def _text(path: Path, source: str) -> str:
     """The text of a file."""
     try:
+        if not source:
+            raise SceneError("SCENE", ["is empty; name a TOML file, or a bundled scene"])
         if path.is_dir():
             raise SceneError(source, ["is a folder; name the TOML file in it"])
         if not (path.is_file() or path.is_fifo()):
