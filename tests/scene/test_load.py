@@ -178,7 +178,7 @@ def test_paths_that_are_no_file(tmp_path):
     assert "is a device" in refused("/dev/zero")
     assert '"a\\u0000b": no such file' in refused("a\0b")
     assert "cannot be read" in refused("a" * 5000)
-    assert "is a folder" in refused("")
+    assert "SCENE: is empty" in refused("")
 
 
 def test_a_file_without_permission(tmp_path, monkeypatch):
