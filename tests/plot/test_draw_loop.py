@@ -71,6 +71,16 @@ def test_slip_limits_bound_the_force():
     np.testing.assert_allclose(upper, expected, atol=1e-12)
 
 
+def test_slip_limits_that_are_not_seen_are_said_to_be_far():
+    """The legend named a line that is nowhere in the picture."""
+    stuck = drawn([fcm.hysteresis_loop(50.0, 0.1, 0.0)]).legends[0].get_texts()
+    near = drawn(FIGURE_8[1:2]).legends[0].get_texts()
+    assert [any("beyond the panel" in text.get_text() for text in texts) for texts in (stuck, near)] == [
+        True,
+        False,
+    ]
+
+
 def test_the_looks_are_told_apart_without_colour():
     looks = [look for _, look in STATES.values()]
     assert len({(str(look["linestyle"]), look["linewidth"]) for look in looks}) == len(looks)

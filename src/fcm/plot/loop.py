@@ -91,7 +91,7 @@ def draw_loops(loops: Sequence[DrawnLoop], axes: LoopAxes | None = None, title: 
             left = i % _MOST_COLUMNS == 0
             _label(above, below, names, left=left, numbers=left or not shared)
             above.set_title(drawn.title, fontsize=8)
-        _legend(figure, loops, names)
+        _legend(figure, loops, names, any(_limits_seen(*one) for one in zip(loops, panels, strict=True)))
         figure.suptitle(title, fontsize=8)
         figure.draw_without_rendering()  # the panels take their places
         for drawn, (above, _) in zip(loops, panels, strict=True):
@@ -202,12 +202,19 @@ def _extent(drawn: DrawnLoop) -> tuple[float, float, float]:
     return float(np.abs(u).max()), float(f.min()), float(f.max())
 
 
-def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes) -> None:
+def _limits_seen(drawn: DrawnLoop, panels: tuple[Axes, Axes]) -> bool:
+    """Whether slip limits come near enough to the force to be in its panel."""
+    far = panels[1].get_ylim()[1]
+    return any(bool((drawn.force * np.abs(part.limit) <= far).any()) for part in parts(drawn.loop))
+
+
+def _legend(figure: Figure, loops: Sequence[DrawnLoop], names: LoopAxes, limits: bool) -> None:
     from matplotlib.lines import Line2D
 
     found = {state for drawn in loops for state in drawn.loop.sequence}
     handles = [Line2D([], [], label=name, **look) for state, (name, look) in STATES.items() if state in found]
-    handles.append(Line2D([], [], label=names.limit, **_LIMIT))
+    label = names.limit if limits else f"{names.limit}: beyond the panel"
+    handles.append(Line2D([], [], label=label, **_LIMIT))
     if any(drawn.loop.angles.size for drawn in loops):
         handles.append(Line2D([], [], label="transition", linestyle="", color="black", **_MARK))
     columns = 2 if len(loops) == 1 else len(handles)
