@@ -295,7 +295,7 @@ def test_sharp_resonances_take_few_periods_and_no_step_limit_changes_them():
     assert long.folds == pytest.approx(short.folds, rel=1e-10)
     for dof, (amplitude, *_) in long.peaks.items():
         assert amplitude == pytest.approx(short.peaks[dof][0], rel=1e-9)
-    assert long.orbits.periods < 5 * long.points < 1000
+    assert long.orbits.periods < 5.2 * long.points < 1000  # looks for windows between points and all
 
 
 @pytest.mark.parametrize("n_0", [5.0, -5.0, 50.0])
