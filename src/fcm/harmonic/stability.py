@@ -2,8 +2,8 @@
 
 Between two folds the number of real multipliers above +1 is even or odd throughout, as the sign of the
 balance's determinant says. Where it is odd nothing needs to be calculated. Where it is even the others
-decide, at the ends and at as many points between as it takes to see that the growth keeps its sign; and
-where it may change its sign twice between neighbours, at places between these (`windows`).
+decide at each point (of one harmonic, at enough to see that the growth keeps its sign), for they jump where
+a contact's states change; and where that may hide between neighbours, between these (`windows`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ IntArray = npt.NDArray[np.intp]
 
 __all__ = ["Crossing", "Inserted", "Kind", "Stability", "multipliers", "stability", "with_points"]
 
-SPAN = 16  # points between two that are always looked at
+SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
@@ -72,7 +72,7 @@ def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None =
 
 class _Along:
     def __init__(self, system: System, path: Path) -> None:
-        self.path, self.verdicts = path, Verdicts(system, path)
+        self.path, self.verdicts, self.single = path, Verdicts(system, path), len(system.harmonics) == 1
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._even()
@@ -87,6 +87,7 @@ class _Along:
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
             # points between two that were looked at have neighbours that agree
             stable[first : last + 1] = known[_nearer(at, first, last)]
+            stable[self.verdicts.astray(stable, first, last)] = math.nan
             found = list(self._crossings(places))
             for one in found:
                 for way in (range(one.after, first - 1, -1), range(one.after + 1, end)):
@@ -102,7 +103,7 @@ class _Along:
 
     def _look(self, first: int, last: int) -> None:
         """Enough points of a run."""
-        parts = max(-(-(last - first) // SPAN), 1)
+        parts = max(-(-(last - first) // (SPAN if self.single else 1)), 1)
         angle = self.verdicts.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / PHASE)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
@@ -175,11 +176,9 @@ class _Along:
         """Look between two points until neither the verdict nor a change of its sign can hide there."""
         if b - a < 2:
             return
-        one, other = self.verdicts.at(a), self.verdicts.at(b)
-        if one.passive and other.passive:
-            return
-        middle = (a + b) // 2
-        if not _straight(one, self.verdicts.at(middle), other):
+        one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
+        passive = one.passive and other.passive
+        if not passive and not _straight(one, self.verdicts.at(middle), other):
             self._between(a, middle)
             self._between(middle, b)
 
