@@ -409,6 +409,41 @@ def test_rigid_bodies_are_recognised_and_said():
     assert any("the damping of its rigid-body modes is left out" in note for note in scene.notes)
 
 
+@pytest.mark.parametrize("dragged", [True, False])
+def test_what_rigid_bodies_lose_of_their_damping_is_told(dragged, tmp_path):
+    """A free chain of 40 masses beside its dense matrices: the bound holds and is no empty one."""
+    rows, low, high = 40, 0.01, 0.2
+    chain = 2.0 * np.eye(rows) - np.eye(rows, k=1) - np.eye(rows, k=-1)
+    chain[0, 0] = chain[-1, -1] = 1.0
+    mass, drag = np.eye(rows), 1e-3 if dragged else 0.0
+    C = drag * mass + 0.02 * chain
+    contact = {"tangential": "0x", "normal": "9x", "name": "a", "mu": 0.3, "k_u": 0.5, "k_v": 0.1, "n_0": 1.0}
+    top = {
+        "response": {"frequency": [low, high]},
+        "force": [{"dof": "39x", "amplitude": 1.0}],
+        "contact": [contact],
+    }
+    np.savez(tmp_path / "C.npz", C)
+    for damping in ({"mass": drag, "stiffness": 0.02}, "C.npz"):
+        matrices = {"dofs": [f"{i}x" for i in range(rows)], "stiffness": chain.tolist(), "mass": [1.0] * rows}
+        scene = read(tmp_path, top=top, **matrices, damping=damping, modes=6)
+        kept, *notes = scene.notes
+        said = float(kept.split("off by at most ")[1].split(",")[0])
+        if not dragged:
+            assert said < 1e-6 and not any("left out" in note for note in notes)
+            continue
+        seen, worst = [0, 9, 39], 0.0
+        for omega in np.linspace(low, high, 50):
+            whole = np.linalg.inv(chain - omega**2 * mass + 1j * omega * C)
+            rigid = 1.0 / (rows * omega**2)  # of what is pushed anywhere; the elastic ones add to it at rest
+            worst = max(worst, np.abs(answer(scene.modal, omega) - whole)[np.ix_(seen, seen)].max() / rigid)
+        assert 0.3 * said < worst < said
+        (note,) = (note for note in notes if "left out" in note)
+        assert "would change by up to about" in note and note.endswith(
+            "all of it and more with all of them stuck"
+        )
+
+
 @pytest.mark.parametrize(
     "lowest, rigid", [([1e-3, 2e-3], 2), ([0.01, 0.05], 2), ([0.5, 0.7], 0), ([0.0, 1e-3], 1)]
 )

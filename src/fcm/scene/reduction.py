@@ -7,16 +7,15 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.errors import counted
+from fcm.scene.modal_damping import WORTH_SAYING, Damping, damping_of
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
-from fcm.structure.damping import check_dissipates, coupling_effect, projected, proportional, ratios
 from fcm.structure.eigen import StructureError
 from fcm.structure.reduced import Reduced, reduced
 
 MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
-WORTH_SAYING = 1e-4  # relative change of the response by damping between modes
 UNDAMPED = 1e-12  # of a frequency without damping: rounding that nobody would notice
 
 
@@ -40,7 +39,7 @@ def modal_of_matrices(
         found = reduced(
             matrices.K, matrices.M, directions, top_frequency, matrices.modes, matrices.flexibility, others
         )
-        ratio, said = damping_of(matrices, found, loads, springs, outputs, ends)
+        damping = damping_of(matrices, found, loads, springs, outputs, ends)
     except StructureError as error:
         top.wrong("structure", str(error))
         return None, np.zeros((len(matrices.dofs), 0)), []
@@ -50,19 +49,19 @@ def modal_of_matrices(
     draft = {
         "mass": np.ones(found.modes.count),
         "frequency": frequency,
-        "damping": ratio,
+        "damping": damping.ratio,
         "added": found.modes.count - found.kept,
         "complete": not np.isfinite(found.beyond),
     }
-    said += of_rounding([found], ratio[found.rigid :])
     return (
         draft,
         found.modes.shapes,
         [
-            _kept(matrices, found, ends),
-            *at_many(matrices, outputs.shape[1], found.aside),
+            _kept(matrices, found, damping),
+            *at_many(matrices, outputs.shape[1], found.aside, damping.lost),
             *_warnings(found, ends),
-            *said,
+            *damping.said,
+            *of_rounding([found], damping.ratio[found.rigid :]),
         ],
     )
 
@@ -73,11 +72,11 @@ def split(loads: FloatArray, outputs: FloatArray) -> tuple[FloatArray, FloatArra
     return np.concatenate((loads, outputs[:, :few]), axis=1), outputs[:, few:]
 
 
-def at_many(matrices: Matrices, count: int, aside: tuple[float, float]) -> list[str]:
+def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
     """What is to be said of outputs whose own flexibility is not kept, where some is."""
     if not (count > MOST_OUTPUTS and any(aside)):
         return []
-    most = aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
+    most = lost + aside[0] + 2.0 * (matrices.ratio or matrices.hysteretic / 2.0) * aside[1]
     off = f"are off by at most {_upwards(most)}" if np.isfinite(most) else "are off by what cannot be told"
     return [
         f"structure: the {count} outputs are more than {MOST_OUTPUTS}, so that their own flexibility is not "
@@ -104,7 +103,7 @@ def of_rounding(parts: list[Reduced], ratios: FloatArray) -> list[str]:
     return said
 
 
-def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
+def _kept(matrices: Matrices, found: Reduced, damping: Damping) -> str:
     """What is kept of the structure, and how far it is off."""
     rows, added = len(matrices.dofs), found.modes.count - found.kept
     verb = "is" if found.kept == 1 else "are"
@@ -120,14 +119,21 @@ def _kept(matrices: Matrices, found: Reduced, ends: tuple[float, float]) -> str:
     )
     if not np.isfinite(found.bound):
         return f"{text}; how far it is off cannot be told"
-    return f"{text}: {how_far_off(matrices, found.bound, found.damping)}"
+    return f"{text}: {how_far_off(matrices, found.bound, found.damping, damping.lost)}"
 
 
-def how_far_off(matrices: Matrices, bound: float, damping: float) -> str:
-    """By how much receptances may err and, with one damping ratio for all modes, heights of resonances."""
+def how_far_off(matrices: Matrices, bound: float, damping: float, lost: float) -> str:
+    """By how much receptances may err and, with one damping ratio for all modes, heights of resonances.
+
+    lost is the part that the damping of rigid-body modes has in it (`modal_damping.Damping`), which is told
+    as what it is.
+    """
     ratio = matrices.ratio or matrices.hysteretic / 2.0
-    most = max(bound + 2.0 * ratio * damping, 1e-15)
-    text = f"receptances up to the forces' highest frequency are off by at most {_upwards(most)}"
+    most = _upwards(max(bound + 2.0 * ratio * damping + lost, 1e-15))
+    if lost:
+        why = "the damping of rigid-body modes, which have no ratio, being left out"
+        return f"receptances at the forces' frequencies are off by at most {most}, {why}"
+    text = f"receptances up to the forces' highest frequency are off by at most {most}"
     if not ratio:
         return text
     return f"{text}, the damping of a resonance by at most {_upwards(max(damping, 1e-15))}"
@@ -154,53 +160,3 @@ def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
     if found.beyond < ends[1]:
         said.append("structure: there are modes within the range that are not kept: raise structure.modes")
     return said
-
-
-def damping_of(
-    matrices: Matrices,
-    found: Reduced,
-    loads: FloatArray,
-    springs: FloatArray,
-    outputs: FloatArray,
-    ends: tuple[float, float],
-) -> tuple[FloatArray, list[str]]:
-    """Damping ratios of the modes, and what the ratios leave out."""
-    stiffness = found.modes.stiffness
-    if matrices.ratio is not None:
-        return np.full(stiffness.size, matrices.ratio), []
-    if matrices.hysteretic:
-        equal = (
-            "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
-            "without contacts; where they raise its frequency, the damping is more by that ratio"
-        )
-        return np.full(stiffness.size, matrices.hysteretic / 2.0), [equal]
-    if matrices.C is None:
-        said = _undamped(matrices.by_mass, found.rigid)
-        return proportional(matrices.by_mass, matrices.by_stiffness, stiffness), said
-    modal = projected(matrices.C, found.modes)
-    coefficients = np.diagonal(modal).real
-    check_dissipates(coefficients)
-    ratio = ratios(coefficients, stiffness)
-    said = _undamped(float(np.abs(coefficients[: found.rigid]).max(initial=0.0)), found.rigid)
-    if np.isfinite(ends).all():
-        pushes, seen = (found.modes.shapes.conj().T @ some for some in (loads, np.hstack((loads, outputs))))
-        said += _between_modes(
-            *(coupling_effect(modal, stiffness, pushes, seen, k, *ends) for k in (0.0 * springs, springs))
-        )
-    return ratio, said
-
-
-def _between_modes(free: float, stuck: float) -> list[str]:
-    """What is to be said of the damping between modes, from its effects on the linear response."""
-    if max(free, stuck) <= WORTH_SAYING:
-        return []
-    return [
-        "structure: damping between modes is left out; with it, the response within the range would change "
-        f"by up to about {100 * free:.2g} % without contacts, {100 * stuck:.2g} % with all of them stuck"
-    ]
-
-
-def _undamped(of_rigid: float, rigid: int) -> list[str]:
-    if not (rigid and of_rigid):
-        return []
-    return ["structure: the damping of its rigid-body modes is left out: a mode of frequency 0 has no ratio"]

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.errors import counted
-from fcm.scene.reduction import at_many, damping_of, how_far_off, of_rounding, split
+from fcm.scene.modal_damping import Damping, damping_of
+from fcm.scene.reduction import at_many, how_far_off, of_rounding, split
 from fcm.scene.ring import ComplexArray, FloatArray
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
@@ -22,8 +23,7 @@ class Diameter:
 
     number: int
     found: Reduced
-    damping: FloatArray
-    said: list[str]
+    damping: Damping
 
 
 def modal_of_ring(
@@ -60,13 +60,14 @@ def modal_of_ring(
     draft = {
         "mass": np.ones(sum(counts)),
         "frequency": np.concatenate([np.sqrt(one.stiffness) for one in modes]),
-        "damping": np.concatenate([one.damping for one in diameters]),
+        "damping": np.concatenate([one.damping.ratio for one in diameters]),
         "shapes": np.concatenate([one.shapes.T for one in modes]).astype(np.complex128),
         "diameter": np.repeat([one.number for one in diameters], counts),
         "flexible": np.concatenate(flexible),
     }
     first, *others = _notes(matrices, diameters, ends)
-    return draft, [first, *at_many(matrices, outputs.shape[1], _aside(diameters)), *others]
+    lost = max(one.damping.lost for one in diameters)
+    return draft, [first, *at_many(matrices, outputs.shape[1], _aside(diameters), lost), *others]
 
 
 def mass_of_all_alike(matrices: Matrices) -> Any:
@@ -107,8 +108,7 @@ def _modes(
     directions, others = split(loads, outputs)
     top = ends[1] if np.isfinite(ends[1]) else 0.0
     found = reduced(matrices.K, matrices.M, directions, top, matrices.modes, matrices.flexibility, others)
-    ratio, said = damping_of(matrices, found, loads, springs, outputs, ends)
-    return Diameter(number, found, ratio, said)
+    return Diameter(number, found, damping_of(matrices, found, loads, springs, outputs, ends))
 
 
 def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, float]) -> list[str]:
@@ -125,7 +125,8 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
         text += "; the flexibility of the others is left out"
     elif np.isfinite(bound):
         damping = max(one.damping for one in all_found)
-        text += f", and the flexibility of the others: {how_far_off(matrices, bound, damping)}"
+        lost = max(one.damping.lost for one in diameters)
+        text += f", and the flexibility of the others: {how_far_off(matrices, bound, damping, lost)}"
     else:
         text += ", and the flexibility of the others; how far it is off cannot be told"
     notes = [text]
@@ -139,6 +140,6 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     ):
         numbers = [str(one.number) for one, flag in zip(diameters, which, strict=True) if flag]
         notes += [f"structure: nodal diameter {', '.join(numbers)} {what}"] if numbers else []
-    ratios = np.concatenate([one.damping[one.found.rigid :] for one in diameters])
+    ratios = np.concatenate([one.damping.ratio[one.found.rigid :] for one in diameters])
     notes += of_rounding(all_found, ratios)
-    return [*notes, *dict.fromkeys(text for one in diameters for text in one.said)]
+    return [*notes, *dict.fromkeys(text for one in diameters for text in one.damping.said)]

@@ -11,6 +11,7 @@ BETWEEN = 4  # places up to each next one: an effect between two of them is then
 WORK = 3e8  # complex multiplications of all places, some tenths of a second: with many modes there are fewer
 FINER = 12  # further places beside the greatest
 ROUNDING = 1e-9  # of the greatest coefficient: less negative than that is none
+CANCELLED = 1e-13  # of the terms of a sum: what is left of them is rounding
 
 
 def ratios(coefficients: FloatArray, stiffness: FloatArray) -> FloatArray:
@@ -35,6 +36,14 @@ def projected(C: Matrix, modes: Modes) -> FloatArray:
     return matrix
 
 
+def drag(C: Matrix, rigid: FloatArray) -> float:
+    """Greatest damping coefficient of rigid-body modes (row, mode) of mass 1; 0 where it is rounding."""
+    size = np.abs(rigid)
+    terms = np.einsum("ij,ij->j", size, abs(C) @ size)
+    own = np.abs(np.einsum("ij,ij->j", rigid.conj(), C @ rigid))
+    return float(own[own > CANCELLED * terms].max(initial=0.0))
+
+
 def check_dissipates(coefficients: FloatArray) -> None:
     """Raise StructureError where the damping of a mode is negative, beyond rounding."""
     least = float(coefficients.min(initial=0.0))
@@ -51,26 +60,27 @@ def coupling_effect(
     springs: FloatArray,
     low: float,
     high: float,
+    rigid: int = 0,
 ) -> float:
-    """Greatest change of the linear response by the damping between modes, relative.
+    """Greatest relative change of the linear response by damping between modes and of the first, rigid ones.
 
     The response of `seen` (mode, displacement) to each of `pushes` (mode, load), of modes of mass 1 with the
     damping matrix `modal`, from low to high, with springs (load,) along the loads: the contacts' when they
-    are stuck. It is sampled at resonances, beside them and between, and once more where it is greatest.
+    are stuck. It is sampled at resonances, beside them and between, and once more where it is greatest; inf
+    where without that damping there is no response.
     """
     matrix = np.diag(stiffness) + (pushes * springs) @ pushes.conj().T
+    own = np.diag(np.concatenate((np.zeros(rigid), np.diagonal(modal)[rigid:])))
 
     def change(omega: float) -> float:
         undamped = matrix - omega**2 * np.eye(len(matrix))
-        own = np.diag(np.diagonal(modal))
-        try:
-            whole, alone = (
-                seen.conj().T @ np.linalg.solve(undamped + 1j * omega * damper, pushes)
-                for damper in (modal, own)
-            )
-        except np.linalg.LinAlgError:
-            return 0.0  # at the resonance of an undamped mode: no force gives a response
+        whole = _response(undamped + 1j * omega * modal, pushes, seen)
+        alone = _response(undamped + 1j * omega * own, pushes, seen)
+        if whole is None:  # at the resonance of a mode without damping: no force gives a response
+            return 0.0
         size = float(np.abs(whole).max(initial=0.0))
+        if alone is None:
+            return np.inf
         return float(np.abs(whole - alone).max() / size) if 0.0 < size < np.inf else 0.0
 
     places = _places(matrix, modal, low, high)
@@ -78,6 +88,15 @@ def coupling_effect(
     at = int(np.argmax(found))
     before, after = places[max(at - 1, 0)], places[min(at + 1, places.size - 1)]
     return max(found[at], *map(change, np.linspace(before, after, FINER).tolist()))
+
+
+def _response(dynamic: FloatArray, pushes: FloatArray, seen: FloatArray) -> FloatArray | None:
+    """Of seen to pushes; None where the dynamic stiffness is singular."""
+    try:
+        response: FloatArray = seen.conj().T @ np.linalg.solve(dynamic, pushes)
+    except np.linalg.LinAlgError:
+        return None
+    return response
 
 
 def _places(matrix: FloatArray, damper: FloatArray, low: float, high: float) -> FloatArray:

@@ -1,0 +1,86 @@
+"""From the damping of a [structure] table to ratios of its modes, and what the ratios leave out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.scene.model import FloatArray
+from fcm.scene.structure_table import Matrices
+from fcm.structure.damping import check_dissipates, coupling_effect, drag, projected, proportional, ratios
+from fcm.structure.reduced import Reduced
+
+WORTH_SAYING = 1e-4  # relative change of the response by damping that is left out
+
+
+@dataclass(frozen=True)
+class Damping:
+    """Ratios of modes (mode,), and what is to be said of what they leave out.
+
+    lost bounds the error of a receptance by the damping of rigid-body modes: of what it is at rest, of
+    rigid-body modes at its own frequency.
+    """
+
+    ratio: FloatArray
+    lost: float
+    said: list[str]
+
+
+def damping_of(
+    matrices: Matrices,
+    found: Reduced,
+    loads: FloatArray,
+    springs: FloatArray,
+    outputs: FloatArray,
+    ends: tuple[float, float],
+) -> Damping:
+    """That of the modes; the arguments are those of `reduction.modal_of_matrices`."""
+    stiffness, rigid = found.modes.stiffness, found.rigid
+    if matrices.ratio is not None:
+        return Damping(np.full(stiffness.size, matrices.ratio), 0.0, [])
+    if matrices.hysteretic:
+        equal = (
+            "structure: a loss factor is taken as half of it for damping ratio, equal at each resonance "
+            "without contacts; where they raise its frequency, the damping is more by that ratio"
+        )
+        return Damping(np.full(stiffness.size, matrices.hysteretic / 2.0), 0.0, [equal])
+    if matrices.C is None:
+        ratio = proportional(matrices.by_mass, matrices.by_stiffness, stiffness)
+        modal = np.diag(matrices.by_mass + matrices.by_stiffness * stiffness)
+        dragged = matrices.by_mass if rigid else 0.0
+    else:
+        modal = projected(matrices.C, found.modes)
+        check_dissipates(np.diagonal(modal).real)
+        ratio = ratios(np.diagonal(modal).real, stiffness)
+        dragged = drag(matrices.C, found.modes.shapes[:, :rigid])
+    said = _left_out(dragged, [])
+    if np.isfinite(ends).all() and (dragged or matrices.C is not None):
+        pushes, seen = (found.modes.shapes.conj().T @ some for some in (loads, np.hstack((loads, outputs))))
+        effects = (
+            coupling_effect(modal, stiffness, pushes, seen, k, *ends, rigid) for k in (0.0 * springs, springs)
+        )
+        said = _left_out(dragged, list(effects))
+    lowest = ends[0] if np.isfinite(ends[0]) else 0.0
+    return Damping(ratio, float(dragged / np.hypot(lowest, dragged)) if dragged else 0.0, said)
+
+
+def _left_out(dragged: float, effects: list[float]) -> list[str]:
+    """What is to be said of damping that is left out, from its effects on the linear response, if told."""
+    if not dragged and max(effects, default=0.0) <= WORTH_SAYING:
+        return []
+    what = "damping between modes is left out"
+    if dragged:
+        what = "the damping of its rigid-body modes is left out: a mode of frequency 0 has no ratio"
+    if not effects:
+        return [f"structure: {what}"]
+    free, stuck = map(_share, effects)
+    return [
+        f"structure: {what}; with it, the response within the range would change by {free} without contacts, "
+        f"{stuck} with all of them stuck"
+    ]
+
+
+def _share(change: float) -> str:
+    """A relative change in words: beside a resonance that is left without damping it is no number."""
+    return f"up to about {100 * change:.2g} %" if change < 1.0 else "all of it and more"
