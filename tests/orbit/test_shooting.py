@@ -20,7 +20,7 @@ CASES = [("n_0 = 5", 1.3), ("n_0 = 0", 1.1), ("n_0 = -2", 0.9), ("one mode", 1.1
 
 
 def many(modes=40, contacts=3):
-    """Enough components for matrices to be multiplied by BLAS."""
+    """Enough components, by default, for matrices to be multiplied by BLAS."""
     rng = np.random.default_rng(3)
     dofs = 2 * contacts + 1
     unit = np.eye(dofs)
@@ -57,8 +57,10 @@ def test_the_derivative_by_the_frequency_is_that_of_differences(name, omega):
         )
 
 
-def test_the_derivatives_of_a_large_structure():
-    scene, omega = many(), 1.5
+@pytest.mark.parametrize(("modes", "contacts"), [(40, 3), (12, 2), (9, 1), (4, 1), (3, 1)])
+def test_the_derivatives_of_many_modes(modes, contacts):
+    """By BLAS, by four rows at once with and without rows and columns left over, and one by one."""
+    scene, omega = many(modes, contacts), 1.5
     problem = Shooting(scene)
     x = problem.unknowns(simulate(scene, omega, 10).end)
     shot = problem.residual(x, omega)
