@@ -6,7 +6,11 @@ import netCDF4
 import numpy as np
 import pytest
 
+from fcm.cli.messages import Messages
+from fcm.cli.sensitivity import added
 from fcm.harmonic.sensitivity import sensitivities
+from fcm.response import trace
+from fcm.scene import load_scene
 
 
 @pytest.fixture
@@ -100,3 +104,15 @@ def test_an_interruption_keeps_the_curves(fcm, scene, monkeypatch):
         None,
         *["interrupted before its sensitivities were known"] * 2,
     ]
+
+
+def test_after_an_interruption_none_is_begun(scene):
+    """The time that a run may take is over then."""
+    scene.write_text(scene.read_text() + '\n[sweep]\n"contact.shroud.mu" = [0.3, 0.4]\n')
+    loaded = load_scene(scene)
+    response = trace(loaded, harmonics=1)
+    response.curves[1].complete, response.curves[1].reason = False, "interrupted at 1 rad/s"
+    added(Messages(), response, loaded)
+    assert [curve.sensitivity for curve in response.curves] == [None, None]
+    reasons = ["interrupted before its sensitivities were known", "interrupted at 1 rad/s"]
+    assert [curve.reason for curve in response.curves] == reasons and not response.curves[0].complete

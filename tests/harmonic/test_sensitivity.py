@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.peak import Kind
+from fcm.harmonic.sensitivity import numbers_of, settled
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import Amplitude, jacobian_of
 from fcm.response.optimum import optimise
@@ -145,7 +146,6 @@ def test_phases_against_a_base_and_static_loads():
     found, step = run(pushed(), 1), 1e-4
     add_sensitivities(found, pushed())
     own = found.curves[0].sensitivity
-    assert "base.phase" not in own.numbers  # it is what the other phases are counted from
     for key, moved in {
         "force.u.phase": [pushed(phase=0.5 + step), pushed(phase=0.5 - step)],
         "load.v.force": [pushed(load=0.4 + step), pushed(load=0.4 - step)],
@@ -157,6 +157,33 @@ def test_phases_against_a_base_and_static_loads():
         assert own.frequency[0, n] == pytest.approx(
             (more.frequency - less.frequency) / (2.0 * step), rel=1e-3
         )
+
+
+def test_phases_count_from_two_forces_on():
+    """All of them together shift the time, and change no peak; of one force alone that is all it does."""
+    two, _ = oscillator({"contact.c.n_0": 10.0})
+    found = run(two, 1)
+    add_sensitivities(found, two)
+    own = found.curves[0].sensitivity
+    first, second = (own.numbers.index(f"force.{name}.phase") for name in "uv")
+    for of in (own.height, own.frequency):
+        assert of[:, first] == pytest.approx(-of[:, second], rel=1e-9) and (np.abs(of[:, first]) > 1e-3).all()
+    one = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["u", "v"],
+                "frequency": [1.0, 2.0],
+                "damping": 0.01,
+                "shapes": [[1, 0], [0, 1]],
+            },
+            "contact": [
+                {"name": "c", "tangential": "u", "normal": "v", "mu": 0.4, "k_u": 1.0, "k_v": 1.0, "n_0": 5.0}
+            ],
+            "force": [{"dof": "u", "amplitude": 1.0}],
+            "response": {"frequency": [0.7, 1.7]},
+        }
+    )
+    assert not any("phase" in number.key for number in numbers_of(settled(one)))
 
 
 def test_nothing_is_said_of_peaks_that_are_not_reported():

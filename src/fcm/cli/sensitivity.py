@@ -28,9 +28,12 @@ def check_options(wanted: bool, method: str, level: object, mode: int | None, pe
 
 
 def added(messages: Messages, response: Response, scene: Scene) -> None:
-    """Give the curves of a response the sensitivities of their peaks."""
-    from fcm.response.sensitivity import add_sensitivities, remarks
+    """Give the curves of a response the sensitivities of their peaks; interrupted, no time is left for it."""
+    from fcm.response.sensitivity import add_sensitivities, remarks, without_sensitivities
 
+    if response.interrupted:
+        without_sensitivities(response.curves)
+        return
     add_sensitivities(response, scene, messages.progress)
     messages.clear()
     for remark in remarks(response, scene):

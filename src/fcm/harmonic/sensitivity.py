@@ -52,7 +52,8 @@ def numbers_of(scene: Scene) -> list[Number]:
     keys = [f"contact.{name}.{key}" for name in load for key in ("mu", "k_u", "k_v", load[name])]
     forces, bases = _names(parts["force"]), len(parts["base"])
     keys += [f"force.{name}.amplitude" for name in forces]
-    keys += (["base.phase"] * bases + [f"force.{name}.phase" for name in forces])[1:]  # relative to the first
+    phases = ["base.phase"] * bases + [f"force.{name}.phase" for name in forces]
+    keys += phases if len(phases) > 1 else []  # that of one alone shifts the time
     keys += ["base.acceleration"] * bases + [f"load.{name}.force" for name in _names(parts["load"])]
     own = scene.modal.mass.size - scene.modal.added  # not the flexibility of the modes left out
     keys += [f"modal.{key}.{i}" for key in ("frequency", "damping") for i in range(own)]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -38,9 +40,14 @@ def add_sensitivities(response: Response, scene: Scene, progress: Progress | Non
             if curve.points and curve.harmonics and one.contacts:
                 curve.sensitivity = _of_curve(curve, one)
         except KeyboardInterrupt:
-            for without in response.curves[i:]:
-                without.complete, without.reason = False, without.reason or WITHOUT
+            without_sensitivities(response.curves[i:])
             return
+
+
+def without_sensitivities(curves: Iterable[Curve]) -> None:
+    """Say of curves that they have none, as the run was interrupted."""
+    for curve in curves:
+        curve.complete, curve.reason = False, curve.reason or WITHOUT
 
 
 def _of_curve(curve: Curve, scene: Scene) -> Sensitivities:
