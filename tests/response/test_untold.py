@@ -194,3 +194,13 @@ def test_where_a_growth_ends_in_what_is_not_told_no_point_alone_is_called_stable
     assert (curve.stable == 0.0).any() and np.isnan(curve.stable).any()
     stable = np.concatenate(([False], curve.stable == 1.0, [False]))
     assert not (stable[1:-1] & ~stable[:-2] & ~stable[2:]).any()
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("beyond", [0.0, np.nan])
+def test_a_sweep_comes_to_a_change_of_stability_at_a_point_that_is_there_twice(side, beyond):
+    """As one at a corner is, of which the first copy belongs to the side that is not stable."""
+    frequency = np.array([1.0, 1.5, 2.0, 2.0, 2.5, 3.0])[::side]
+    stable = np.array([0.0, 0.0, beyond, 1.0, 1.0, 1.0])[::side]
+    found = swept(frequency, frequency[:, None], stable)
+    assert [(one.sweep, one.frequency) for one in found.jumps] == [("down", 2.0)] and not found.untold

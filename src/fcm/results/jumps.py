@@ -14,6 +14,7 @@ BoolArray = npt.NDArray[np.bool_]
 SAME = 1e-6  # relative difference of amplitudes at one frequency that are one point
 FLIP = 0.01  # relative change of an amplitude, from the last point before a flip to the first after it
 ROUNDING = 1e-13  # relative difference of frequencies that are one
+UNKNOWN = 0.5  # between unstable, 0, and stable, 1
 
 
 @dataclass(frozen=True)
@@ -86,11 +87,17 @@ def swept(frequency: FloatArray, amplitude: FloatArray, stable: FloatArray) -> S
 def _once(
     frequency: FloatArray, amplitude: FloatArray, stable: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The points without those that are there twice, as a peak at a corner is."""
+    """The points without those that are there twice, as a peak at a corner is.
+
+    Where stability changes there, one is stable and the other not: a way along the stable side leads to it.
+    """
     again = np.abs(np.diff(frequency)) <= ROUNDING * frequency[1:]
     again &= np.isclose(amplitude[1:], amplitude[:-1], rtol=SAME, atol=0.0).all(axis=1)
-    kept = np.concatenate((np.ones(min(frequency.size, 1), dtype=bool), ~again))
-    return frequency[kept], amplitude[kept], stable[kept]
+    if not again.any():
+        return frequency, amplitude, stable
+    kept = np.concatenate(([0], np.flatnonzero(~again) + 1))
+    best = np.maximum.reduceat(np.where(np.isnan(stable), UNKNOWN, stable), kept)
+    return frequency[kept], amplitude[kept], np.where(best == UNKNOWN, np.nan, best)
 
 
 def _sweep(
