@@ -12,6 +12,8 @@ import pytest
 
 import fcm as package
 from fcm.plot.tracked import DrawnTrack, DrawnTracking, draw_tracked, read_tracked
+from fcm.response.track import track
+from fcm.scene import load_scene
 
 SCENES = Path(package.__file__).parent / "scenes"
 OPTIMUM = '\n[optimum]\nvary = ["contact.shroud.n_0"]\nbounds = [[2.0, 20.0]]\nminimise = "peak.u"\n'
@@ -161,6 +163,19 @@ def test_what_is_wrong_is_said_and_nothing_is_written(fcm, scene, tmp_path, args
     done = fcm("respond", scene, *args, *(["-o", "a.nc"] if "--resume" not in args else []))
     assert done.code == 2 and said in done.err and done.out == ""
     assert not (tmp_path / "a.nc").exists()
+
+
+@pytest.mark.parametrize(
+    ("over", "span", "said"),
+    [
+        ("contact.shroud.n_0", (5.0, 4.0), "span from 5 to 4: contact.shroud.n_0 must rise"),
+        ("contact.shroud.mu", (0.1, -1.0), "span to -1: contact.shroud.mu must be at least 0"),
+        ("level", (0.0, 1.0), "span from 0: the level must be positive"),
+    ],
+)
+def test_the_library_names_the_span_that_it_was_given(scene, over, span, said):
+    with pytest.raises(ValueError, match="^" + re.escape(said)):
+        track(load_scene(scene), "folds", over, span)
 
 
 def test_an_optimum_excludes_what_is_for_numbers_already_chosen(fcm, optimum):

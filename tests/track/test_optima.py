@@ -105,3 +105,16 @@ def test_optima_of_another_aim_are_sought_anew(scene, sought):
     with Checkpoint(scene.with_name("kept"), resume=True) as kept, warned:
         optima.optima(tasks_of(scene), (1,), kept, None)
     assert begun.call_count == 2
+
+
+def test_where_the_forces_may_vanish_they_do(fcm, tmp_path):
+    """All amplitudes are 0 there, the greatest of which is one of them."""
+    aim = '\n[optimum]\nvary = ["level"]\nbounds = [[0.0, 0.5]]\nminimise = "greatest.u"\n'
+    text = oscillator("[response]\nfrequency = [1.1, 1.3]\n", damping=0.05) + aim
+    (tmp_path / "scene.toml").write_text(text)
+    done = fcm(*COMMAND, "a.nc")
+    assert (
+        done.code == 0
+        and "least greatest.u: 0 " in done.out + done.err
+        and "with level = 0" in done.out + done.err
+    )

@@ -94,9 +94,12 @@ def tracked(
     messages: Messages, scene: Scene, what: str, over: str, span: tuple[float, float], options: dict[str, Any]
 ) -> Response:
     """The curves that were asked for."""
-    from fcm.response.track import track
+    from fcm.response.track import SpanError, track
 
-    response = track(scene, what, over, span, progress=messages.progress, **options)
+    try:
+        response = track(scene, what, over, span, progress=messages.progress, **options)
+    except SpanError as error:
+        raise error.named("--from", "--to") from None
     messages.clear()
     return response
 
@@ -199,9 +202,7 @@ def _unstable(tracked: Mapping[str, Any], unit: str) -> str:
         for key, said in (("not_stable", "not stable"), ("stability_untold", "stability not told")):
             for one in curve.get(key, ()):
                 ends = [f"{value:.6g}" for key in ("number", "frequency") for value in one[key]]
-                if (
-                    ends[0] == ends[1] and ends[2] == ends[3]
-                ):  # at a place, and on no stretch that can be seen
+                if ends[0] == ends[1] and ends[2] == ends[3]:  # at a place: no stretch that can be seen
                     ends[1] = ends[3] = ""
                 rows.append([*swept(curve), plain(curve["what"]), *ends, said])
     title = "where no motion stays, or it is not told whether one does:"

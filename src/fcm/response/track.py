@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,19 @@ from fcm.track.onset import KINDS as ONSETS
 
 NARROWEST = 1e-6  # of its ends: of a narrower span not even the first steps can be told from rounding
 WHAT = ("folds", "peaks", *ONSETS)
+
+
+class SpanError(ResponseError):
+    """Ends of a span, 0 or 1 and their values, in which nothing can be followed, and why."""
+
+    def __init__(self, ends: Mapping[int, float], fault: str, digits: int = 6) -> None:
+        self.ends, self.fault, self.digits = ends, fault, digits
+        super().__init__(f"span {self.named('from', 'to')}")
+
+    def named(self, *names: str) -> ResponseError:
+        """The same with a caller's names of the two ends."""
+        ends = " ".join(f"{names[which]} {value:.{self.digits}g}" for which, value in self.ends.items())
+        return ResponseError(f"{ends}: {self.fault}")
 
 
 def track(
@@ -161,23 +174,23 @@ def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:
     check_no_ring(scene, "tracked points")
     if not scene.has_range:
         raise ResponseError("the scene has no range of frequencies; give [response] frequency = [from, to]")
-    for option, end in zip(("--from", "--to"), span, strict=True):
+    for which, end in enumerate(span):
         if fault := number.rule.fault(end):
-            raise ResponseError(f"{option} {end:g}: {number.key} {fault}")
+            raise SpanError({which: end}, f"{number.key} {fault}")
+    both = dict(enumerate(span))
     if not low < high:
-        raise ResponseError(f"--from {low:g} --to {high:g}: {number.key} must rise")
+        raise SpanError(both, f"{number.key} must rise")
     if high - low < NARROWEST * max(abs(low), abs(high)):
-        raise ResponseError(f"--from {low:.17g} --to {high:.17g}: too narrow to follow anything in")
+        raise SpanError(both, "too narrow to follow anything in", digits=17)
     if number.key == LEVEL and low <= 0.0:
-        raise ResponseError(
-            f"--from {low:g}: the level must be positive: at 0 nothing moves, and nothing is special"
-        )
+        raise SpanError({0: low}, "the level must be positive: at 0 nothing moves, and nothing is special")
     rigid = [int((linear_of(curve).natural == 0.0).sum()) for curve in _at_ends(scene, number, span)]
     if len(set(rigid)) > 1:
-        raise ResponseError(
-            f"--from {low:g} --to {high:g}: at one end of {number.key} the structure has more rigid-body "
-            "motions than at the other, and what is tracked does not go on from there; leave that end out"
+        fault = (
+            f"at one end of {number.key} the structure has more rigid-body motions than at the other, and "
+            "what is tracked does not go on from there; leave that end out"
         )
+        raise SpanError(both, fault)
 
 
 def _at_ends(scene: Scene, number: Number, span: tuple[float, float]) -> list[Scene]:
