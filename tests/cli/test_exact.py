@@ -89,6 +89,7 @@ def test_points_are_drawn_over_curves(fcm, scene, tmp_path):
         (["--method", "exact", "--at", "1:2:x"], "FROM:TO:COUNT"),
         (["--method", "exact", "--at", ""], "FROM:TO:COUNT"),
         (["--method", "exact", "--at", "1:2:0"], "the count must be"),
+        (["--method", "exact", "--at", "1:2:1"], "the count must be from 2, both ends"),
         (["--method", "exact", "--at", "2:1:5"], "must rise"),
         (["--method", "exact", "--at", "2:2:5"], "must rise"),
         (["--method", "exact", "--at", "1", "--max-step", "0.1"], "--max-step is of no use with --at"),

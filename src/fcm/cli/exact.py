@@ -49,8 +49,8 @@ def _values(text: str) -> list[float]:
         raise click.BadParameter(f"{text!r}: {FORMS}.")
     if not all(0.0 < end < np.inf for end in ends):
         raise click.BadParameter(f"{text!r}: a frequency must be finite and greater than 0.")
-    if not 1 <= count <= MOST_FREQUENCIES:
-        raise click.BadParameter(f"{text!r}: the count must be from 1 to {MOST_FREQUENCIES}.")
+    if len(parts) == 3 and not 2 <= count <= MOST_FREQUENCIES:
+        raise click.BadParameter(f"{text!r}: the count must be from 2, both ends, to {MOST_FREQUENCIES}.")
     if len(parts) == 3 and not ends[0] < ends[1]:
         raise click.BadParameter(
             f"{text!r}: the frequencies must rise; they are visited upward, then downward."
@@ -140,7 +140,7 @@ def _irregular(found: Sequence[Orbits]) -> Iterator[str]:
     if count:
         yield (
             "quasi-periodic or irregular points, or of more than 8 periods (repeats is 0; cycle_least to "
-            f"cycle_greatest): {count}"
+            f"cycle_greatest, of the cycles that were looked at: others may range further): {count}"
         )
 
 

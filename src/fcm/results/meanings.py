@@ -42,8 +42,11 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
             "units": "1",
         },
     ),
-    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle"}),
-    "cycle_greatest": (("dof",), {"long_name": "greatest half the peak-to-peak of a cycle"}),
+    "cycle_least": (("dof",), {"long_name": "least half the peak-to-peak of a cycle that was looked at"}),
+    "cycle_greatest": (
+        ("dof",),
+        {"long_name": "greatest half the peak-to-peak of a cycle that was looked at"},
+    ),
     "family_least": (
         ("dof",),
         {"long_name": f"least amplitude {_OVER_FRICTION}"},
