@@ -7,16 +7,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.motion.cycle import Cycle
+from fcm.motion.measure import Scanned, scanned
 from fcm.scene.model import FloatArray
 
 
-def borne(cycles: Sequence[Cycle]) -> FloatArray:
+def borne(cycles: Sequence[Cycle], known: Scanned | None = None) -> FloatArray:
     """Of each contact the greatest normal and friction force; slip and energy in a period of the force.
 
     Parameters
     ----------
     cycles : sequence of Cycle
         Those after which the motion repeats, or some of one that does not.
+    known : Scanned, optional
+        Extremes of the first.
 
     Returns
     -------
@@ -31,7 +34,7 @@ def borne(cycles: Sequence[Cycle]) -> FloatArray:
     >>> borne([orbit.cycle]).round(3)
     array([[11.715,  4.686, 14.069, 23.449]])
     """
-    out = _of(cycles[0])
+    out = _of(cycles[0], known)
     for cycle in cycles[1:]:
         more = _of(cycle)
         out[:, :2], out[:, 2:] = np.maximum(out[:, :2], more[:, :2]), out[:, 2:] + more[:, 2:]
@@ -39,12 +42,11 @@ def borne(cycles: Sequence[Cycle]) -> FloatArray:
     return out
 
 
-def _of(cycle: Cycle) -> FloatArray:
+def _of(cycle: Cycle, known: Scanned | None = None) -> FloatArray:
     """Of each contact the greatest forces, and slip and energy of all the cycle: (contact, 4)."""
     system, each = cycle.system, len(cycle.system.contacts)
-    system.run(system.forces, cycle.segments)
+    least, greatest = (known or scanned(system, cycle.segments)).part(system.parts.forces)
     system.run(system.slips, cycle.segments)
-    least, greatest = np.asarray(system.forces.least), np.asarray(system.forces.greatest)
     out = np.empty((each, 4))
     out[:, 0] = np.maximum(system.preload + greatest[:each], 0.0)
     out[:, 1] = np.maximum(np.abs(least[each:]), np.abs(greatest[each:]))

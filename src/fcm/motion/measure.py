@@ -55,6 +55,27 @@ def displaced(system: System, segments: Segments) -> Displaced:
     return Displaced(np.array(scan.least), np.array(scan.greatest), np.array(scan.place))
 
 
+class Scanned(NamedTuple):
+    """The least and the greatest of all that is reported of a motion, found on one way through it."""
+
+    least: FloatArray  # (row,) of the displacements, then of the rest, see `fcm.motion.system.System.parts`
+    greatest: FloatArray  # (row,)
+    displaced: Displaced
+
+    def part(self, rows: slice) -> tuple[FloatArray, FloatArray]:
+        """The least and the greatest of some rows."""
+        return self.least[rows], self.greatest[rows]
+
+
+def scanned(system: System, segments: Segments) -> Scanned:
+    """The same of segments."""
+    scan, dofs = system.reported, system.parts.displaced
+    system.run(scan, segments)
+    least, greatest = np.array(scan.least), np.array(scan.greatest)
+    places = np.array(scan.place).reshape(2, -1, 2)[:, dofs].reshape(-1, 2)
+    return Scanned(least, greatest, Displaced(least[dofs], greatest[dofs], places))
+
+
 class Extreme(NamedTuple):
     """The least or greatest value of a row over segments, and where it is."""
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from math import isfinite
 from threading import local
-from typing import Any
+from typing import Any, NamedTuple
 from weakref import ref
 
 import numpy as np
@@ -30,6 +31,15 @@ from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
 OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
+
+
+class Parts(NamedTuple):
+    """Rows of what is reported of a motion."""
+
+    displaced: slice  # of each degree of freedom
+    forces: slice  # k_v v of each contact, then f
+    limits: slice  # see `held_limits`
+    held: slice  # see `held_rows`
 
 
 class System:
@@ -78,7 +88,7 @@ class System:
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)
         self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
-        self.displaced, self.limits, self.forces, self.kept, self.held = self._scans()
+        self.displaced, self.limits, self.reported, self.parts = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})
 
     def at(self, omega: float) -> System:
@@ -144,12 +154,15 @@ class System:
         """Normal loads n_0 + k_v v of the contacts, negative while they are open: (contact,)."""
         return self.preload + y[self.n]
 
-    def _scans(self) -> list[Scan]:
-        """Of the displacements, the limits of slip, the forces, and of what held contacts keep and bear."""
+    def _scans(self) -> tuple[Scan, Scan, Scan, Parts]:
+        """Of the displacements alone, of the limits of slip, and of all that is reported with its parts."""
         displacements = np.zeros((self.scene.modal.shapes.shape[1], self.size - 2))
         displacements[:, self.q] = self.scene.modal.shapes.T
-        rows = displacements, self.limit_rows, self._force_rows(), held_limits(self), held_rows(self)
-        return [Scan(self.flows, Rows(each)) for each in rows]
+        parts = displacements, self._force_rows(), held_limits(self), held_rows(self)
+        rows = displacements, self.limit_rows, np.concatenate(parts)
+        first, second, third = (Scan(self.flows, Rows(each)) for each in rows)
+        ends = np.cumsum([0, *(len(part) for part in parts)]).tolist()
+        return first, second, third, Parts(*(slice(a, b) for a, b in pairwise(ends)))
 
     def _force_rows(self) -> FloatArray:
         """Rows of k_v v, then of f, of each contact, for y without the forces' angle."""

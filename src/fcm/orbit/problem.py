@@ -146,7 +146,7 @@ class OrbitProblem(Problem):
         if shot is None:
             return 0
         shapes = self.scene.modal.shapes
-        least, greatest, places = shot.extremes
+        least, greatest, places = shot.scanned.displaced
         amplitude = 0.5 * (greatest - least)
         moves = amplitude > STILL * amplitude.max(initial=0.0)
         way = np.zeros(self.shooting.size)

@@ -62,21 +62,17 @@ def recorded(problem: OrbitProblem, z: FloatArray) -> Sample:
 
 def _made(shot: Shot, z: FloatArray) -> Sample:
     """What is kept of a period from z."""
-    multipliers = shot.multipliers
+    multipliers, found = shot.multipliers, shot.scanned
     return Sample(
-        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, shot.extremes), borne([shot.cycle]),
-        multipliers, shot.residual, within_unit_circle(multipliers), z, np.zeros(z.size), held=_held(shot),
-        steady=several(shot),
+        float(z[-1]), shot.state, shot.cycle.states, measure(shot.cycle, found.displaced),
+        borne([shot.cycle], found), multipliers, shot.residual, within_unit_circle(multipliers),
+        z, np.zeros(z.size), held=_held(shot), steady=several(shot),
     )  # fmt: skip
 
 
 def _held(shot: Shot) -> FloatArray:
     """What each contact that is held keeps of its limit or gap; its greatest normal and friction force."""
-    system = shot.system
-    if not system.scene.held:
-        return np.zeros((0, 3))
-    system.run(system.held, shot.segments)
-    least, greatest = (np.asarray(one).reshape(2, -1) for one in (system.held.least, system.held.greatest))
+    least, greatest = (one.reshape(2, -1) for one in shot.scanned.part(shot.system.parts.held))
     return np.column_stack((shot.kept, greatest[0], np.maximum(greatest[1], -least[1])))
 
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.motion.cycle import Cycle
 from fcm.motion.matrices import has_friction
-from fcm.motion.measure import Displaced, displaced
+from fcm.motion.measure import Displaced, Scanned, displaced, scanned
 from fcm.motion.pool import STICKING
 from fcm.motion.run import march_from
 from fcm.motion.state import State
@@ -110,6 +110,11 @@ class Shot:
         return self._derivatives
 
     @cached_property
+    def scanned(self) -> Scanned:
+        """The extremes of all that is reported."""
+        return scanned(self.system, self.segments)
+
+    @cached_property
     def extremes(self) -> Displaced:
         """The least and the greatest displacement of each degree of freedom."""
         return displaced(self.system, self.segments)
@@ -123,9 +128,9 @@ class Shot:
     @cached_property
     def kept(self) -> FloatArray:
         """What each contact that is held keeps of its limit, or of its gap: (held,); negative, nothing."""
-        self.system.run(self.system.kept, self.segments)
-        least, greatest = np.asarray(self.system.kept.least), np.asarray(self.system.kept.greatest)[::3]
-        share: FloatArray = least.reshape(-1, 3).min(axis=1) / np.where(greatest > 0.0, greatest, 1.0)
+        least, greatest = self.scanned.part(self.system.parts.limits)
+        most = greatest[::3]
+        share: FloatArray = least.reshape(-1, 3).min(axis=1) / np.where(most > 0.0, most, 1.0)
         return share
 
     @cached_property
