@@ -16,6 +16,9 @@ cdef class Receptance:
     cdef public double[::1] square_re
     cdef public double[::1] square_im
     cdef public double[:, ::1] static
+    cdef public bint large
+    cdef public double[:, ::1] pairs
+    cdef public double[:, ::1] total
     cdef public double[:, ::1] weights
     cdef public double[:, ::1] sum
     cdef public double[:, ::1] c_re
@@ -35,5 +38,6 @@ cdef class Receptance:
     cdef void forces(self) noexcept
     cdef void compliances(self) noexcept
     cdef void sums(self, int j) noexcept
+    cdef void sums_by_pairs(self, int j) noexcept
     cdef int large_sums(self) except -1
     cdef void external(self) noexcept

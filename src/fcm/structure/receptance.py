@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 LARGE = cython.declare(cython.int, 4000)  # products of a sum over the modes from which on BLAS is faster
+MANY = cython.declare(cython.int, 4)  # ports from which on the sums of all their pairs go on side by side
 # twice the damping ratio of an undamped mode exactly at its own frequency
 LEAST_DAMPING = cython.declare(cython.double, 1e-9)
 
@@ -49,6 +50,12 @@ class Receptance:
         self.c_re, self.c_im, self.s_re, self.s_im = np.asarray(self.weights).reshape(4, count, modes)
         sums = np.asarray(self.sum).reshape(4, count, ports, ports)
         self.G_re, self.G_im, self.dG_re, self.dG_im = sums
+        low, self.large = np.tril_indices(ports), modes * ports * ports > LARGE
+        pairs = MANY <= ports and not self.large
+        self.pairs = (
+            np.ascontiguousarray(shapes[:, low[0]] * shapes[:, low[1]]) if pairs else np.zeros((0, 0))
+        )
+        self.total = np.zeros((4, self.pairs.shape[1]))  # of the sums of one harmonic, by pairs
         self.X_re, self.X_im = np.zeros(ports), np.zeros(ports)
         self.dX_re, self.dX_im = np.zeros(ports), np.zeros(ports)
         where = [j for j in range(count) if harmonics[j] == 1.0]
@@ -78,10 +85,12 @@ class Receptance:
         self.omega = omega
         self.compliances()
         self.forces()
-        if self.modes * self.ports * self.ports > LARGE:
+        if self.large:
             self.large_sums()
-        else:
-            for j in range(self.count):
+        for j in range(0 if self.large else self.count):
+            if self.ports >= MANY:
+                self.sums_by_pairs(j)
+            else:
                 self.sums(j)
         self.external()
         return 0
@@ -145,6 +154,37 @@ class Receptance:
                 self.G_im[j, k, m] = self.G_im[j, m, k] = G_im
                 self.dG_re[j, k, m] = self.dG_re[j, m, k] = dG_re
                 self.dG_im[j, k, m] = self.dG_im[j, m, k] = dG_im
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def sums_by_pairs(self, j: cython.int) -> cython.void:
+        """The same numbers, of several pairs of ports at once, which do not wait for one another."""
+        i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
+        m: cython.Py_ssize_t
+        p: cython.Py_ssize_t = 0
+        pair: cython.double[:, ::1] = self.pairs
+        total: cython.double[:, ::1] = self.total
+        total[:, :] = 0.0
+        for i in range(self.modes):
+            c_re: cython.double = self.c_re[j, i]
+            c_im: cython.double = self.c_im[j, i]
+            s_re: cython.double = self.s_re[j, i]
+            s_im: cython.double = self.s_im[j, i]
+            for p in range(pair.shape[1]):
+                weight: cython.double = pair[i, p]
+                total[0, p] += weight * c_re
+                total[1, p] += weight * c_im
+                total[2, p] += weight * s_re
+                total[3, p] += weight * s_im
+        p = 0
+        for k in range(self.ports):
+            for m in range(k + 1):
+                self.G_re[j, k, m] = self.G_re[j, m, k] = total[0, p]
+                self.G_im[j, k, m] = self.G_im[j, m, k] = total[1, p]
+                self.dG_re[j, k, m] = self.dG_re[j, m, k] = total[2, p]
+                self.dG_im[j, k, m] = self.dG_im[j, m, k] = total[3, p]
+                p += 1
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
