@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from fcm.cli.doubts import tracked_unsure
 from fcm.continuation import Mark
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
@@ -19,6 +20,7 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.scene.load import scene_from_dict
 from fcm.scene.model import Aim, Optimum
+from fcm.track import starts
 from fcm.track.curve import Track
 from fcm.track.curves import tracks
 from fcm.track.envelope import Height, Least
@@ -409,3 +411,23 @@ def test_no_plateau_of_a_stuck_contact_is_taken_for_the_least_of_two_numbers():
     assert found.value == pytest.approx(peak(*found.values.values()), rel=1e-8)
     beside = [found.values["contact.c.n_0"] + step for step in (-1e-3, 1e-3)]
     assert all(peak(n_0, k_u) > found.value for n_0 in (*beside, 2.0, 4.0, 12.0) for k_u in (1.5, 3.0))
+
+
+def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be_all(scene, monkeypatch):
+    """As an ordinary run says, where the level of the forces is not followed to its end."""
+    assert track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.unsure == []
+
+    def stalled(system):
+        curves = traced(system)
+        first, *others = curves.found
+        return replace(curves, found=(replace(first, complete=False), *others))
+
+    monkeypatch.setattr(starts, "traced", stalled)
+    response = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1)
+    lowest = scene.frequency_range[0]
+    assert response.tracking.complete and {omega for _, omega in response.tracking.unsure} == {lowest}
+    assert response.tracking.unsure[0] == (4.0, lowest) and response.tracking.unsure[-1] == (6.0, lowest)
+    summary = {"tracked": response.tracking.summary("rad/s"), "frequency_unit": "rad/s"}
+    assert tracked_unsure(summary).startswith(
+        f"other tracked curves may be missing: with {PRELOAD} = 4 at {lowest:.5g} rad/s"
+    )

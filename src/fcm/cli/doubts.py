@@ -31,6 +31,17 @@ def branches_unsure(summary: Mapping[str, Any]) -> str:
     )
 
 
+def tracked_unsure(summary: Mapping[str, Any]) -> str:
+    """Where branches may be missing from those that tracked curves begin on; empty if nowhere."""
+    tracked = summary.get("tracked", {})
+    unsure = tracked.get("branches_unsure_at")
+    if not unsure:
+        return ""
+    number, frequency = unsure[0]
+    at = f"with {tracked['over']} = {number:.6g} at {frequency:.5g} {summary['frequency_unit']}"
+    return f"other tracked curves may be missing: {at} the level of the forces was not followed to its end"
+
+
 def nothing_stable(summary: Mapping[str, Any]) -> str:
     """Between which frequencies no motion that was found is stable, the widest; empty if nowhere."""
     curves, unit = summary["curves"], summary["frequency_unit"]

@@ -8,7 +8,13 @@ import click
 
 from fcm.cli import schedule, track
 from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
-from fcm.cli.doubts import branches_unsure, maybe_not_unique, nothing_stable, short_of_accuracy
+from fcm.cli.doubts import (
+    branches_unsure,
+    maybe_not_unique,
+    nothing_stable,
+    short_of_accuracy,
+    tracked_unsure,
+)
 from fcm.cli.guard import DEFECT, NOT_COMPLETED
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
@@ -48,7 +54,7 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(nothing)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    if unsure := branches_unsure(result):
+    if unsure := branches_unsure(result) or tracked_unsure(result):
         messages.warning(unsure)
     histories = result.get("histories", [])
     if histories:

@@ -163,6 +163,7 @@ def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> Non
         reason = NOT_BEGUN
     else:
         response.tracking.curves += found.curves
+        response.tracking.unsure += found.unsure
     problems = found.problems if isinstance(found, Followed) else [reason]
     response.tracking.interrupted |= found is None or STOPPED in problems
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
 
@@ -27,6 +27,7 @@ from fcm.track.error import change, places
 from fcm.track.onset import KINDS as ONSETS
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.stability import stability_along
+from fcm.track.starts import Special
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 from fcm.units import in_unit
@@ -41,10 +42,11 @@ class Followed:
 
     curves: list[TrackedCurve]
     problems: list[str]
+    unsure: list[tuple[float, float]] = field(default_factory=list)  # see `Tracking`
 
 
 KINDS = (Followed, TrackedCurve, TrackedError)  # what results consist of
-STATES = (Track, Spot, Ending, Condition, Kind)  # and what is saved of steps
+STATES = (Special, Track, Spot, Ending, Condition, Kind)  # and what is saved of steps
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,8 @@ class TrackedWork:
         system, line, once = System(scene, self.harmonics), along(self.number), _Once(report)
         shown = partial(report, text=self.number.key)
         found = tracks(system, line, self.span, conditions_of(scene, self.what), (), shown, once)
-        way, followed = Way(system, line, self.span, (), scene.max_step), Followed([], list(found.problems))
+        way = Way(system, line, self.span, (), scene.max_step)
+        followed = Followed([], list(found.problems), list(found.unsure))
         followed.problems.extend(_lost(scene, condition, z) for condition, z in found.lost)
         stopped = found.interrupted
         for one in found.curves:  # after an interruption nothing is estimated any more

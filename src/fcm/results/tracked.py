@@ -143,6 +143,8 @@ class Tracking:
     optima: list[Optimal] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     interrupted: bool = False
+    # values of the number and frequencies [rad/s] where the ordinary curves begun from may lack branches
+    unsure: list[tuple[float, float]] = field(default_factory=list)
 
     @property
     def complete(self) -> bool:
@@ -160,4 +162,5 @@ class Tracking:
             "complete": self.complete,
             "problems": self.problems,
             "curves": [curve.summary(unit) for curve in self.curves],
+            "branches_unsure_at": [[number, float(in_unit(at, unit))] for number, at in self.unsure],
         }

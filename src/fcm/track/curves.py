@@ -47,6 +47,7 @@ class Tracks:
     problems: tuple[str, ...] = ()
     lost: tuple[tuple[Condition, FloatArray], ...] = ()  # points of ordinary curves that are on none of these
     interrupted: bool = False  # so that there may be more
+    unsure: tuple[tuple[float, float], ...] = ()  # values and frequencies where branches may have been missed
 
 
 def tracks(
@@ -70,7 +71,8 @@ def tracks(
         _follow_all(made, values, conditions, progress)
     except KeyboardInterrupt:
         stopped = True
-    return Tracks(tuple(made.curves), tuple(made.problems), () if stopped else tuple(made.lost()), stopped)
+    lost = () if stopped else tuple(made.lost())
+    return Tracks(tuple(made.curves), tuple(made.problems), lost, stopped, tuple(made.unsure))
 
 
 def _follow_all(
@@ -82,10 +84,11 @@ def _follow_all(
         if progress is not None:
             progress(number / len(values))
         there = moved(system, line.scene(system.scene, value))
-        points, wrong = made.once(partial(special_points, there, conditions))
-        if wrong:
-            made.problems.append(f"at {value:.6g}: {wrong}")
-        made.from_points([(condition, np.append(z, value)) for condition, z in points])
+        special = made.once(partial(special_points, there, conditions))
+        if special.wrong:
+            made.problems.append(f"at {value:.6g}: {special.wrong}")
+        made.unsure += [(value, omega) for omega in special.unsure]
+        made.from_points([(condition, np.append(z, value)) for condition, z in special.points])
     onsets = [condition for condition in conditions if condition.kind is Kind.ONSET]
     if onsets:
         made.from_points(made.once(partial(_met_by_peaks, made.way, onsets)))
@@ -98,6 +101,7 @@ class _Made:
         self.way, self.once = way, once
         self.curves: list[Track] = []
         self.problems: list[str] = []
+        self.unsure: list[tuple[float, float]] = []
         self.missed: list[tuple[Condition, FloatArray]] = []  # points that were not landed on
 
     def from_points(self, points: list[tuple[Condition, FloatArray]]) -> None:
@@ -137,7 +141,7 @@ def _met_by_peaks(way: Way, onsets: list[Condition]) -> list[tuple[Condition, Fl
     """Points of onsets next to which the peak of the degree of freedom that moves most comes."""
     middle = moved(way.system, way.line.scene(way.system.scene, 0.5 * sum(way.span)))
     peaks = [Condition(Kind.PEAK, d) for d in range(len(middle.scene.modal.dofs))]
-    points = special_points(middle, peaks)[0]
+    points = special_points(middle, peaks).points
     problem = way.tracked(onsets[0])
     made = _Made(way)
     for condition, z in points[:MOST_PEAKS]:

@@ -85,7 +85,7 @@ class Valley:
         way, found = self.way(q, np.zeros(q.size)), []
         for target in self.targets:
             conditions = [Condition(Kind.PEAK, target.dof), *(ends if target.ends else [])]
-            for condition, z in special_points(here, conditions)[0]:
+            for condition, z in special_points(here, conditions).points:
                 if (spot := land(way, condition, np.append(z, 0.0))) is not None:
                     found.append((condition, target.dof, spot))
         return [(condition, dof, spot.z[:-1]) for condition, dof, spot in found]

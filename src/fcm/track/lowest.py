@@ -145,7 +145,7 @@ class Search:
         """What may be greatest of the response at a value, with its heights."""
         if value not in self.met:
             here = moved(self.system, self.line.scene(self.system.scene, value))
-            points = special_points(here, self.conditions())[0]
+            points = special_points(here, self.conditions()).points
             self.met[value] = found = [(one, self.height(one, np.append(z, value))) for one, z in points]
             self.seen[value] = max(
                 (height for _, height in found), key=lambda one: one.value, default=NOTHING

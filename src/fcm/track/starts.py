@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from copy import copy
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,15 @@ from fcm.track.tracked import Condition, Kind
 LOWEST = 1e-3  # of the greatest amplitude of a degree of freedom: lower peaks are not tracked
 
 
+class Special(NamedTuple):
+    """Points z (unknown + 1,) at which conditions nearly hold; what is wrong with their curves; and
+    at which frequencies [rad/s] the level was not followed to its end, so that branches may be missing."""
+
+    points: list[tuple[Condition, FloatArray]]
+    wrong: str
+    unsure: tuple[float, ...]
+
+
 def moved(system: System, scene: Scene) -> System:
     """The system of another scene of the same contacts."""
     other = copy(system)
@@ -28,21 +38,21 @@ def moved(system: System, scene: Scene) -> System:
     return other
 
 
-def special_points(
-    system: System, conditions: list[Condition]
-) -> tuple[list[tuple[Condition, FloatArray]], str]:
-    """Points z (unknown + 1,) of a system's curves at which conditions nearly hold; what is wrong with these.
+def special_points(system: System, conditions: list[Condition]) -> Special:
+    """Those of a system's curves.
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
     """
-    branches = traced(system).branches
+    curves = traced(system)
+    branches, unsure = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
     found = []
     for path in branches.paths:
         for condition in conditions:
             found += [(condition, z) for z in _points(system, path, condition)]
     if not branches.paths:
-        return found, "no solution was found at either end of the range"
-    return found, "" if branches.status.name == "COMPLETE" else branches.status.value
+        return Special(found, "no solution was found at either end of the range", unsure)
+    wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
+    return Special(found, wrong, unsure)
 
 
 def _points(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
