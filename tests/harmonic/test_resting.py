@@ -7,6 +7,7 @@ import pytest
 
 from fcm.motion import State, simulate
 from fcm.response import trace
+from fcm.response.exact import trace_exact
 from fcm.scene import scene_from_dict
 
 SPAN, OMEGA = (1.5, 1.58), 1.5333
@@ -53,3 +54,34 @@ def test_the_motion_with_a_slider_held_at_its_limit_is_stable():
         begin = State(rest.end.q * (1.0 + size), rest.end.velocity * (1.0 - size), rest.end.friction)
         amplitude = simulate(wedged(), OMEGA, 400, begin).measures(last=1)[0].amplitude
         assert amplitude == pytest.approx(np.abs(stuck(OMEGA) @ SHAPES), rel=1e-6)
+
+
+def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
+    """The motion is linear as without it, whatever else holds a slider: its exact multipliers are below 1."""
+    shapes = [[-0.712, -0.985, -0.777, 0.236, -0.29, -0.707], [-0.843, 0.722, 0.089, 0.684, 0.264, -1.744]]
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": [f"d{i}" for i in range(6)],
+                "frequency": [1.0, 6.04],
+                "damping": [0.00057, 0.0182],
+                "shapes": shapes,
+            },
+            "contact": [
+                {"name": "tight", "tangential": "d1", "normal": "d4"}
+                | {"mu": 1.69, "k_u": 93.8, "k_v": 694.0, "n_0": 0.011},
+                {"name": "smooth", "tangential": "d3", "normal": "d1"}
+                | {"mu": 0.0, "k_u": 0.224, "k_v": 0.0252, "n_0": 64.2},
+            ],
+            "force": [{"dof": "d5", "amplitude": 1.0}],
+            "response": {"frequency": [1.85, 1.96], "harmonics": 1},
+        }
+    )
+    (curve,) = trace(scene).curves
+    at = [1.87, 1.9, 1.95]
+    (exact,) = trace_exact(scene, at).curves
+    swept = slice(0, 3)  # from one frequency to the next; from rest there are others, of several periods
+    assert (exact.stable[swept] == 1.0).all() and (exact.orbits.repeats[swept] == 1).all()
+    assert (curve.stable == 1.0).all()
+    found = np.interp(at, curve.frequency, curve.amplitude[:, 5])
+    assert found == pytest.approx(exact.amplitude[swept, 5], rel=1e-3)

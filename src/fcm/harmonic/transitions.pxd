@@ -13,6 +13,7 @@ cdef class Transitions:
     cdef readonly int[::1] whose, into, order, state, remembers
     cpdef bint look(self, double[::1] x) except -1
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
+    cdef bint opens(self) noexcept
     cdef double limit_at(self, int p) noexcept
     cdef void occurs(self, double angle, int c, int into, double along) noexcept
     cdef void sort(self) noexcept

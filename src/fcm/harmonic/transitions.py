@@ -41,8 +41,8 @@ class Transitions:
     state, remembers : (contact,)
         Before the first event, and whether the slider's place is one of the disturbances then.
     moving, held : int
-        Contacts that slip or open and close; and those that never do, but for an extreme of a limit that
-        holds the slider.
+        Contacts that slip with friction, or open and close; and those that never do, but for an extreme of a
+        limit that holds the slider.
     yielding : bool
         Whether such a slider follows that limit. It does when it is pushed, and stays where it is when not.
     """
@@ -98,6 +98,9 @@ class Transitions:
                     e = self.cycle.event[0]
                     self.occurs(self.cycle.event_angle[e], c, STICK, self.limit_at(0))
             return True
+        if not rubs and not self.opens():  # it slides to and fro, and nothing changes by that
+            self.state[c] = FREE
+            return True
         self.moving += 1
         for p in range(self.cycle.pieces):
             state = self.cycle.state[p]
@@ -105,6 +108,16 @@ class Transitions:
                 state = FREE
             self.occurs(self.cycle.begin[p], c, state, self.limit_at(p) if state == STICK else 0.0)
         return True
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def opens(self) -> cython.bint:
+        """Whether the contact that was looked at separates."""
+        p: cython.int
+        found: cython.bint = False
+        for p in range(self.cycle.pieces):
+            found = found or self.cycle.state[p] == SEPARATION
+        return found
 
     @cython.cfunc
     @cython.exceptval(check=False)
