@@ -40,7 +40,7 @@ FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
 LIGHT = 200.0  # if it is also this many times what further harmonics add: light impacts make that of it
 SLIGHT = 4.0  # the same of a growth that truncation may have made
-ROUNDING = 1e-12  # a shift that is none: what slides without friction adds as much
+ROUNDING = 1e-6  # a shift that may be none: at a resonance, what slides without friction adds some of that
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
