@@ -13,7 +13,7 @@ from fcm.harmonic.choice import estimated
 from fcm.harmonic.corrector import Corrector
 from fcm.harmonic.crest import _may_exceed
 from fcm.harmonic.error import errors_along
-from fcm.harmonic.stability import multipliers
+from fcm.harmonic.floquet import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace

@@ -56,10 +56,10 @@ def test_the_motion_with_a_slider_held_at_its_limit_is_stable():
         assert amplitude == pytest.approx(np.abs(stuck(OMEGA) @ SHAPES), rel=1e-6)
 
 
-def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
-    """The motion is linear as without it, whatever else holds a slider: its exact multipliers are below 1."""
+def beside_a_smooth_one(mu):
+    """A slider held by its limit, beside a contact that slides to and fro with a friction mu."""
     shapes = [[-0.712, -0.985, -0.777, 0.236, -0.29, -0.707], [-0.843, 0.722, 0.089, 0.684, 0.264, -1.744]]
-    scene = scene_from_dict(
+    return scene_from_dict(
         {
             "modal": {
                 "dofs": [f"d{i}" for i in range(6)],
@@ -71,12 +71,17 @@ def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
                 {"name": "tight", "tangential": "d1", "normal": "d4"}
                 | {"mu": 1.69, "k_u": 93.8, "k_v": 694.0, "n_0": 0.011},
                 {"name": "smooth", "tangential": "d3", "normal": "d1"}
-                | {"mu": 0.0, "k_u": 0.224, "k_v": 0.0252, "n_0": 64.2},
+                | {"mu": mu, "k_u": 0.224, "k_v": 0.0252, "n_0": 64.2},
             ],
             "force": [{"dof": "d5", "amplitude": 1.0}],
             "response": {"frequency": [0.391, 1.96], "harmonics": 1},
         }
     )
+
+
+def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
+    """The motion is linear as without it, whatever else holds a slider: its exact multipliers are below 1."""
+    scene = beside_a_smooth_one(0.0)
     (curve,) = trace(scene).curves
     at = [1.87, 1.9, 1.95]
     (exact,) = trace_exact(scene, at).curves
@@ -85,3 +90,12 @@ def test_a_contact_that_slides_without_friction_takes_part_in_no_change():
     assert (curve.stable == 1.0).all()
     found = np.interp(at, curve.frequency, curve.amplitude[:, 5])
     assert found == pytest.approx(exact.amplitude[swept, 5], rel=1e-3)
+
+
+@pytest.mark.parametrize("mu", [1e-9, 1e-6])
+def test_what_flips_only_while_a_slider_is_pushed_is_not_called_unstable(mu):
+    """The exact motion, that of no friction but for mu, is stable; which the linearised ones cannot tell."""
+    (curve,) = trace(beside_a_smooth_one(mu)).curves
+    (exact,) = trace_exact(beside_a_smooth_one(mu), [1.9]).curves
+    assert exact.stable[0] == 1.0
+    assert not (curve.stable == 0.0).any()

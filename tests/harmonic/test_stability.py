@@ -11,9 +11,10 @@ from scipy.linalg import expm
 
 from fcm.continuation import Mark, Status, follow
 from fcm.harmonic import multipliers as module
+from fcm.harmonic.floquet import multipliers
 from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.spectrum import Kind, Spectrum, Verdict, even
-from fcm.harmonic.stability import multipliers, stability, with_points
+from fcm.harmonic.stability import stability, with_points
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.windows import dip, seen

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.multipliers import multipliers, multipliers_of
+from fcm.harmonic.floquet import multipliers, multipliers_of
 from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.stability import stability
 from fcm.harmonic.start import solutions

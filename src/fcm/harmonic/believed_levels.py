@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.further import Further, padded
-from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.ranking import Ranking
 from fcm.harmonic.record import recorded_at_levels
 from fcm.harmonic.system import System

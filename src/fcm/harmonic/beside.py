@@ -12,8 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.multipliers import Multipliers, multipliers_of
+from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 

@@ -155,12 +155,10 @@ class Corrector:
 
     def seconds(self) -> float:
         """About what all points displaced since a system was taken have taken."""
-        sets = self.ranking.sets[: len(self.lifts)]
-        own = [
-            seconds_of(self.system, lifted.newton.evaluations, len(more))
-            for more, lifted in zip(sets, self.lifts, strict=True)
-        ]
-        return sum(own) + sum(other.seconds() for other in self.second.values())
+        found: float = sum(other.seconds() for other in self.second.values())
+        for more, lifted in zip(self.ranking.sets, self.lifts, strict=False):
+            found += seconds_of(self.system, lifted.newton.evaluations, len(more))
+        return found
 
     def lifted(self, more: tuple[int, ...]) -> Lifted:
         """The balance of more harmonics."""

@@ -17,9 +17,9 @@ from fcm.continuation import Between, Path
 from fcm.continuation.secants import Secants
 from fcm.harmonic.corrector import corrector_of
 from fcm.harmonic.error import reported_at
+from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.inserted import Crossing
 from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
 from fcm.harmonic.verdicts import EITHER
 

@@ -17,7 +17,8 @@ from fcm.continuation import Mark, Path
 from fcm.harmonic.carried import place_on
 from fcm.harmonic.choice import Accurate, judged
 from fcm.harmonic.error import reported
-from fcm.harmonic.multipliers import Multipliers, multipliers_of
+from fcm.harmonic.floquet import multipliers_of
+from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.outline import Outline
 from fcm.harmonic.start import NEAR, Found, solutions
 from fcm.harmonic.system import System

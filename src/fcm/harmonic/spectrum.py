@@ -160,8 +160,15 @@ def to_flip(verdict: Verdict) -> float:
     return 0.0 if met else verdict.before_flip
 
 
-def either(one: Verdict, other: Verdict) -> Verdict:
-    """Of a motion that obeys one linearisation or the other by the sign of the disturbance."""
-    if one.stable == other.stable == 1.0:
-        return max(one, other, key=lambda verdict: verdict.growth)
-    return other if one.stable == 1.0 else one
+def either(pushed: Verdict, resting: Verdict) -> Verdict:
+    """Of a motion whose slider, just held by its limit, follows that while it is pushed and rests while not.
+
+    What grows at rest grows with a little less residual friction, too. What grows only while it is pushed is
+    pushed on if it keeps its sign, as through a real multiplier above 1. A flip and a pair change it: then
+    it decays at rest before it is pushed again, and neither says which of both wins.
+    """
+    if resting.stable != 1.0:
+        return resting
+    if pushed.stable == 1.0:
+        return max(pushed, resting, key=lambda verdict: verdict.growth)
+    return pushed if pushed.kind is Kind.REAL else pushed._replace(stable=math.nan)

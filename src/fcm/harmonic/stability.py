@@ -20,7 +20,6 @@ from fcm.continuation import Path
 from fcm.continuation.secants import Secants
 from fcm.harmonic.believed import runs
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
-from fcm.harmonic.multipliers import multipliers
 from fcm.harmonic.spectrum import FLIP_NEAR, Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.verdicts import Verdicts
@@ -29,7 +28,7 @@ from fcm.scene.model import FloatArray
 
 IntArray = npt.NDArray[np.intp]
 
-__all__ = ["Crossing", "Inserted", "Kind", "Stability", "multipliers", "stability", "with_points"]
+__all__ = ["Crossing", "Inserted", "Kind", "Stability", "stability", "with_points"]
 
 SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up

@@ -16,8 +16,8 @@ import numpy as np
 
 from fcm.continuation import Path
 from fcm.continuation.newton import Newton
+from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.further import padded
-from fcm.harmonic.multipliers import multipliers_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 

@@ -14,8 +14,9 @@ import numpy as np
 
 from fcm.continuation import Between, Mark, Path
 from fcm.harmonic.balance import Balance
+from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.inserted import Inserted
-from fcm.harmonic.multipliers import far_above, multipliers_of
+from fcm.harmonic.multipliers import far_above
 from fcm.harmonic.spectrum import SMALL, Verdict, apart
 from fcm.harmonic.system import System
 from fcm.harmonic.windows import MANY, Seen, seen

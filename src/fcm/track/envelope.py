@@ -181,8 +181,7 @@ def _refined(pieces: Sequence[Piece], way: Way, low: float, middle: float, high:
         if not rough:  # nothing is known there
             return Height(np.inf, 0.0, np.zeros(0), -1), pieces[0]
         top = max(rough.values())
-        close = min(ROUGH * top, top)  # also where all vanish, as without a force
-        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= close]
+        heights = [(piece.at(s), piece) for piece, height in rough.items() if height >= ROUGH * top]
         return max(heights, key=lambda pair: pair[0].value)
 
     if high > low:

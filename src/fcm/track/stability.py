@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation.newton import Newton
-from fcm.harmonic.multipliers import Multipliers, multipliers_of
+from fcm.harmonic.floquet import multipliers_of
+from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track, with_spots

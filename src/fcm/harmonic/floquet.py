@@ -1,0 +1,79 @@
+"""Floquet multipliers of any solution of a system, from the workspace that was used last."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.harmonic.multipliers import Multipliers
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+SMALLEST = 12  # disturbances up to which nothing is remembered of the states of the contacts
+
+
+class _Last(threading.local):
+    """The workspace that each thread used last, and what it is for."""
+
+    def __init__(self) -> None:
+        self.key: tuple[object, ...] = ()
+        self.multipliers: Multipliers | None = None
+
+
+_LAST = _Last()
+
+
+def multipliers_of(system: System, highest: float) -> Multipliers:
+    """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
+    the contacts alone are others, as in a sweep."""
+    if system.scene.ring is not None:
+        from fcm.harmonic.ring_multipliers import RingMultipliers
+
+        return RingMultipliers(system, highest)
+    linear = system.linear
+    if 2 * linear.natural.size + len(system.scene.contacts) > SMALLEST:
+        return Multipliers(system, highest)
+    key = (*linear.numbers, system.harmonics)
+    if _LAST.multipliers is None or _LAST.key != key:
+        _LAST.key, _LAST.multipliers = key, Multipliers(system, highest)
+    _LAST.multipliers.take(system)
+    return _LAST.multipliers
+
+
+def multipliers(system: System, z: FloatArray) -> ComplexArray:
+    """Floquet multipliers of a solution, the greatest first.
+
+    Parameters
+    ----------
+    system : System
+    z : (unknown + 1,)
+        A point of a path: displacements of the contacts, and the frequency [rad/s].
+
+    Returns
+    -------
+    (multiplier,) complex array
+        By how much small disturbances of the motion grow within one period: of the modal displacements and
+        velocities, and of what the contacts that stick at its beginning remember. Contacts that never slip
+        remember for ever, which is not listed. Empty where a number is not finite.
+
+    Notes
+    -----
+    Of a structure with more than 24 modes those whose frequency is above 6 times the excitation and 1.5 times
+    the highest harmonic of the balance follow the contacts without delay, and have none; their share of
+    the flexibility is then wrong by (omega_disturbance / omega_mode)^2.
+
+    Examples
+    --------
+    >>> import fcm
+    >>> from fcm.harmonic.start import solutions
+    >>> system = System(fcm.load_scene("yang1998-n5"), (1, 2, 3))
+    >>> (z,) = solutions(system, 1.3).solutions
+    >>> abs(multipliers(system, z)).max().round(2)
+    np.float64(0.88)
+    """
+    values = multipliers_of(system, float(z[-1])).of(np.ascontiguousarray(z, dtype=np.float64))
+    return np.array(sorted(values or [], key=abs, reverse=True), dtype=np.complex128)
