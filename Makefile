@@ -243,6 +243,7 @@ clean:  ## remove what was made, but for the environment
 $(VENV)/installed: pyproject.toml $(KERNELS)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'setuptools>=77' --editable .  # that for make kernels
+	$(BIN)/python -m compileall -q src  # as pip does of what it copies: fcm respond begins a third faster
 	@touch $@
 
 $(OTHERS)/pyharm/installed:
