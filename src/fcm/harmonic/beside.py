@@ -6,6 +6,7 @@ lead elsewhere with more. A peak at which the structure can stay is then looked 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -19,6 +20,7 @@ from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 ENOUGH = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
+TIMES = 3  # as many harmonics, on the way to more that are not found beside at once, and where these tell
 TOGETHER = 8  # points, within which one top speaks for those of other degrees of freedom
 AROUND = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)  # points from a top, where one may be led to the same branch
 
@@ -30,17 +32,36 @@ def beside(
 
     A top is the highest point of a path, for each degree of freedom, of those that the determinant allows to
     be stable; amplitudes are (point, dof) of each path. Where none is found beside a top, or none that is
-    stable, one is looked for beside points around it.
+    stable, one is looked for beside points around it; and where there is none either, beside what some of the
+    harmonics make of these.
     """
-    finer = system.with_harmonics(more)
-    lifted = Lifted(finer.balance(), list(system.harmonics), list(more), ENOUGH)
-    of = multipliers_of(finer, system.scene.frequency_range[1])
+    judge = _Judge(system.with_harmonics(more))
+    ways = [_lifts(system, sets) for sets in dict.fromkeys(((more,), gradually(system.harmonics, more)))]
     found = []
     for path, amplitude in zip(paths, amplitudes, strict=True):
         for top, even in tops(path, amplitude):
-            z = _stable(of, _around(lifted, path, even, top))
+            stable = (_stable(judge, _around(lifts, path, even, top)) for lifts in ways)
+            z = next((z for z in stable if z is not None), None)
             found += [] if z is None else [z]
     return found
+
+
+def gradually(harmonics: tuple[int, ...], more: tuple[int, ...]) -> tuple[tuple[int, ...], ...]:
+    """Sets of harmonics from some to more, the lowest of these first, each at most so many times as many."""
+    ways, count = [], len(harmonics) * TIMES
+    while count < len(more):
+        ways.append(tuple(sorted({*harmonics, *more[:count]})))
+        count *= TIMES
+    return (*ways, more)
+
+
+def _lifts(system: System, sets: Sequence[tuple[int, ...]]) -> list[Lifted]:
+    """From the harmonics of a system to the first of sets, and from each to the next."""
+    fewer = [system.harmonics, *sets[:-1]]
+    return [
+        Lifted(system.with_harmonics(more).balance(), list(few), list(more), ENOUGH)
+        for few, more in zip(fewer, sets, strict=True)
+    ]
 
 
 def tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
@@ -65,27 +86,56 @@ def around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
             yield i
 
 
-def _stable(of: Multipliers, around: Iterator[tuple[int, FloatArray]]) -> FloatArray | None:
-    """The first that is stable of solutions with their distances from a top; each time twice as far away.
+class _Judge:
+    """Whether the structure can stay at solutions of a system; what that cannot tell many harmonics do."""
+
+    def __init__(self, system: System) -> None:
+        self.system, self.of = system, multipliers_of(system, system.scene.frequency_range[1])
+        self.further: tuple[Lifted, Multipliers] | None = None
+
+    def stable(self, z: FloatArray, direction: FloatArray) -> bool:
+        """Of a solution and the direction of the curve there."""
+        alone = self.of.verdict(z, enough=(1.0,)).stable
+        return alone == 1.0 or (math.isnan(alone) and self._with_many(z, direction))
+
+    def _with_many(self, z: FloatArray, direction: FloatArray) -> bool:
+        if self.further is None:
+            harmonics = self.system.harmonics
+            many = tuple(sorted({*harmonics, *range(1, TIMES * len(harmonics) + 1)}))
+            (lifted,), finer = _lifts(self.system, (many,)), self.system.with_harmonics(many)
+            self.further = lifted, multipliers_of(finer, self.system.scene.frequency_range[1])
+        lifted, of = self.further
+        if not (lifted.beside(z, direction) and lifted.newton.correct(1.0)):
+            return False
+        return of.verdict(np.array(lifted.newton.z), enough=(1.0,)).stable == 1.0
+
+
+def _stable(judge: _Judge, around: Iterator[tuple[int, FloatArray, FloatArray]]) -> FloatArray | None:
+    """The first that is stable of solutions around a top; each time twice as far away.
 
     Near a fold, where a branch is highest, it may not be.
     """
     judged = 0
-    for away, z in around:
+    for away, z, direction in around:
         if judged and judged < away < 2 * judged:
             continue
-        if of.verdict(z, enough=(1.0,)).stable == 1.0:
+        if judge.stable(z, direction):
             return z
         judged = max(away, 1)
     return None
 
 
 def _around(
-    lifted: Lifted, path: Path, even: npt.NDArray[np.bool_], top: int
-) -> Iterator[tuple[int, FloatArray]]:
-    """The solutions beside a top and beside the points around it, the nearest first, each with how many
-    points away that is."""
-    newton = lifted.newton
+    lifts: Sequence[Lifted], path: Path, even: npt.NDArray[np.bool_], top: int
+) -> Iterator[tuple[int, FloatArray, FloatArray]]:
+    """The solutions beside a top and beside the points around it, the nearest first: how many points away
+    each is, itself, and the direction of its curve."""
     for i in around(even, top):
-        if lifted.beside(path.z[i], path.direction[i]) and newton.correct(1.0):
-            yield abs(i - top), np.array(newton.z)
+        z, direction = path.z[i], path.direction[i]
+        for lifted in lifts:
+            newton = lifted.newton
+            if not (lifted.beside(z, direction) and newton.correct(1.0)):
+                break
+            z, direction = np.array(newton.z), np.asarray(newton.tangent) * newton.scale
+        else:
+            yield abs(i - top), z, direction

@@ -88,7 +88,7 @@ class _Followed:
 def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
     """With as many harmonics as it takes to have the frequencies at which stability is lost accurately."""
     for _ in range(ROUNDS):
-        off = [one for one in followed.lost if one.error > accuracy]
+        off = [one for one in followed.lost if not one.error <= accuracy]
         more = {h for one in off for h in one.harmonics} | set(followed.found.system.harmonics)
         if len(more) == len(followed.found.system.harmonics):
             break
