@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,7 @@ FINE = 1e-5  # of the way between two points, to which it is found: an error is 
 PART = 0.03  # or to this part of itself, and of what it may be
 LEAST = -0.3  # growth that is as good as any that is less
 LOOKS = 40
+SAME = 0.1  # of the way to any other crossing, within which that of more harmonics is that of fewer
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,18 @@ def lost_along(
     """Errors of the crossings of a path, which may be as large as accuracy."""
     known: dict[tuple[int, ...], _Beside] = {}
     return [_lost(system, path, one, accuracy, known) for one in crossings]
+
+
+def moved(lost: Sequence[Lost], fewer: Sequence[Lost]) -> list[Lost]:
+    """Crossings of a response, and where more harmonics do not tell the error of one, how far it is from
+    where fewer have it: of one that is `SAME` in both."""
+    return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
+
+
+def _moved(one: Lost, lost: Sequence[Lost], fewer: Sequence[Lost]) -> Lost:
+    off, *others = sorted([math.inf, math.inf, *(abs(other.frequency - one.frequency) for other in fewer)])
+    others += [abs(other.frequency - one.frequency) for other in lost if other is not one]
+    return replace(one, error=off / one.frequency) if off < SAME * min(others) else one
 
 
 def _lost(

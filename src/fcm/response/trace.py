@@ -15,7 +15,7 @@ from fcm.harmonic.believed import astray, disbelieved
 from fcm.harmonic.choice import Accurate, accurate, enlarged, finer, given
 from fcm.harmonic.error import Reported, reported_at
 from fcm.harmonic.higher import with_higher
-from fcm.harmonic.lost import Lost, lost_along
+from fcm.harmonic.lost import Lost, lost_along, moved
 from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.restless import with_missed
@@ -95,7 +95,8 @@ def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
         again = finer(followed.found, tuple(sorted(more)), accuracy)
         if again is None:
             break
-        followed = _followed(again, accuracy)
+        then = _followed(again, accuracy)
+        followed = replace(then, lost=moved(then.lost, followed.lost))
     return followed
 
 
