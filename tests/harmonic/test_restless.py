@@ -9,6 +9,8 @@ import pytest
 from fcm.harmonic import restless
 from fcm.harmonic.start import solutions
 from fcm.harmonic.unstable import unstable_stretches
+from fcm.motion import State, simulate
+from fcm.response import trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import load_scene, scene_from_dict
@@ -42,6 +44,34 @@ def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable()
     part = off[i] / (off[i] - off[i + 1])
     there = (1.0 - part) * curve.amplitude[i] + part * curve.amplitude[i + 1]
     assert curve.complete and there == pytest.approx(MARCHED, rel=2e-2)
+
+
+def test_a_closed_branch_is_found_where_a_harmonic_comes_to_the_highest_peak():
+    """The contact opens twice a period on it, as the half of the peak's frequency is near; beside it the
+    motion with the contact stuck is stable. A march settles at either."""
+    contact = {"name": "c", "tangential": "y", "normal": "x"}
+    contact |= {"mu": 0.564, "k_u": 0.611, "k_v": 2.26, "n_0": 0.0785}
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["x", "y"],
+                "frequency": [1.0],
+                "damping": [0.032],
+                "shapes": [[-1.723, 0.587]],
+            },
+            "contact": [contact],
+            "force": [{"dof": "x", "amplitude": 0.079}],
+            "response": {"frequency": [0.5, 2.2], "harmonics": 5},
+        }
+    )
+    begins = [State(np.array([q]), np.zeros(1), np.zeros(1)) for q in (0.05, 0.1)]
+    marched = [simulate(scene, 0.8122, 500, begin).measures(last=1)[0].amplitude for begin in begins]
+    assert marched[0][0] > 2.0 * marched[1][0]
+    (curve,) = trace(scene).curves
+    off = curve.frequency - 0.8122
+    at = np.flatnonzero((off[:-1] * off[1:] < 0.0) & (curve.stable[:-1] == 1.0))
+    for amplitude in marched:
+        assert np.abs(curve.amplitude[at] / amplitude - 1.0).max(axis=1).min() < 2e-2
 
 
 def test_a_look_that_does_not_come_to_its_end_leaves_branches_unsure(monkeypatch):

@@ -1,14 +1,17 @@
-"""Where no motion that was found is stable, and the stable ones that the level of the forces tells of there.
+"""Stable motions that were missed, where the level of the forces tells of them.
 
 The structure does something at every frequency. Where it can stay at none of the motions found, it moves in a
 way that the balance has no solution for, as in one that repeats after two periods or never, or a branch was
 missed. So there the level of the forces is followed once more. What it passes that is stable is on no branch
 that was found, or in a window of stability that was not seen on one.
+
+And where a low harmonic comes to the frequency at which the response is highest: a contact that opens and
+closes twice or thrice a period may keep that going on a closed branch, beside one on which it stays closed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +32,8 @@ from fcm.scene.model import FloatArray
 
 SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take,
 UNNOTICED = 0.1  # and seconds of work that it may in any case: of small scenes all stretches are looked at
+LOW = 3  # harmonics whose resonances are strong enough to keep themselves up
+NEAR_ENOUGH = 0.02  # to a frequency that was looked at: a closed branch is about as wide
 WIDE = 0.1  # of the range: of a stretch that is wider more than the middle is looked at
 
 
@@ -42,7 +47,8 @@ def with_missed(
     """
     system, paths, known = found.system, found.traced.branches.paths, list(stable)
     stretches = stretches_of(paths, known, system.scene.frequency_range)
-    looked = list(looks(system, stretches, max(SHARE * system.work.seconds, UNNOTICED)))
+    seconds = max(SHARE * system.work.seconds, UNNOTICED)
+    looked = [*looks(system, stretches, seconds), *looks(system, met(found), seconds)]
     if not looked:
         return found, known
     of = multipliers_of(system, system.scene.frequency_range[1])
@@ -69,7 +75,7 @@ def with_branches(
     return replace(every, further=found.further, begun=found.begun)
 
 
-def looks(system: System, stretches: Sequence[Stretch], seconds: float) -> Iterator[Found]:
+def looks(system: System, stretches: Iterable[Stretch], seconds: float) -> Iterator[Found]:
     """What the level passes in the middle of stretches, the widest first, for so many more seconds of work.
 
     Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
@@ -87,6 +93,25 @@ def looks(system: System, stretches: Sequence[Stretch], seconds: float) -> Itera
                 return
             if high - low > WIDE * (last - first):
                 left = sorted([*left, (low, middle), (middle, high)], key=_width)
+
+
+def met(found: Accurate) -> Iterator[Stretch]:
+    """Where low harmonics come to a highest peak: single frequencies, as stretches of no width."""
+    low, high = found.system.scene.frequency_range
+    known = [one.omega for one in found.traced.found]
+    for top in tops(found):
+        for omega in (top / h for h in found.system.harmonics if 1 < h <= LOW):
+            if low < omega < high and all(abs(omega - other) > NEAR_ENOUGH * omega for other in known):
+                known.append(omega)
+                yield omega, omega
+
+
+def tops(found: Accurate) -> Iterator[float]:
+    """The frequencies of the highest peaks of the degrees of freedom."""
+    paths, shown = found.traced.branches.paths, found.shown
+    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    for d, k in enumerate(heights.argmax(axis=0).tolist()):
+        yield float(paths[k].parameter[shown[k].amplitude[:, d].argmax()])
 
 
 def _width(stretch: Stretch) -> float:
