@@ -46,29 +46,44 @@ def test_a_stable_branch_that_was_missed_is_looked_for_where_nothing_is_stable()
     assert curve.complete and there == pytest.approx(MARCHED, rel=2e-2)
 
 
-def test_a_closed_branch_is_found_where_a_harmonic_comes_to_the_highest_peak():
-    """The contact opens twice a period on it, as the half of the peak's frequency is near; beside it the
-    motion with the contact stuck is stable. A march settles at either."""
-    contact = {"name": "c", "tangential": "y", "normal": "x"}
-    contact |= {"mu": 0.564, "k_u": 0.611, "k_v": 2.26, "n_0": 0.0785}
-    scene = scene_from_dict(
-        {
-            "modal": {
-                "dofs": ["x", "y"],
-                "frequency": [1.0],
-                "damping": [0.032],
-                "shapes": [[-1.723, 0.587]],
-            },
-            "contact": [contact],
-            "force": [{"dof": "x", "amplitude": 0.079}],
-            "response": {"frequency": [0.5, 2.2], "harmonics": 5},
-        }
-    )
-    begins = [State(np.array([q]), np.zeros(1), np.zeros(1)) for q in (0.05, 0.1)]
-    marched = [simulate(scene, 0.8122, 500, begin).measures(last=1)[0].amplitude for begin in begins]
-    assert marched[0][0] > 2.0 * marched[1][0]
+ONE_MODE = {
+    "modal": {"dofs": ["x", "y"], "frequency": [1.0], "damping": [0.032], "shapes": [[-1.723, 0.587]]},
+    "contact": [
+        {"name": "c", "tangential": "y", "normal": "x", "mu": 0.564, "k_u": 0.611, "k_v": 2.26, "n_0": 0.0785}
+    ],
+    "force": [{"dof": "x", "amplitude": 0.079}],
+    "response": {"frequency": [0.5, 2.2], "harmonics": 5},
+}
+ONE_OPEN_AT_REST = {
+    "modal": {
+        "dofs": ["x", "y", "z"],
+        "frequency": [1.0, 3.18],
+        "damping": [0.0076, 0.0285],
+        "shapes": [[0.899, 1.38, 1.4], [-0.853, -1.14, -0.149]],
+    },
+    "contact": [
+        {"name": "closed", "tangential": {"x": -0.0925, "y": 0.112}, "normal": {"x": -0.321, "y": -2.42}}
+        | {"mu": 0.473, "k_u": 0.999, "k_v": 0.173, "n_0": 0.493},
+        {"name": "open", "tangential": {"z": 0.126, "y": 0.95}, "normal": "z"}
+        | {"mu": 1.17, "k_u": 7.58, "k_v": 1.0, "n_0": -6.68},
+    ],
+    "force": [{"dof": "y", "amplitude": 1.0}],
+    "response": {"frequency": [0.5, 2.2], "harmonics": 9},
+}
+
+
+@pytest.mark.parametrize(("parts", "omega"), [(ONE_MODE, 0.8122), (ONE_OPEN_AT_REST, 0.81)])
+def test_a_closed_branch_is_found_where_a_harmonic_comes_to_a_resonance(parts, omega):
+    """The contact opens twice a period on it, at half of the frequency of the highest peak, or between that
+    and half of the resonance with the contacts as at rest; beside it the motion is stable in which the
+    contact sticks. A march settles at either."""
+    scene = scene_from_dict(parts)
+    modes, contacts = len(parts["modal"]["frequency"]), np.zeros(len(scene.contacts))
+    begins = [State(np.eye(modes)[0] * q, np.zeros(modes), contacts) for q in (0.05, 0.1, 1.0, 2.0)]
+    marched = [simulate(scene, omega, 800, begin).measures(last=1)[0].amplitude for begin in begins]
+    assert max(marched, key=np.max)[0] > 2.0 * min(marched, key=np.max)[0]
     (curve,) = trace(scene).curves
-    off = curve.frequency - 0.8122
+    off = curve.frequency - omega
     at = np.flatnonzero((off[:-1] * off[1:] < 0.0) & (curve.stable[:-1] == 1.0))
     for amplitude in marched:
         assert np.abs(curve.amplitude[at] / amplitude - 1.0).max(axis=1).min() < 2e-2

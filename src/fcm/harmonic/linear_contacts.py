@@ -50,7 +50,7 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
 
     Those of the last systems are still known: of a sweep most are the same.
     """
-    at_rest = np.repeat([load > 0.0 for load in loads_at_rest(system)], 2)
+    at_rest = closed_at_rest(system)
     held = system.springs(stuck=True) * np.array([at_rest, np.ones(at_rest.size), np.zeros(at_rest.size)])
     key = (*system.linear.numbers, *frequencies, held.tobytes())
     known = _KNOWN.of
@@ -75,6 +75,11 @@ def loads_at_rest(system: System) -> list[float]:
     """Normal loads of the contacts at rest, negative where one is open."""
     contacts, normal = system.scene.contacts, system.rest[1::2].tolist()
     return [c.n_0 + c.k_v * displacement for c, displacement in zip(contacts, normal, strict=True)]
+
+
+def closed_at_rest(system: System) -> npt.NDArray[np.bool_]:
+    """Whether the contact of each port (port,) is closed at rest."""
+    return np.repeat([load > 0.0 for load in loads_at_rest(system)], 2)
 
 
 def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:

@@ -5,8 +5,9 @@ way that the balance has no solution for, as in one that repeats after two perio
 missed. So there the level of the forces is followed once more. What it passes that is stable is on no branch
 that was found, or in a window of stability that was not seen on one.
 
-And where a low harmonic comes to the frequency at which the response is highest: a contact that opens and
-closes twice or thrice a period may keep that going on a closed branch, beside one on which it stays closed.
+And where a low harmonic comes to the frequency at which the response is highest, or to that of smaller
+motions: a contact that opens and closes twice or thrice a period may keep that going on a closed branch,
+beside one on which it stays closed.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from fcm.harmonic.error import reported
 from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.outline import Outline
-from fcm.harmonic.start import NEAR, Found, solutions
+from fcm.harmonic.start import NEAR, Found, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import with_further
 from fcm.harmonic.unstable import Stretch, stretches_of
@@ -96,11 +97,14 @@ def looks(system: System, stretches: Iterable[Stretch], seconds: float) -> Itera
 
 
 def met(found: Accurate) -> Iterator[Stretch]:
-    """Where low harmonics come to a highest peak: single frequencies, as stretches of no width."""
+    """Where low harmonics come to a highest peak, and between that and the nearest resonance, as those of
+    smaller motions are: single frequencies, as stretches of no width."""
     low, high = found.system.scene.frequency_range
-    known = [one.omega for one in found.traced.found]
+    known, inside = [one.omega for one in found.traced.found], resonances(found.system)
     for top in tops(found):
-        for omega in (top / h for h in found.system.harmonics if 1 < h <= LOW):
+        nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
+        harmonics = (h for h in found.system.harmonics if 1 < h <= LOW)
+        for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):
             if low < omega < high and all(abs(omega - other) > NEAR_ENOUGH * omega for other in known):
                 known.append(omega)
                 yield omega, omega

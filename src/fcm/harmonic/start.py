@@ -1,9 +1,9 @@
 r"""Solutions from which the branches of a response are traced, by raising the level of the forces from rest.
 
-At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck and
-all open, and in the middle of the widest interval between these, the level is followed from nearly nothing
-until it is well beyond every level at which a contact can change what it does. Every passing of the level 1
-is a solution.
+At both ends of the range, at the resonances inside it that the structure has with its contacts all stuck, as
+at rest, and all open, and in the middle of the widest interval between these, the level is followed from
+nearly nothing until it is well beyond every level at which a contact can change what it does. Every passing
+of the level 1 is a solution.
 """
 
 from __future__ import annotations
@@ -19,7 +19,13 @@ from fcm.continuation import Path, Status, follow
 from fcm.continuation.newton import Newton
 from fcm.harmonic.common_levels import in_common, passings
 from fcm.harmonic.cost import paid, seconds_of
-from fcm.harmonic.linear_contacts import GREATEST, highest, least, linear_responses
+from fcm.harmonic.linear_contacts import (
+    GREATEST,
+    closed_at_rest,
+    highest,
+    least,
+    linear_responses,
+)
 from fcm.harmonic.system import System
 from fcm.harmonic.turned import Turn, turns_of
 from fcm.scene.model import FloatArray
@@ -220,10 +226,10 @@ def looked_at(system: System) -> tuple[float, ...]:
 
 
 def resonances(system: System) -> list[float]:
-    """Natural frequencies within the range, with all contacts stuck and with all open, in order."""
+    """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order."""
     low, high = system.scene.frequency_range
-    found: set[float] = set()
-    for stuck in (True, False):
-        natural = system.linear.stiffened(system.springs(stuck)) * (1.0 + BESIDE)
+    stuck, found = system.springs(stuck=True), set[float]()
+    for closed in (np.ones(stuck.size, dtype=bool), closed_at_rest(system), np.zeros(stuck.size, dtype=bool)):
+        natural = system.linear.stiffened(stuck * closed) * (1.0 + BESIDE)
         found.update(float(w) for w in natural if low < w < high)
     return sorted(found)
