@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.choice import estimated
-from fcm.harmonic.lost import lost_along
+from fcm.harmonic.lost import Lost, lost_along, moved
 from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
 from fcm.orbit import periodic
@@ -101,3 +101,41 @@ def test_stability_is_not_said_to_be_lost_where_that_cannot_be_told(bouncing):
     assert all(held)
     assert not (curve.stable[(curve.frequency > 0.7) & (curve.frequency < 0.742)] == 0.0).any()
     assert any(one.sweep == "up" and one.start < 0.742 and one.end > 0.757 for one in curve.swept().untold)
+
+
+def test_where_it_cannot_be_told_how_far_the_loss_of_stability_is_off_more_harmonics_are_taken():
+    """Three harmonics, enough for peaks and folds, do not tell it; the exact motion is unstable between."""
+    tangential = ({"x": 1.0}, {"y": -1.06, "x": 0.188}, {"x": 1.0})
+    normal = ({"y": 1.0}, {"y": -0.506, "x": -0.334}, {"y": 1.0})
+    numbers = ((0.526, 0.27, 5.43, 0.394), (0.249, 0.648, 0.428, -0.0483), (0.614, 0.57, 2.09, 0.0508))
+    contacts = [
+        {"name": name, "tangential": t, "normal": n} | dict(zip(("mu", "k_u", "k_v", "n_0"), of, strict=True))
+        for name, t, n, of in zip("abc", tangential, normal, numbers, strict=True)
+    ]
+    scene = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["x", "y"],
+                "frequency": [1.0, 1.78, 3.38],
+                "damping": [0.023, 0.00529, 0.00821],
+                "shapes": [[-1.14, 0.0405], [0.551, 0.542], [0.914, -0.469]],
+            },
+            "contact": contacts,
+            "force": [{"dof": "y", "amplitude": 1.0}],
+            "response": {"frequency": [0.5, 2.2]},
+        }
+    )
+    curve = traced_curve(scene, Wanted(None, 1e-2))
+    assert not curve.short_of and len(curve.harmonics) > 3
+    between = (curve.frequency > 0.885) & (curve.frequency < 0.9)
+    assert [periodic(scene, omega).stable for omega in (0.885, 0.892, 0.9)] == [True, False, True]
+    assert (curve.stable[between] == 0.0).any()
+
+
+def test_a_crossing_that_fewer_harmonics_have_too_is_as_far_off_as_it_moved():
+    """One that another is nearly as near to may be that other, and one that is told stays as it is."""
+    fewer = [Lost(1.0, 0.1, (1, 2)), Lost(2.0, np.nan, (1, 2)), Lost(2.1, 0.1, (1, 2))]
+    more = [Lost(1.001, np.nan, (1, 2, 3)), Lost(2.05, np.nan, (1, 2, 3)), Lost(2.3, 0.2, (1, 2, 3))]
+    error = [one.error for one in moved(more, fewer)]
+    assert error[0] == pytest.approx(1e-3, rel=1e-2) and np.isnan(error[1]) and error[2] == 0.2
+    assert np.isnan(moved(more[:1], [])[0].error)

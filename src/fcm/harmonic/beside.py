@@ -13,14 +13,17 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
+from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+from fcm.scene.rules import MOST_HARMONICS
 
 ENOUGH = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 TIMES = 3  # as many harmonics, on the way to more that are not found beside at once, and where these tell
+DEAR = 0.02  # seconds of an evaluation with many harmonics, of which some hundred may be needed
 TOGETHER = 8  # points, within which one top speaks for those of other degrees of freedom
 AROUND = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)  # points from a top, where one may be led to the same branch
 
@@ -47,12 +50,12 @@ def beside(
 
 
 def gradually(harmonics: tuple[int, ...], more: tuple[int, ...]) -> tuple[tuple[int, ...], ...]:
-    """Sets of harmonics from some to more, the lowest of these first, each at most so many times as many."""
-    ways, count = [], len(harmonics) * TIMES
+    """Sets of harmonics from some to more, the lowest of these first, each at most `TIMES` as many."""
+    sets, count = [], len(harmonics) * TIMES
     while count < len(more):
-        ways.append(tuple(sorted({*harmonics, *more[:count]})))
+        sets.append(tuple(sorted({*harmonics, *more[:count]})))
         count *= TIMES
-    return (*ways, more)
+    return tuple(dict.fromkeys((*sets, more)))
 
 
 def _lifts(system: System, sets: Sequence[tuple[int, ...]]) -> list[Lifted]:
@@ -87,7 +90,8 @@ def around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
 
 
 class _Judge:
-    """Whether the structure can stay at solutions of a system; what that cannot tell many harmonics do."""
+    """Whether the structure can stay at solutions of a system; what that cannot tell many harmonics do, where
+    they are not too dear."""
 
     def __init__(self, system: System) -> None:
         self.system, self.of = system, multipliers_of(system, system.scene.frequency_range[1])
@@ -101,7 +105,10 @@ class _Judge:
     def _with_many(self, z: FloatArray, direction: FloatArray) -> bool:
         if self.further is None:
             harmonics = self.system.harmonics
-            many = tuple(sorted({*harmonics, *range(1, TIMES * len(harmonics) + 1)}))
+            highest = min(TIMES * len(harmonics), MOST_HARMONICS)
+            many = tuple(sorted({*harmonics, *range(1, highest + 1)}))
+            if many == harmonics or seconds_of(self.system, 1, len(many)) > DEAR:
+                return False
             (lifted,), finer = _lifts(self.system, (many,)), self.system.with_harmonics(many)
             self.further = lifted, multipliers_of(finer, self.system.scene.frequency_range[1])
         lifted, of = self.further

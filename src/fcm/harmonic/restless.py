@@ -101,7 +101,7 @@ def met(found: Accurate) -> Iterator[Stretch]:
     smaller motions are: single frequencies, as stretches of no width."""
     low, high = found.system.scene.frequency_range
     known, inside = [one.omega for one in found.traced.found], resonances(found.system)
-    for top in tops(found):
+    for top in peaks_at(found):
         nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
         harmonics = (h for h in found.system.harmonics if 1 < h <= LOW)
         for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):
@@ -110,7 +110,7 @@ def met(found: Accurate) -> Iterator[Stretch]:
                 yield omega, omega
 
 
-def tops(found: Accurate) -> Iterator[float]:
+def peaks_at(found: Accurate) -> Iterator[float]:
     """The frequencies of the highest peaks of the degrees of freedom."""
     paths, shown = found.traced.branches.paths, found.shown
     heights = np.array([one.amplitude.max(axis=0) for one in shown])
