@@ -132,7 +132,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         )  # fmt: skip
         for mark in (mark for mark in marks if mark.below):
             axes.annotate(
-                "", (mark.seconds, mark.error), (0, -9), textcoords="offset points",
+                "", (mark.seconds, mark.error), (0, -14), textcoords="offset points",
                 arrowprops={"arrowstyle": "<-", "color": colour, "linewidth": 0.8},
             )  # fmt: skip
     axes.set(xscale="log", yscale="log")
