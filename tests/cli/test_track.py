@@ -210,6 +210,7 @@ def test_no_peak_in_the_range_is_said(fcm, optimum):
             'vary = ["level", "level"]\nminimise = "peak.u"\nbounds = [[1, 2]]',
             ["the same number", "for each of"],
         ),
+        ('vary = "level"\nminimise = ["peak.u", "peak.v", "greatest.u"]', ['names "u" twice']),
     ],
 )
 def test_all_mistakes_of_the_table_are_named_at_once(fcm, scene, table, said):

@@ -82,6 +82,9 @@ def _aims(section: Section, reported: Sequence[str]) -> list[Aim]:
             )
         else:
             found.append(Aim(named if reported else dof, what == "greatest"))
+    for i, aim in enumerate(found):
+        if aim.dof in (one.dof for one in found[:i]):  # the greatest of it is its peak, or at an end
+            section.wrong("minimise", f"names {quoted(aim.dof)} twice; once is right")
     return found
 
 
