@@ -202,7 +202,7 @@ class Corrector:
         harmonics that would do most, until that changes the amplitudes (dof,) no more, or would not without
         feedback. NaN where that leads nowhere.
         """
-        found = np.append(z[-1], amplitude)
+        found = np.append(z[len(z) - 1], amplitude)
         for following in self.rounds(z, direction, amplitude):
             more, found = np.abs(following - found)[1:], following
             if (more <= SETTLED * np.abs(found[1:] - amplitude)).all():
@@ -225,7 +225,7 @@ class Corrector:
                 return
             z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
             now, harmonics = np.array(lifted.found[1:]), more
-            yield np.append(z[-1], now)
+            yield np.append(z[len(z) - 1], now)
 
 
 class _Kept(threading.local):

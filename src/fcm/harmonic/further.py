@@ -165,6 +165,7 @@ class Further:
         return 0
 
 
+@cython.wraparound(True)
 def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:
     """Unknowns (unknown + 1,) of a balance as those of one with other harmonics: what it lacks is zero."""
     width, wide = 2 + 4 * len(harmonics), 2 + 4 * len(more)

@@ -95,7 +95,7 @@ class Multipliers:
             if not self.see(plain, z):
                 return UNKNOWN
             if plain.moving == 0:  # nor does the finer motion, which has no further harmonics
-                return PASSIVE._replace(held=plain.held)
+                return PASSIVE._replace(held=plain.held) if plain.held else PASSIVE
         if not self.see(fine, self.finer.x):
             return UNKNOWN
         values = self._values(self.fine, omega)

@@ -68,19 +68,20 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
     most, linear = highest(system, omega), BEFORE * least(system, omega)
     if reach is None and len(system.harmonics) > few_of(system):
         few = system.with_harmonics(system.harmonics[: few_of(system)])
-        reach = _followed(few, omega, linear, most).reach
-    found = _followed(system, omega, linear, most if reach is None else min(reach, most))
+        reach = _followed(few, omega, linear, most, most).reach
+    found = _followed(system, omega, linear, most if reach is None else min(reach, most), most)
     if linear >= 1.0:
         at_rest = np.append(next(linear_responses(system, omega, 1.0)), omega)
         return replace(found, solutions=(at_rest, *found.solutions))
     return found if found.solutions else replace(found, solutions=tuple(_from_linear(system, omega)))
 
 
-def _followed(system: System, omega: float, linear: float, top: float) -> Found:
-    """What the level passes on its way from where it is linear to its top."""
+def _followed(system: System, omega: float, linear: float, top: float, most: float) -> Found:
+    """What the level passes from where it is linear to its top, which may be less than the most."""
     if linear >= top:
         return Found(omega, system.harmonics, (), True, _reach(system, Status.COMPLETE, np.empty(0)))
-    return _shared(system, omega, top) or _found(system, omega, linear, top)
+    shared = _shared(system, omega, top) if top >= most else None
+    return shared or _found(system, omega, linear, top)
 
 
 def _found(system: System, omega: float, linear: float, top: float) -> Found:
@@ -97,9 +98,7 @@ def _shared(system: System, omega: float, top: float) -> Found | None:
 
     That is followed to its end, which is dear where fewer harmonics tell that less is enough.
     """
-    if not system.unit or top >= GREATEST or top < highest(system, omega):
-        return None
-    if top > system.unit * highest(system.normal, omega):
+    if not system.unit or top >= GREATEST or top > system.unit * highest(system.normal, omega):
         return None
     path = in_common(system, omega, _whole)
     if path is not None:  # whoever followed it
