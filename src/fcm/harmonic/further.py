@@ -165,18 +165,14 @@ class Further:
         return 0
 
 
-@cython.wraparound(True)
 def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:
     """Unknowns (unknown + 1,) of a balance as those of one with other harmonics: what it lacks is zero."""
     width, wide = 2 + 4 * len(harmonics), 2 + 4 * len(more)
     contacts = (len(z) - 1) // width
-    out = np.zeros(contacts * wide + 1)
-    blocks = out[:-1].reshape(contacts, wide)
-    old = z[:-1].reshape(contacts, width)
+    blocks, old = np.zeros((contacts, wide)), z[: contacts * width].reshape(contacts, width)
     blocks[:, :2] = old[:, :2]
     for j, h in enumerate(harmonics):
         if h in more:
             at = 2 + 4 * more.index(h)
             blocks[:, at : at + 4] = old[:, 2 + 4 * j : 6 + 4 * j]
-    out[-1] = z[-1]
-    return out
+    return np.append(blocks, z[contacts * width])
