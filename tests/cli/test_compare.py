@@ -7,6 +7,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 import pytest
+import xarray
 
 from fcm.compare import MEASURES, comparison, exact, methods
 from fcm.compare import startup as startups
@@ -105,6 +106,15 @@ def quick(short, monkeypatch):
     monkeypatch.setattr(comparison, "STEPS", (1.0,))
     monkeypatch.setattr(comparison, "startup", lambda *_: startups.Startup(1.0, 0.5))
     return short
+
+
+def test_swept_values_are_coordinates_whatever_the_contact_is_called(fcm, quick):
+    named = quick.read_text().replace("shroud", "left shroud")
+    quick.write_text(f'{named}[sweep]\n"contact.left shroud.n_0" = [20.0]\n')
+    assert fcm("respond", quick, "--compare", "-o", "c.nc").code == 0
+    with xarray.open_dataset("c.nc") as data:
+        swept = data["contact.left_shroud.n_0"]
+        assert swept.attrs["key"] == "contact.left shroud.n_0" and swept.name in data["error"].coords
 
 
 def test_an_interruption_keeps_what_is_finished(fcm, quick, monkeypatch):

@@ -72,15 +72,6 @@ def test_names_that_differ_in_their_characters_only(data, mistakes):
     assert "modal.dofs: " in message
 
 
-def test_a_swept_name_with_a_slash(data, mistakes):
-    """It would become a group of the netCDF file."""
-    data["contact"][0]["name"] = "a/b"
-    data["sweep"] = {"contact.a/b.n_0": [1, 2]}
-    assert "a file cannot hold a name with a slash; give its number, as in contact.0" in mistakes(data)
-    data["sweep"] = {"contact.0.n_0": [1, 2]}
-    assert scene_from_dict(data).contacts[0].name == "a/b"
-
-
 @pytest.mark.parametrize("high", [1.200000000000002, 1.2 * (1 + 9e-11)])
 def test_a_range_of_a_few_roundings(data, mistakes, high):
     data["response"]["frequency"] = [1.2, high]

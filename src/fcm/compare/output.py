@@ -14,6 +14,7 @@ from fcm.compare.errors import MARGIN, MEANINGS, MEASURES, Shown
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
 from fcm.compare.startup import Startup
 from fcm.files import replacing
+from fcm.results.variable_names import variable_names
 from fcm.units import UNIT
 
 LAYOUT = "fcm comparison 1"  # changes when a reader of older files would misread
@@ -124,7 +125,7 @@ def write_netcdf(out: Comparison, path: str | Path) -> None:
     """Write the comparison as netCDF-4; the file appears only when it is complete."""
     import netCDF4
 
-    references = list(out.references)
+    references, swept = list(out.references), variable_names(out.parameters[0])
     with replacing(path) as temporary, netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
         file.title, file.layout = out.scene.title, LAYOUT
         file.source = f"fcm {fcm.__version__}, respond --compare"
@@ -140,14 +141,16 @@ def write_netcdf(out: Comparison, path: str | Path) -> None:
             kind: Any = str if array.dtype.kind == "U" else array.dtype
             variable = file.createVariable(name, kind, dims)
             variable[...] = array.astype(object) if array.dtype.kind == "U" else array
-            variable.setncatts(attrs)
+            of_curves = "curve" in dims and name not in swept.values()
+            coordinates = {"coordinates": " ".join(swept.values())} if of_curves and swept else {}
+            variable.setncatts(attrs | coordinates)
 
         put("reference", ("reference",), references, long_name="what the errors are measured against")
         meaning = "; ".join(f"{name}: {text}" for name, text in MEANINGS.items())
         put("measure", ("measure",), list(MEASURES), long_name=f"which error; {meaning}")
-        for key in out.parameters[0]:
+        for key, name in swept.items():
             values = [parameters[key] for parameters in out.parameters]
-            put(key, ("curve",), values, long_name=f"swept value of {key}")
+            put(name, ("curve",), values, long_name=f"swept value of {key}", key=key)
         for name, values, attrs in _of_runs(out):
             put(name, ("run",), values, **attrs)
         own = [[out.references[name].own[measure] for measure in MEASURES] for name in references]

@@ -21,7 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
 
 _WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
-_SWEPT = "swept value"  # how the description of a swept value begins
+_DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
@@ -146,7 +146,8 @@ def _response(dataset: Any) -> DrawnResponse:
     )
     length = str(getattr(variables["amplitude"], "units", ""))
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
-    drawn = tuple(name for name in swept if getattr(variables[name], "drawn", "") == "true")
+    held = _swept(variables)
+    drawn = tuple(key for key in swept if getattr(held[key], "drawn", "") == "true")
     return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept))
 
 
@@ -174,18 +175,25 @@ def _curve(
 
 
 def swept_values(variables: Any) -> dict[str, FloatArray]:
-    """The swept values, by their full names: ``contact.shroud.n_0``."""
-    return {
-        name: floats(variable)
-        for name, variable in variables.items()
-        if variable.dimensions == ("curve",) and str(getattr(variable, "long_name", "")).startswith(_SWEPT)
-    }
+    """The swept values, by their keys in the scene: ``contact.shroud.n_0``."""
+    return {key: floats(variable) for key, variable in _swept(variables).items()}
 
 
 def swept_units(variables: Any, keys: Iterable[str]) -> dict[str, str]:
     """The units of swept values as they are read, empty where the file does not say them."""
-    written = {key: str(getattr(variables[key], "units", "")) for key in keys}
+    held = _swept(variables)
+    written = {key: str(getattr(held[key], "units", "")) for key in keys}
     return {key: _READ.get(unit, unit) for key, unit in written.items()}
+
+
+def _swept(variables: Any) -> dict[str, Any]:
+    """The variables of swept values by their keys, which their names may not hold."""
+    return {
+        str(getattr(variable, "key", name)): variable
+        for name, variable in variables.items()
+        if variable.dimensions == ("curve",)
+        and str(getattr(variable, "long_name", "")).startswith(_DESCRIBED)
+    }
 
 
 def floats(variable: Any) -> FloatArray:

@@ -16,6 +16,7 @@ from fcm.results.meanings import CYCLE, ENERGIES, EXACT, FORCES, LENGTHS, LOOP, 
 from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
+from fcm.results.variable_names import variable_names
 from fcm.rotation import is_rotation
 from fcm.units import CF_UNIT, in_unit, unit_of_number
 
@@ -47,12 +48,12 @@ def fields_of(response: Response) -> dict[str, Field]:
         "dof": Field(("dof",), np.array(response.dofs), {"long_name": "degree of freedom"}),
         "contact": Field(("contact",), np.array(response.contacts, dtype=str), {"long_name": "contact"}),
     }
-    for key in swept[0] if swept else ():
+    for key, name in swept_names(response).items():
         values = np.array([parameters[key] for parameters in swept])
         drawn = {"drawn": "true"} if key in response.drawn else {}
         unit = unit_of_number(key, *response.units, CF_UNIT[response.frequency_unit])
-        attrs = {"long_name": f"swept value of {key}"} | drawn | ({"units": unit} if unit else {})
-        out[key] = Field(("curve",), values, attrs)
+        attrs = {"long_name": f"swept value of {key}", "key": key} | drawn | ({"units": unit} if unit else {})
+        out[name] = Field(("curve",), values, attrs)
     if response.curves or (response.histories is None and response.tracking is None):
         out |= gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= curve_fields(response)
@@ -69,6 +70,11 @@ def fields_of(response: Response) -> dict[str, Field]:
 
         out |= {name: Field(*parts) for name, parts in output.variables(response.histories).items()}
     return _with_units(out, response.units, [dof for dof in response.dofs if is_rotation(dof)])
+
+
+def swept_names(response: Response) -> dict[str, str]:
+    """The variable of each swept value, by its key in the scene."""
+    return variable_names(response.parameters[0] if response.parameters else ())
 
 
 def _with_units(fields: dict[str, Field], units: tuple[str, str], turning: list[str]) -> dict[str, Field]:

@@ -13,10 +13,11 @@ import numpy.typing as npt
 import fcm
 from fcm.files import replacing
 from fcm.results.field import Field
-from fcm.results.fields import fields_of
+from fcm.results.fields import fields_of, swept_names
 from fcm.results.padded import CHUNK, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
+from fcm.results.tracked_fields import tracked_names
 
 if TYPE_CHECKING:
     import xarray
@@ -104,7 +105,7 @@ def to_dataset(response: Response) -> xarray.Dataset:
 
 def _coordinates(response: Response, fields: dict[str, Field]) -> list[str]:
     """Variables that say what a curve or an instant is: swept values, and times if there are any."""
-    swept = list(response.parameters[0]) if response.parameters else []
+    swept = [*swept_names(response).values(), *tracked_names(response.tracking).values()]
     return [*swept, *(name for name in ("time", "cycles", "cycle_start") if name in fields)]
 
 

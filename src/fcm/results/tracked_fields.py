@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fcm.results.field import Field
 from fcm.results.result import Response
 from fcm.results.tracked import Tracking
+from fcm.results.variable_names import variable_names
 from fcm.units import CF_UNIT, in_unit, unit_of_number
 
 KINDS = "smooth, kink of equal peaks, corner of the response, end of a higher peak"
@@ -57,11 +58,18 @@ def _curves(response: Response, tracking: Tracking) -> dict[str, Field]:
         out[f"tracked_{name}"] = Field(of, values[name], {"long_name": meaning, **more.get(name, {})})
     if tracking.what != "optimum":
         out |= _errors(tracking, _unit_of(tracking.key, response))
-    for key in curves[0].parameters:
+    for key, name in tracked_names(tracking).items():
         swept = np.array([curve.parameters[key] for curve in curves])
-        about = {"long_name": f"{key} of the curve"} | _unit_of(key, response)
-        out[f"track_{key}"] = Field(("track",), swept, about)
+        about = {"long_name": f"{key} of the curve", "key": key} | _unit_of(key, response)
+        out[name] = Field(("track",), swept, about)
     return out
+
+
+def tracked_names(tracking: Tracking | None) -> dict[str, str]:
+    """The variable of each swept value of the tracked curves, by its key in the scene."""
+    curves = [] if tracking is None else tracking.curves
+    names = variable_names(curves[0].parameters) if curves else {}
+    return {key: f"track_{name}" for key, name in names.items()}
 
 
 def _unit_of(key: str, response: Response) -> dict[str, str]:

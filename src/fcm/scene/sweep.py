@@ -148,8 +148,6 @@ def _swept(section: Section, key: str, addresses: Addresses, checked: bool = Tru
         section.mistakes.add(path, 'put the whole key path in quotes, as in "contact.shroud.n_0" = [1, 2]')
         return None
     found = addresses.find(str(key), path, section.mistakes)
-    if found and "/" in str(key):
-        section.mistakes.add(path, "a file cannot hold a name with a slash; give its number, as in contact.0")
     values = _values(section, path, str(key), value)
     if values is None:
         return None
