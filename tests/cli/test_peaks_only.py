@@ -31,6 +31,32 @@ amplitude = 1.0
 frequency = [1.1, 1.4]
 output = ["v", "u"]
 """
+DRAWN = SWEEP.replace("[-5.0, 3.0, 8.0]", "{ normal = [3.0, 2.0], count = 6, seed = 1 }")
+HIGHER_AT_THE_END = """
+[modal]
+dofs = ["a", "b"]
+frequency = [1.0, 1.6]
+damping = 0.01
+shapes = [[1.0, 0.0], [0.5, 1.0]]
+[[contact]]
+name = "brake"
+tangential = "b"
+normal = { b = 0.2 }
+mu = 0.4
+k_u = 1.0
+k_v = 1.0
+n_0 = 5.0
+[[force]]
+dof = "a"
+amplitude = 1.0
+[response]
+frequency = [1.05, 2.2]
+harmonics = 1
+[optimum]
+vary = ["contact.brake.n_0"]
+bounds = [[0.2, 20.0]]
+minimise = "peak.a"
+"""
 
 
 def untimed(value):
@@ -59,6 +85,38 @@ def test_the_same_peaks_and_folds_and_summary_as_with_all_points(fcm, scene, tex
             np.testing.assert_array_equal(peaks[f"greatest_{name}"][:], greatest)
         counted = np.isfinite(np.ma.filled(all_points["frequency"][:], np.nan)).sum(axis=1)
         np.testing.assert_array_equal(peaks["points"][:], counted)
+
+
+def test_the_same_percentiles_of_draws_as_with_all_points(fcm, scene):
+    scene.write_text(scene.read_text().replace("damping = 0.05", "damping = 0.01") + DRAWN)
+    full = fcm("respond", scene, "-o", "full.nc", "--json")
+    only = fcm("respond", scene, "-o", "only.nc", "--json", "--peaks-only")
+    (found,) = json.loads(only.out)["scatter"]
+    assert found["curves"] == 6 and found == json.loads(full.out)["scatter"][0]
+    peaks = [one["peak"]["u"]["amplitude"] for one in json.loads(only.out)["curves"]]
+    assert found["peak"]["u"]["amplitude"]["50"] == pytest.approx(np.median(peaks))
+    with netCDF4.Dataset("full.nc") as all_points, netCDF4.Dataset("only.nc") as file:
+        for name in ("peak_percentile", "peak_frequency_percentile", "jump_percentile", "jump_share"):
+            np.testing.assert_array_equal(file[name][:], all_points[name][:])
+    assert "percentiles of 6 curves" in fcm("respond", scene, "--peaks-only").out
+
+
+def test_the_same_optimum_though_an_end_of_the_range_is_higher(fcm, scene):
+    """Its error and stability are those of the peak that is least, and not of the end of the range."""
+    scene.write_text(HIGHER_AT_THE_END)
+    full, only = (fcm("respond", scene, "--json", *more) for more in ((), ("--peaks-only",)))
+    assert full.code == only.code == 0, only.err
+    assert untimed(json.loads(only.out)) == untimed(json.loads(full.out))
+    (found,), (curve,) = (json.loads(only.out)[name] for name in ("optimum", "curves"))
+    assert curve["peak"]["a"]["at_edge"] and curve["peak"]["a"]["amplitude"] > 9.0 > 1.0 > found["value"]
+    assert found["error"] != curve["peak"]["a"]["error"] and [one["stable"] for one in found["at"]] == [True]
+    with_nine = scene.read_text().replace("harmonics = 1", "harmonics = 9").split("[optimum]")[0]
+    scene.write_text(with_nine.replace("n_0 = 5.0", f"n_0 = {found['values']['contact.brake.n_0']!r}"))
+    assert fcm("respond", scene, "-o", "true.nc").code == 0
+    with netCDF4.Dataset("true.nc") as file:
+        above = file["frequency"][0] > 1.6
+        off = file["amplitude"][0][above][:, 0].max() / found["value"] - 1.0
+    assert 0.3 < found["error"] / abs(off) < 3.0
 
 
 def test_what_has_peaks_only_is_drawn_by_them(fcm, scene):

@@ -16,6 +16,7 @@ from fcm.response.least import Found, Task, with_values
 from fcm.response.optima import optima
 from fcm.response.sweep import trace
 from fcm.response.wanted import wanted_of
+from fcm.results.gist import gist_of, without_points
 from fcm.results.peak import stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
 from fcm.results.tracked import Optimal, Tracking
@@ -40,6 +41,7 @@ def optimise(
     progress: Progress | None = None,
     keep: Path | Checkpoint | None = None,
     resume: bool = False,
+    peaks_only: bool = False,
     **options: Any,
 ) -> Response:
     """The optima of a scene with an [optimum], one for each curve of its sweep, and the responses there.
@@ -50,6 +52,8 @@ def optimise(
         As of `trace`: with an accuracy, as many harmonics as the response at the optimum takes.
     keep, resume
         As of `trace`: what is kept are the optima that are found, and then the curves of the response.
+    peaks_only
+        Whether to keep of the curves no points, once they have told what the optima are.
     options
         What else `trace` takes, for the response.
 
@@ -81,6 +85,8 @@ def optimise(
     if wanted.harmonics is None:
         _say_what_is_short(tracking, response, wanted.accuracy)
     response.tracking = tracking
+    if peaks_only:
+        response.curves, response.peaks_only = [without_points(one) for one in response.curves], True
     response.seconds = time.perf_counter() - begin
     return response
 
@@ -142,17 +148,24 @@ def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:
     """With the estimated error of the peaks that are greatest, and whether the motion is stable there."""
-    errors = [curve.peaks[dof].error for dof, _ in found.active]
-    stable = tuple(_stability(curve, dof, omega) for dof, omega in found.active)
-    return replace(found, error=float(np.max(errors)) if errors else np.nan, stable=stable)
+    there = [_told(curve, dof, omega) for dof, omega in found.active]
+    error = float(np.max([error for error, _ in there])) if there else np.nan
+    return replace(found, error=error, stable=tuple(stable for _, stable in there))
 
 
-def _stability(curve: Curve, dof: str, omega: float) -> float:
-    """Of the peak of a degree of freedom at a frequency, which need not be its greatest; as of a `Peak`."""
-    d, there = list(curve.peaks).index(dof), np.abs(curve.frequency - omega) <= SAME_PLACE * omega
-    if there.any():
-        return float(stability_at_top(curve.amplitude[there], curve.stable[there])[d])
-    return curve.peaks[dof].stable  # of a curve of which no more points are kept
+def _told(curve: Curve, dof: str, omega: float) -> tuple[float, float]:
+    """Error and stability, as of a `Peak`, of the peak of a degree of freedom at a frequency.
+
+    That need not be its greatest amplitude, which may be at an end of the range. NaN where neither is known.
+    """
+    greatest, d = curve.peaks[dof], list(curve.peaks).index(dof)
+    if abs(greatest.frequency - omega) <= SAME_PLACE * omega:
+        return greatest.error, greatest.stable
+    at = np.flatnonzero(np.abs(curve.frequency - omega) <= SAME_PLACE * omega)
+    if not at.size:
+        return np.nan, np.nan
+    stable = stability_at_top(curve.amplitude[at], curve.stable[at])[d]
+    return float(curve.error[at[curve.amplitude[at, d].argmax()], d]), float(stable)
 
 
 def _say_what_is_short(tracking: Tracking, response: Response, accuracy: float) -> None:
@@ -174,7 +187,7 @@ def _higher(tracking: Tracking, response: Response) -> list[str]:
     """What is wrong where a response has a higher peak than the ones that were followed."""
     said = []
     for found, curve in zip(tracking.optima, response.curves, strict=True):
-        ends = (np.nanmin(curve.frequency), np.nanmax(curve.frequency)) if curve.points else (0.0, 0.0)
+        ends = (curve.gist or gist_of(curve)).ends
         for name in found.minimised:
             what, _, dof = name.partition(".")
             peak = curve.peaks[dof]

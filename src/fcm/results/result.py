@@ -73,8 +73,8 @@ class Curve:
 
     @property
     def points(self) -> int:
-        """Number of points."""
-        return int(np.isfinite(self.frequency).sum())
+        """Number of points that were computed, be they kept or not."""
+        return int(np.isfinite(self.frequency).sum()) if self.gist is None else self.gist.points
 
     @property
     def branch(self) -> npt.NDArray[np.intp]:
