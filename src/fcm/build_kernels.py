@@ -7,11 +7,14 @@ code, which then lies beside the source; where it could not be, the source itsel
 What the .pxd beside a kernel declares is C: functions, methods and attributes that need no Python, no lock,
 and that other kernels import as ``from cython.cimports.fcm...``; see `fcm.contact.cycle` and `closed_form`.
 There a float is a double; other types are named as Cython does. What is not declared is for Python to call.
+A function that calls Python declares what it returns for an exception (``except -1``): declared ``noexcept``
+it would print an interruption and go on with numbers that were not computed. Such a kernel is refused.
 """
 
 from __future__ import annotations
 
 import os
+import re
 from compileall import compile_dir
 from pathlib import Path
 
@@ -32,6 +35,22 @@ FLAGS = ["-O3", "-g0", "-ffp-contract=off"]
 ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # from 3.11 on
 ARRAYS = "fcm.kernel_arrays"  # what Cython adds for arrays, once for all kernels
 
+_LOST = re.compile(r'\n\s+__Pyx_WriteUnraisable\("([^"]*)"')  # where a translated function loses exceptions
+_NONE = re.compile(  # raised for None in the place of an object, which no kernel passes: no Python is called
+    r'"cannot pass None into a C function[^\n]*\n(?:[^\n]*GILState_Release[^\n]*\n|\s*#[^\n]*\n)*'
+    r"[^\n]*__PYX_ERR\([^\n]*\n"
+)
+
+
+def losing(translated: str) -> list[str]:
+    """The functions of a kernel in C that would lose an exception of what they call."""
+    code, found = _NONE.sub("\n", translated), []
+    for lost in _LOST.finditer(code):
+        begin = code.rfind("\nstatic ", 0, lost.start())
+        if "__PYX_ERR(" in code[begin : lost.start()]:
+            found.append(lost[1])
+    return found
+
 
 class Kernels(build_ext):
     """The step of setuptools that compiles; in place, for developers, a failure is an error."""
@@ -46,7 +65,8 @@ class Kernels(build_ext):
         self.parallel = os.cpu_count()
 
     def run(self) -> None:
-        self.optional = self.editable_mode or not self.inplace  # here, for it is set aside for what follows
+        # here, for it is set aside for what follows
+        self.optional, self.in_place = self.editable_mode or not self.inplace, self.inplace
         super().run()
 
     def build_extensions(self) -> None:
@@ -65,10 +85,20 @@ class Kernels(build_ext):
         )
         for kernel, in_C in zip(self.extensions, translated, strict=True):
             kernel.sources = in_C.sources
+        if self.editable_mode or self.in_place:  # for developers: users may have another Cython
+            self._check([Path(source) for kernel in translated for source in kernel.sources])
         super().build_extensions()
         if self.editable_mode:
             # as pip does for what it copies: where Python may not write bytecode, a start takes 0.1 s longer
             compile_dir("src/fcm", quiet=1)
+
+    def _check(self, sources: list[Path]) -> None:
+        """Refuse kernels that would lose an exception."""
+        found = [name for source in sources for name in losing(source.read_text())]
+        if found:
+            raise CompileError(
+                f"exceptions are lost in {', '.join(found)}: declare what is returned for them (except -1)"
+            )
 
     def _compiles(self) -> bool:
         """Whether C is compiled here, with Python's headers; where not, kernels need not be translated."""

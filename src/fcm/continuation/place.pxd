@@ -17,7 +17,7 @@ cdef class Place:
     cdef int like(self, Place other, double unit) except -1
     cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
     cpdef double margin_at(self, Py_ssize_t k, Place other) except -1e300
-    cdef double asked(self, Py_ssize_t k, Problem problem) noexcept
+    cdef double asked(self, Py_ssize_t k, Problem problem) except -1e300
     cdef int incline(self, Problem problem, double[::1] scale, double[::1] beside) except -1
 
 cdef Py_ssize_t nearest(

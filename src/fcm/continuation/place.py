@@ -81,7 +81,7 @@ class Place:
         return other.margin[i] if i >= 0 else 0.0
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1e300, check=False)
     def asked(self, k: cython.Py_ssize_t, problem: Problem) -> cython.double:
         """The margin that a problem was last asked for and is the one with number k here; 0 if none is."""
         i: cython.Py_ssize_t = self.partner(k, problem.kind, problem.angle)

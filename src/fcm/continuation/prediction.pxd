@@ -9,7 +9,7 @@ cdef class Prediction:
     cdef public bint known
     cdef public bint cubic
     cdef double[::1] way
-    cpdef void straighten(self) noexcept
+    cpdef int straighten(self) except -1
     cdef void put(self, Place here, double[::1] scale, double step, double[::1] guess) noexcept
     cdef double rescale(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept
     cdef void learn(self, Place here, Place place, double[::1] scale, double[::1] new, double length) noexcept

@@ -30,11 +30,12 @@ class Prediction:
         self.known, self.cubic = False, False
 
     @cython.ccall
-    @cython.exceptval(check=False)
-    def straighten(self) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def straighten(self) -> cython.int:
         """Predict by the tangent alone: nothing is known of the way here."""
         self.bend[:] = 0.0
         self.known, self.cubic = False, False
+        return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)

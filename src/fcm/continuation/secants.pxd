@@ -6,5 +6,5 @@ cdef class Secants:
     cdef int looks
     cdef void aim(self) noexcept
     cdef bint jumps(self) noexcept
-    cpdef bint known(self, double fine, bint after_next=*) noexcept
-    cpdef void saw(self, double at, double value) noexcept
+    cpdef bint known(self, double fine, bint after_next=*) except -1
+    cpdef int saw(self, double at, double value) except -1

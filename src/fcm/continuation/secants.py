@@ -60,7 +60,7 @@ class Secants:
         return self.may_jump and near and difference > LESS * self.first_difference
 
     @cython.ccall
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def known(self, fine: cython.double, after_next: cython.bint = False) -> cython.bint:
         """Whether another look would move by no more than this; or the one after next.
 
@@ -72,8 +72,8 @@ class Secants:
         return after_next and way * way <= fine * fabs(self.now - self.last)
 
     @cython.ccall
-    @cython.exceptval(check=False)
-    def saw(self, at: cython.double, value: cython.double) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def saw(self, at: cython.double, value: cython.double) -> cython.int:
         """Take the value there for that of one side."""
         if self.looks % IN_TURN == IN_TURN - 1:
             self.width_in_turn = self.width
@@ -84,3 +84,4 @@ class Secants:
         else:
             self.low, self.before = at, value
         self.aim()
+        return 0

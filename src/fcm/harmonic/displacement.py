@@ -63,7 +63,7 @@ class Displacements(Extremes):
         return 0
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def harmonic(
         self,
         j: cython.int,
@@ -71,7 +71,7 @@ class Displacements(Extremes):
         force: cython.double[::1],
         d_force: cython.double[::1],
         d_omega: cython.double,
-    ) -> cython.void:
+    ) -> cython.int:
         """Amplitudes of the modes in one harmonic."""
         n: cython.Py_ssize_t = self.seen.count
         w: cython.Py_ssize_t = 2 + 4 * n
@@ -93,6 +93,7 @@ class Displacements(Extremes):
             self.move(self.seen, j, i, f_re, f_im, g_re, g_im, d_omega)
             self.of_modes[j, i], self.of_modes[n + j, i] = self.q_re, self.q_im
             self.of_modes[2 * n + j, i], self.of_modes[3 * n + j, i] = self.r_re, self.r_im
+        return 0
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

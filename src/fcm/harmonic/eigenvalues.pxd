@@ -4,7 +4,7 @@ cdef class Eigenvalues(Reflections):
     cdef readonly double[::1] re
     cdef readonly double[::1] im
     cdef readonly Py_ssize_t n
-    cpdef bint find(self, double[:, ::1] matrix) noexcept
+    cpdef bint find(self, double[:, ::1] matrix) except -1
     cdef void balance(self) noexcept
     cdef void reduce(self) noexcept
     cdef bint split(self) noexcept

@@ -45,7 +45,7 @@ class Eigenvalues(Reflections):
         return found
 
     @cython.ccall
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def find(self, matrix: cython.double[:, ::1]) -> cython.bint:
         """Fill re and im."""
         i: cython.Py_ssize_t

@@ -11,5 +11,5 @@ cdef class Ranking:
     cdef Py_ssize_t[::1] place
     cdef Py_ssize_t among
     cdef Py_ssize_t choose(self, bint best) except -2
-    cdef Py_ssize_t covering(self) noexcept
+    cdef Py_ssize_t covering(self) except -2
     cdef void rank(self) noexcept

@@ -81,7 +81,7 @@ class Ranking:
         return self.number(self.most())
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def covering(self) -> cython.Py_ssize_t:
         """The first set that covers nearly as much as the best, -1 if there is none."""
         share: cython.double[::1] = self.further.share

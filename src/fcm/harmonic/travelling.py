@@ -28,7 +28,7 @@ class TravellingDisplacements(Displacements):
             np.asarray(self.wave_im)[j, : len(one)] = one.imag
 
     @cython.cfunc
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def harmonic(
         self,
         j: cython.int,
@@ -36,7 +36,7 @@ class TravellingDisplacements(Displacements):
         force: cython.double[::1],
         d_force: cython.double[::1],
         d_omega: cython.double,
-    ) -> cython.void:
+    ) -> cython.int:
         """Amplitudes of one harmonic, mode by mode."""
         wave: Receptance = self.waves[j]
         n: cython.Py_ssize_t = self.seen.ports
@@ -68,6 +68,7 @@ class TravellingDisplacements(Displacements):
                 self.im[j, d] += a * self.q_im + b * self.q_re
                 self.d_re[j, d] += a * self.r_re - b * self.r_im
                 self.d_im[j, d] += a * self.r_im + b * self.r_re
+        return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)

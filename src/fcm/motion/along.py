@@ -46,8 +46,8 @@ class Along:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def follow(self, slot: cython.Py_ssize_t, position: cython.double) -> cython.int:
         """Along a flow, to a position in steps."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
@@ -59,11 +59,12 @@ class Along:
             if whole >> j & 1:
                 self._whole(slot, j)
         self._part(slot, x)
+        return 0
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _whole(self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t) -> cython.int:
         """By 2**j steps."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
@@ -81,6 +82,7 @@ class Along:
             ) + self.flows.forced[slot, j, 3, i] * cosine
         h: cython.double = self.flows.step[slot] * (1 << j)
         self._rotate(self.flows.rotation[slot, j, 0], self.flows.rotation[slot, j, 1], h)
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -100,8 +102,8 @@ class Along:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _times(self, matrix: cython.double[:, ::1], rows: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _times(self, matrix: cython.double[:, ::1], rows: cython.Py_ssize_t) -> cython.int:
         """Multiply so many of the derivatives by the matrix of a flow."""
         n: cython.Py_ssize_t = self.flows.linear
         k: cython.Py_ssize_t
@@ -111,13 +113,14 @@ class Along:
                 columns, room = np.asarray(self.columns)[:rows, :n], np.asarray(self._room)[:rows]
                 np.matmul(columns, matrix, out=room)
                 columns[:] = room
-            return
+            return 0
         if cython.compiled:  # four rows at once, see the .pxd: every number is the same either way
             row, other = cython.address(self.columns[0, 0]), cython.address(matrix[0, 0])
             stride: cython.Py_ssize_t = self.columns.shape[1]
             done = fours_times(row, stride, rows, other, n, cython.address(self._room[0, 0]))  # type: ignore[name-defined]  # noqa: F821
         for k in range(done, rows):
             self._row_times(matrix, k)
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -157,8 +160,8 @@ class Along:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _fraction(self, slot: cython.Py_ssize_t, x: cython.double, orders: cython.Py_ssize_t) -> cython.int:
         """Those by the start by a part x of a step: by its matrix or, where that is more work, row by row."""
         n: cython.Py_ssize_t = self.flows.linear
         i: cython.Py_ssize_t
@@ -170,7 +173,7 @@ class Along:
         d: cython.double
         if self.flows.terms.shape[1] == 0 or self.unknowns < FEW:
             self.flows.part(slot, x, self.columns, 0, self.unknowns)
-            return
+            return 0
         if not self.flows.spelled[slot]:
             with cython.gil:
                 self.flows.spell(slot)
@@ -196,11 +199,12 @@ class Along:
             size *= x
             j += 1
         self._times(self._matrix, self.unknowns)
+        return 0
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _part(self, slot: cython.Py_ssize_t, x: cython.double) -> cython.int:
         """By a part x < 1 of a step."""
         n: cython.Py_ssize_t = self.flows.linear
         u: cython.Py_ssize_t = self.unknowns
@@ -227,3 +231,4 @@ class Along:
         for i in range(n):
             self.columns[u, i] = self._grades[0, i]
         self._rotate(cos(self.flows.omega * h), sin(self.flows.omega * h), h)
+        return 0

@@ -112,7 +112,7 @@ class Derivative(Along):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def _go(self, segments: Segments, last: cython.Py_ssize_t, position: cython.double) -> cython.Py_ssize_t:
         slot: cython.Py_ssize_t
         i: cython.Py_ssize_t
@@ -128,7 +128,7 @@ class Derivative(Along):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def _reach(
         self, segments: Segments, last: cython.Py_ssize_t, position: cython.double
     ) -> cython.Py_ssize_t:
@@ -154,14 +154,15 @@ class Derivative(Along):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _arrive(self, segments: Segments, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _arrive(self, segments: Segments, slot: cython.Py_ssize_t) -> cython.int:
         """Put the state vector at the position in the segment into its row."""
         i: cython.Py_ssize_t
         u: cython.Py_ssize_t = self.unknowns
         for i in range(self.flows.size):
             self.columns[u + 1, i] = segments.y[self.at, i]
         self.flows.carry(slot, self.position, self.columns, u + 1)
+        return 0
 
     @cython.cfunc
     @cython.nogil

@@ -61,7 +61,7 @@ class Directional(Derivative):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def _at_places(
         self, segments: Segments, places: cython.double[:, ::1], out: cython.double[:, ::1]
     ) -> cython.Py_ssize_t:

@@ -33,8 +33,8 @@ class Exits(Forced):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def refresh(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
         """Make the columns of the forces for the frequency; of an exit the terms that tell most."""
         e: cython.Py_ssize_t
         exits: cython.Py_ssize_t = self.exits[slot]
@@ -43,7 +43,7 @@ class Exits(Forced):
         made: cython.bint = self.made_for[slot] == self.omega
         Forced.refresh(self, slot)
         if made:
-            return
+            return 0
         self._angles(slot)
         for e in range(exits):
             w = e * (_ORDER + 1)
@@ -56,6 +56,7 @@ class Exits(Forced):
                 self.table_forced[slot, b, exits + e] = self.series_forced[slot, b, w + 1]
                 self.table_forced[slot, b, 2 * exits + e] = 24.0 * self.series_forced[slot, b, w + 4]
         self.watched[slot] = 0
+        return 0
 
     @cython.cfunc
     @cython.nogil

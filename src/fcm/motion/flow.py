@@ -38,10 +38,10 @@ class Flows(Exits):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def advance(
         self, slot: cython.Py_ssize_t, j: cython.Py_ssize_t, y: cython.double[:, ::1], k: cython.Py_ssize_t
-    ) -> cython.void:
+    ) -> cython.int:
         """Move row k of y by 2**j steps."""
         n: cython.Py_ssize_t = self.linear
         i: cython.Py_ssize_t
@@ -55,13 +55,14 @@ class Flows(Exits):
             y[k, i] = self.whole[i]
         y[k, n] = self.rotation[slot, j, 0] * sine + self.rotation[slot, j, 1] * cosine
         y[k, n + 1] = self.rotation[slot, j, 0] * cosine - self.rotation[slot, j, 1] * sine
+        return 0
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def carry(
         self, slot: cython.Py_ssize_t, position: cython.double, y: cython.double[:, ::1], k: cython.Py_ssize_t
-    ) -> cython.void:
+    ) -> cython.int:
         """Move row k of y by any number of steps."""
         whole: cython.longlong = cython.cast(cython.longlong, position)
         x: cython.double = position - whole
@@ -73,6 +74,7 @@ class Flows(Exits):
             if whole >> j & 1:
                 self.advance(slot, j, y, k)
         self.part(slot, x, y, k, k + 1)
+        return 0
 
     @cython.cfunc
     @cython.nogil

@@ -2,8 +2,8 @@ from fcm.motion.series cimport Series
 
 cdef class Forced(Series):
     cdef double[::1] whole
-    cdef void refresh(self, Py_ssize_t slot) noexcept nogil
-    cdef void reach(self, Py_ssize_t slot, Py_ssize_t last) noexcept nogil
+    cdef int refresh(self, Py_ssize_t slot) except -1 nogil
+    cdef int reach(self, Py_ssize_t slot, Py_ssize_t last) except -1 nogil
     cdef void _one_step(self, Py_ssize_t slot) noexcept nogil
     cdef void _add_term(self, Py_ssize_t slot, int j, double power, double slope) noexcept nogil
     cdef void _sized(self, Py_ssize_t slot) noexcept nogil

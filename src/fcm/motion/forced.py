@@ -34,18 +34,19 @@ class Forced(Series):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def refresh(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def refresh(self, slot: cython.Py_ssize_t) -> cython.int:
         """Make the columns of the forces for the frequency, unless they are."""
         self.clock += 1
         self.used[slot] = self.clock
         if self.made_for[slot] == self.omega:
-            return
+            return 0
         self._one_step(slot)
         self._sized(slot)
         self.reached[slot] = 0
         self.reach(slot, 0)
         self.made_for[slot] = self.omega
+        return 0
 
     @cython.cfunc
     @cython.nogil
@@ -121,8 +122,8 @@ class Forced(Series):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def reach(self, slot: cython.Py_ssize_t, last: cython.Py_ssize_t) -> cython.int:
         """Make the columns of the forces over 1, 2, 4 ... 2**last steps, those that are not made yet."""
         t: cython.double
         while self.reached[slot] <= last:
@@ -135,6 +136,7 @@ class Forced(Series):
             self.rotation[slot, self.reached[slot], 0] = cos(t)
             self.rotation[slot, self.reached[slot], 1] = sin(t)
             self.reached[slot] += 1
+        return 0
 
     @cython.cfunc
     @cython.nogil

@@ -66,8 +66,8 @@ class Integrals(Walk):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def visit(self, slot: cython.Py_ssize_t) -> cython.int:
         """Over all whole steps, and over what is left of one."""
         h: cython.double = self.flows.step[slot]
         whole: cython.longlong = cython.cast(cython.longlong, self.segments.length[self.at])
@@ -93,11 +93,12 @@ class Integrals(Walk):
             self._take(slot, self._there, 0, x * h, 0, 1.0, sine, cosine)
             self.flows.part(slot, x, self._there, 0, 1)
             self._take(slot, self._there, 0, x * h, 1, 1.0, sine, cosine)
+        return 0
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _steps(self, slot: cython.Py_ssize_t, whole: cython.longlong) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _steps(self, slot: cython.Py_ssize_t, whole: cython.longlong) -> cython.int:
         """Sum the state vectors at both ends of whole steps, times 1, sin(theta), cos(theta) at the first."""
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -119,6 +120,7 @@ class Integrals(Walk):
             for i in range(self.flows.size):
                 self._there[0, i] = self._there[1, i]
             whole -= 1
+        return 0
 
     @cython.cfunc
     @cython.nogil

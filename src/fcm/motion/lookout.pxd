@@ -12,8 +12,8 @@ cdef class Lookout:
     cdef double[::1] _floors, _largest, _seen
     cdef signed char[::1] _marked
     cdef void begin(self, double[:, ::1] y, double left) noexcept nogil
-    cdef bint block(self) noexcept nogil
+    cdef bint block(self) except -1 nogil
     cdef bint _suspect(self, Py_ssize_t k, Py_ssize_t e) noexcept nogil
     cdef double _floor(self, Py_ssize_t e) noexcept nogil
-    cdef void _stand(self, int steps) noexcept nogil
+    cdef int _stand(self, int steps) except -1 nogil
     cdef bint _passed(self, double before) noexcept nogil

@@ -63,7 +63,7 @@ class Lookout:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def block(self) -> cython.bint:
         """Look for an exit in the next steps, more of them each time; whether the segment has ended."""
         k: cython.Py_ssize_t
@@ -140,8 +140,8 @@ class Lookout:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def _stand(self, steps: cython.int) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def _stand(self, steps: cython.int) -> cython.int:
         """Go to so many steps from the start of the block."""
         i: cython.Py_ssize_t
         j: cython.int
@@ -150,6 +150,7 @@ class Lookout:
         for j in range(_WHOLE + 1):
             if steps >> j & 1:
                 self.flows.advance(self.slot, j, self.there, 0)
+        return 0
 
     @cython.cfunc
     @cython.nogil

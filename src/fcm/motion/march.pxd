@@ -14,6 +14,6 @@ cdef class March:
     cdef Successor _next
     cdef bint _settled
     cdef void _enter(self, Py_ssize_t j)
-    cdef int _go(self) noexcept nogil
+    cdef int _go(self) except -1 nogil
     cdef void _open_segment(self) noexcept nogil
     cdef void _close_segment(self) noexcept nogil

@@ -113,7 +113,7 @@ class March:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def _go(self) -> cython.int:
         stopped: cython.int
         ended: cython.bint

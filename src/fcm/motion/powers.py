@@ -75,8 +75,8 @@ class Powers(Walk):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def visit(self, slot: cython.Py_ssize_t) -> cython.int:
         """Step by step, each a polynomial."""
         left: cython.double = self.segments.length[self.at]
         length: cython.double
@@ -85,7 +85,7 @@ class Powers(Walk):
         for i in range(self.flows.contacts):
             slips |= self.segments.states[self.at, i] >= _POSITIVE_SLIP
         if not slips:
-            return
+            return 0
         for i in range(self.flows.size):
             self._y[1, i] = self.segments.y[self.at, i]
         while left > 0.0:
@@ -96,6 +96,7 @@ class Powers(Walk):
                 self._add(self._weights[i] * length * self.flows.step[slot])
             summed(self._terms, 1.0, self._y, 1)
             left -= 1.0
+        return 0
 
     @cython.cfunc
     @cython.nogil

@@ -26,7 +26,7 @@ def sample(
 
 @cython.cfunc
 @cython.nogil
-@cython.exceptval(check=False)
+@cython.exceptval(-1, check=False)
 def _sample(
     steps: Steps, times: cython.double[::1], out: cython.double[:, ::1], done: cython.Py_ssize_t
 ) -> cython.Py_ssize_t:

@@ -58,8 +58,8 @@ class Scan(Walk):
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def visit(self, slot: cython.Py_ssize_t) -> cython.int:
         """Some steps after the other: the greatest and least of their ends, and then what is beyond these."""
         left: cython.double = self.segments.length[self.at]
         i: cython.Py_ssize_t
@@ -78,10 +78,11 @@ class Scan(Walk):
                 self._path[0, i] = self._path[count, i]
             self._first += count
             left -= count
+        return 0
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def _steps(self, slot: cython.Py_ssize_t, left: cython.double) -> cython.Py_ssize_t:
         """Make the next of the steps that are left, and what is looked at there; how many they are."""
         i: cython.Py_ssize_t

@@ -7,4 +7,4 @@ cdef class Steps:
     cdef readonly Py_ssize_t at, slot
     cdef readonly double left, length, time, h
     cdef readonly double[:, ::1] y, terms
-    cdef int next(self) noexcept nogil
+    cdef int next(self) except -2 nogil

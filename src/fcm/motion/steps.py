@@ -31,7 +31,7 @@ class Steps:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def next(self) -> cython.int:
         """Go to the next step: 1 if there is one, 0 at the end, -1 if segment at + 1 has no flow yet."""
         i: cython.Py_ssize_t

@@ -12,7 +12,7 @@ cdef class Successor:
     cdef signed char[::1] _failed
     cdef void begins(self) noexcept
     cdef void rounded(self, double[:, ::1] y) noexcept nogil
-    cdef int settle(self) noexcept nogil
+    cdef int settle(self) except -1 nogil
     cdef bint _fails(self, Py_ssize_t slot) noexcept nogil
     cdef void _switch(self, Py_ssize_t slot) noexcept nogil
     cdef void _descends(self, Py_ssize_t slot, Py_ssize_t e) noexcept nogil

@@ -62,7 +62,7 @@ class Successor:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def settle(self) -> cython.int:
         """Find the combination of states that lasts from y on; DONE when it is found."""
         i: cython.Py_ssize_t

@@ -6,5 +6,5 @@ cdef class Walk:
     cdef readonly Segments segments
     cdef readonly Py_ssize_t at, span
     cdef double[:, ::1] ahead
-    cdef int _go(self) noexcept nogil
-    cdef void visit(self, Py_ssize_t slot) noexcept nogil
+    cdef int _go(self) except -2 nogil
+    cdef int visit(self, Py_ssize_t slot) except -1 nogil

@@ -45,7 +45,7 @@ class Walk:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
+    @cython.exceptval(-2, check=False)
     def _go(self) -> cython.int:
         slot: cython.Py_ssize_t
         while self.at + 1 < self.segments.count:
@@ -75,6 +75,7 @@ class Walk:
 
     @cython.cfunc
     @cython.nogil
-    @cython.exceptval(check=False)
-    def visit(self, slot: cython.Py_ssize_t) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def visit(self, slot: cython.Py_ssize_t) -> cython.int:
         """Along the segment `at`, whose flow is in that place of the pool."""
+        return 0

@@ -26,7 +26,7 @@ class ForcedModes:
         self.q_re, self.q_im = np.zeros((2, len(natural)))
 
     @cython.ccall
-    @cython.exceptval(check=False)
+    @cython.exceptval(-1, check=False)
     def shares(
         self,
         harmonics: cython.Py_ssize_t[::1],
@@ -34,7 +34,7 @@ class ForcedModes:
         force: cython.double[:, :, ::1],
         size: cython.double[::1],
         out: cython.double[::1],
-    ) -> cython.void:
+    ) -> cython.int:
         """Greatest amplitude over the size of a degree of freedom, of some harmonics: (harmonic,).
 
         force (harmonic, port, 2): real and imaginary parts; size (dof,), where 0 does not count; harmonic 1
@@ -45,6 +45,7 @@ class ForcedModes:
             h: cython.Py_ssize_t = harmonics[k]
             self.move(h * omega, force[h - 1])
             out[h - 1] = self.greatest(size)
+        return 0
 
     @cython.cfunc
     @cython.exceptval(check=False)
