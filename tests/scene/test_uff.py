@@ -217,3 +217,142 @@ def test_a_file_that_is_cut_off_within_a_dataset_is_refused(tmp_path, lines):
     }
     with pytest.raises(SceneError, match='it is cut off within a dataset "55"'):
         scene_from_dict(data, "test.toml", tmp_path)
+
+
+TIMES = """\
+    58{b}     {order}     2          11{bytes:>12}     0     0           0           0
+NONE
+    -1
+NONE
+NONE
+NONE
+    1         0    0         0  NONE               1   0       NONE         0   0
+         4       {points:>3}         1  0.00000e+00  1.00000e-02  0.00000e+00
+        17    0    0    0 time (s)             s
+        12    0    0    0 acc (g)              g
+         0    0    0    0 NONE                 NONE
+         0    0    0    0 NONE                 NONE
+"""
+
+
+def times(order=1, size=None, more=b""):
+    """A binary dataset 58 whose numbers hold all that could be taken for lines, and marks among them."""
+    values = (
+        np.arange(40.0).astype("<f8" if order == 1 else ">f8").tobytes()
+        + b"\n    -1\n    55\n\n\r\n    -1 \n"
+    )
+    values += bytes(-len(values) % 8)
+    size = len(values) if size is None else size
+    head = TIMES.format(b="b", order=order, bytes=size, points=len(values) // 8)
+    return b"    -1\n" + head.encode() + values + more + b"\n    -1\n"
+
+
+def read_bytes(folder, content, dof="1x"):
+    (folder / "m.uff").write_bytes(content)
+    data = {"modal": {"file": "m.uff", "damping": 0.01}, "force": [{"dof": dof, "amplitude": 1.0}]}
+    return scene_from_dict(data | {"response": {"frequency": [0.5, 1.5]}}, "test.toml", folder)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("size", [None, 0, 17])
+def test_modes_beside_a_binary_dataset(tmp_path, order, size):
+    """It is passed by its bytes, or by its points where that number is wrong; before and behind modes."""
+    modes, binary = TRANSLATION.encode(), times(order, size)
+    alone = read_bytes(tmp_path, modes).modal
+    for content in (binary + modes, modes + binary, binary + modes + binary, binary + binary + modes):
+        modal = read_bytes(tmp_path, content).modal
+        assert modal.frequency.tolist() == alone.frequency.tolist()
+        assert modal.shapes.tolist() == alone.shapes.tolist()
+
+
+def test_a_binary_dataset_whose_bytes_are_more_than_all_that_it_says(tmp_path):
+    """As after a conversion of line ends: the mark that another dataset follows is its end."""
+    content = times(size=5, more=bytes(33)) + TRANSLATION.encode()
+    assert read_bytes(tmp_path, content).modal.frequency == pytest.approx([20 * pi, 24 * pi])
+
+
+def test_a_binary_dataset_alone_is_listed_and_a_cut_one_is_said(tmp_path):
+    with pytest.raises(SceneError, match="it has no normal mode; it holds 58b ×2: time responses"):
+        read_bytes(tmp_path, times(1) + times(2))
+    with pytest.raises(SceneError, match='line 2, it is cut off within a dataset "58b"'):
+        read_bytes(tmp_path, times()[:-60])
+
+
+def test_a_mark_among_the_words_at_the_head_of_a_dataset(tmp_path):
+    """As pyuff's dataset_milestone_in_header.uff has one."""
+    modes = read(tmp_path, TRANSLATION.replace("NONE", "    -1", 1), "1x").modal
+    assert modes.frequency == pytest.approx([20 * pi, 24 * pi])
+
+
+@pytest.mark.parametrize("begin", ["\ufeff", "\n\n", "\ufeff\n"])
+@pytest.mark.parametrize("line", range(30))
+def test_blank_lines_and_a_byte_order_mark_change_nothing(tmp_path, begin, line):
+    lines = TRANSLATION.splitlines()
+    lines.insert(line, "" if line % 2 else "   ")
+    modal = read(tmp_path, begin + "\n".join(lines), "1x").modal
+    assert modal.frequency == pytest.approx([20 * pi, 24 * pi])
+    assert modal.shapes[:, 3].tolist() == [0.150162, -0.0398226]
+
+
+@pytest.mark.parametrize("line", range(17))
+def test_blank_lines_in_dataset_2414(tmp_path, line):
+    lines = PERMAS.splitlines()
+    lines.insert(line, "")
+    assert read(tmp_path, "\n".join(lines), "2x").modal.shapes[0, 6] == -0.153426
+
+
+@pytest.mark.parametrize(
+    "written, value",
+    [
+        ("1.50162-101", 1.50162e-101),
+        ("1.50162D-01", 0.150162),
+        ("1.50162d-1", 0.150162),
+        ("1.50162E-01-2.00000-100", 0.150162),
+        (".5", 0.5),
+    ],
+)
+def test_exponents_as_fortran_writes_them(tmp_path, written, value):
+    rest = "" if "-100" in written else "  1.50162e-01"
+    text = TRANSLATION.replace("  1.50162e-01  1.50162e-01  1.50162e-01", f"  {written}{rest} 1.50162e-01", 1)
+    assert read(tmp_path, text, "1x").modal.shapes[0, 3] == value
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        ("1.82904e+00", "1,82904", 'is no line of numbers: "1,82904" has a decimal comma: write 1.82904'),
+        ("1.82904e+00", "1.82904mm", '"1.82904mm" has "mm" behind the number: write 1.82904'),
+        ("1.82904e+00", "nan", '"nan" is not a number'),
+        ("1.82904e+00", "1e999", '"1e999" is too large for a number'),
+        (
+            "1.82904e+00  1.82904e+00  1.82904e+00",
+            "1.82904e+001.82904e+00  1.82904e+00",
+            "is no line of numbers",
+        ),
+        ("  1.82904e+00\n         2", "\n         2", "and the values at node 1 are 3"),
+        ("  1.82904e+00\n         2", "  1.82904e+00 1.0 2.0\n         2", "has 5 numbers"),
+        ("         2\n -3.98226e-02", "         1\n -3.98226e-02", "it has node 1 twice"),
+        ("         2\n -3.98226e-02", "      2.x\n -3.98226e-02", '"2.x", is no line of whole numbers'),
+        (
+            "  1.20000e+01  0.00000e+00",
+            "  1.20000e+01",
+            "has 3 numbers, and the mode's frequency and damping are 4",
+        ),
+        (
+            "         2         4         1         2",
+            "         2         0         1         2",
+            "is damaged: ",
+        ),
+    ],
+)
+def test_a_damaged_mode_names_its_line(tmp_path, old, new, words):
+    said = refused(tmp_path, TRANSLATION.replace(old, new, 1))
+    assert "its normal mode 2 is damaged: " in said and words in said
+    assert "argument" not in said and "literal" not in said
+
+
+def test_text_outside_of_datasets_may_be_one_that_has_lost_its_mark(tmp_path):
+    lines = TRANSLATION.splitlines()
+    assert lines[15] == "    -1"
+    del lines[15]
+    assert 'line 16, "55", is outside of the datasets' in refused(tmp_path, "\n".join(lines))

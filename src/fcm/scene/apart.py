@@ -1,4 +1,4 @@
-"""Files that the readers of other packages read (.mat, .mtx, .op4), by a process of its own.
+"""Files that the readers of other packages read (.mat, .op4), by a process of its own.
 
 Those readers can crash the interpreter on a damaged file, and take the memory that a file says it needs. So
 they run in a child with a limit on its memory: whatever becomes of it, here there are arrays or an error.
@@ -27,7 +27,6 @@ SPARE = 500_000_000  # bytes of memory for a reader itself
 COPIES = 3  # of the arrays, while they are read, converted and written
 REFUSED = 3  # exit code of the child when it says why
 NAMES = ".names"  # under which the names of all variables of a .mat file are given
-SHORTEST_ENTRY = 2  # bytes of a number in a MatrixMarket file, with the space behind it
 
 _CODE = "import sys; from fcm.scene.apart import child; child(sys.argv[1:])"
 
@@ -95,21 +94,6 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     return arrays | {NAMES: np.array([name for name, *_ in all_of_it], dtype=str)}
 
 
-def _mtx(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
-    """The matrix of a MatrixMarket file."""
-    from scipy.io import mminfo, mmread
-
-    rows, columns, entries, form, kind, _ = mminfo(path)
-    dense = form == "array"
-    if kind == "pattern":
-        raise ValueError("it is a pattern: places of entries without their values")
-    if not dense and entries * SHORTEST_ENTRY > path.stat().st_size:
-        raise ValueError(f"it says that it has {entries} entries, and is too short for them")
-    if 8 * (rows * columns if dense else rows) > largest:
-        raise MemoryError
-    return {"matrix": mmread(path)}
-
-
 def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     """Matrices of a Nastran output4 file."""
     try:
@@ -135,7 +119,7 @@ def _unusable(path: Path, error: Exception) -> DataFileError:
     )
 
 
-_READERS = {".mat": _mat, ".mtx": _mtx, ".op4": _op4}
+_READERS = {".mat": _mat, ".op4": _op4}
 
 
 def _parts(value: Any) -> list[tuple[str, Any]]:

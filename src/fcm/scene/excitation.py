@@ -120,7 +120,8 @@ def _distribution(section: Section, files: Files, dofs: Names | None) -> FloatAr
     try:
         found = read_vector(value, files)
     except DataFileError as error:
-        section.wrong("file", str(error))
+        for fault in error.faults:
+            section.wrong("file", fault)
         return None
     if dofs is not None and found.size != len(dofs):
         section.wrong("file", f"has {found.size} numbers, but the structure has {len(dofs)} rows")

@@ -13,6 +13,7 @@ from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.matrix_market import read_matrix_market
 from fcm.scene.model import FloatArray
 
 ENDINGS = (".npz", ".mat", ".mtx", ".op4")
@@ -80,6 +81,10 @@ def _from_parts(arrays: Arrays) -> Any:
     return matrix
 
 
+def _from_mtx(path: Path, chosen: str, files: Files) -> dict[str, Any]:
+    return {chosen or "matrix": read_matrix_market(path, files)}  # it has no name
+
+
 def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
     arrays = read_apart(path, [chosen] if chosen else [], files)
     sparse = [name.removesuffix(".row") for name in arrays if name.endswith(".row")]
@@ -130,4 +135,4 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
     return matrix
 
 
-_READERS = {".npz": _from_npz} | dict.fromkeys(ENDINGS[1:], _from_others)
+_READERS = {".npz": _from_npz, ".mtx": _from_mtx} | dict.fromkeys((".mat", ".op4"), _from_others)

@@ -24,7 +24,8 @@ def row_names(section: Section, files: Files, rows: int | None) -> Names | None:
             with files.opened(value) as path:
                 value = names_of(_text(path))
         except DataFileError as error:
-            section.wrong(key, str(error))
+            for fault in error.faults:
+                section.wrong(key, fault)
             return None
     names = checked_names(section, value)
     if names is not None and rows is not None and len(names) != rows:

@@ -117,7 +117,8 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
         try:
             matrix = read_matrix(value, files)
         except DataFileError as error:
-            section.wrong(key, str(error))
+            for fault in error.faults:
+                section.wrong(key, fault)
             return None
     else:
         matrix = _from_rows(section, key, value)

@@ -9,41 +9,37 @@ Cincinnati.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 from math import ceil, pi
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.scene.errors import choices, quoted
+from fcm.scene.errors import choices, counted, quoted
 from fcm.scene.files import DataFileError
+from fcm.scene.number_text import NUMBER, fault_of_number, number_in
 from fcm.scene.uff_contents import contents, units
+from fcm.scene.uff_datasets import Dataset, read_datasets
 
 DIRECTIONS = {1: ("",), 3: ("x", "y", "z"), 6: ("x", "y", "z", "rx", "ry", "rz")}  # by values per node
 NORMAL_MODE, AT_NODES = 2, 1
 MOTIONS = (8, 11, 12)  # displacement, velocity, acceleration: each is a mode's shape
 REAL, COMPLEX = (2, 4), (5, 6)  # data types: of single and of double precision
 PER_LINE = 6  # reals on a line
+PER_LINE_OF_INTEGERS = 8
 SAME = 1e-6  # relative difference of what two datasets write of one mode
 COLLINEAR = 1e-4  # of a shape: what may be left when it is turned to be real
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?\d+)?")
+_NUMBER = re.compile(NUMBER, re.ASCII)
+_BESIDE = re.compile(rf"{NUMBER}(?:(?=[-+]){NUMBER})*", re.ASCII)  # a sign alone may part them
 
 
-class _Layout(NamedTuple):
-    """Lines of a dataset, counted from 0."""
-
-    definition: int
-    reals: int | None  # where they begin; None after as many lines as the integers take
-    nodes: int  # where the nodes begin, if the reals have their place
-    frequency: int  # among the reals; then modal mass, viscous and hysteretic damping at these places
-    rest: tuple[int, int, int]
-
-
-_LAYOUTS = {"55": _Layout(5, None, 0, 0, (1, 2, 3)), "2414": _Layout(8, 11, 13, 1, (3, 4, 5))}
+# Where the frequency, the modal mass, the viscous and the hysteretic damping are among the reals.
+_PLACES = {"55": (0, 1, 2, 3), "2414": (1, 3, 4, 5)}
+_REALS_2414 = 12  # on two lines
 
 
 @dataclass(frozen=True)
@@ -59,12 +55,14 @@ def read_uff(path: Path) -> dict[str, Any]:
 
     A modal mass or a damping that is zero in every mode was not given, and is left out.
     """
-    datasets = list(_datasets(path))
-    blocks = [(kind, block) for kind, block in datasets if _is_normal_mode(kind, block)]
-    if not blocks:
-        raise ValueError(f"it has no normal mode; {contents(datasets)}")
+    datasets = read_datasets(path)
+    of_modes = [one for one in datasets if _is_normal_mode(one)]
+    if not of_modes:
+        raise DataFileError(
+            f"{quoted(path.name)} cannot be read: it has no normal mode; {contents(datasets)}"
+        )
     faults: list[str] = []
-    modes = [_intact(kind, block, number, faults) for number, (kind, block) in enumerate(blocks, 1)]
+    modes = [_intact(one, number, faults) for number, one in enumerate(of_modes, 1)]
     dofs = list(dict.fromkeys(dof for mode in modes for dof in mode.values))
     found: dict[str, Any] = {
         "dofs": dofs,
@@ -81,76 +79,100 @@ def read_uff(path: Path) -> dict[str, Any]:
     return found | {key: np.array(values) for key, values in given.items() if any(values)}
 
 
-def _datasets(path: Path) -> Iterator[tuple[str, list[str]]]:
-    """The number and the lines of each dataset, between its marks -1; ValueError if the last has no end."""
-    block: list[str] | None = None
-    for line in path.read_text("latin-1").split("\n"):
-        if line.strip() != "-1":
-            if block is not None:
-                block.append(line.rstrip("\r"))
-            continue
-        if block:
-            yield block[0].strip(), block[1:]
-        block = [] if block is None else None
-    if block and any(line.strip() for line in block):
-        raise ValueError(f"it is cut off within a dataset {quoted(block[0].strip(), 6)}, without a -1 behind")
-
-
-def _is_normal_mode(kind: str, block: Sequence[str]) -> bool:
+def _is_normal_mode(one: Dataset) -> bool:
     """Whether a dataset is a normal mode: real, or complex by its numbers only."""
-    layout = _LAYOUTS.get(kind)
-    if layout is None or len(block) <= layout.definition + 2:
+    if one.kind not in _PLACES or (one.kind == "2414" and not one.at_nodes()):
         return False
-    if kind == "2414" and _integers(block[2])[:1] != [AT_NODES]:
-        return False
-    definition = _integers(block[layout.definition])
+    definition = one.integers(one.definition())
     if len(definition) != 6:
         return False
     _, analysis, _, result, data, _ = definition
     return analysis == NORMAL_MODE and result in MOTIONS and data in REAL + COMPLEX
 
 
-def _intact(kind: str, block: Sequence[str], number: int, faults: list[str]) -> _Mode:
+def _intact(one: Dataset, number: int, faults: list[str]) -> _Mode:
     try:
-        return _mode(_LAYOUTS[kind], block)
-    except (IndexError, ValueError) as error:
+        return _mode(one)
+    except _DamagedError as error:
         faults.append(f"its normal mode {number} is damaged: {error}")
         return _Mode(0.0, 0.0, 0.0, {})
 
 
-def _mode(layout: _Layout, block: Sequence[str]) -> _Mode:
-    *_, data, per_node = _integers(block[layout.definition])
+class _DamagedError(ValueError):
+    """What is wrong with a mode."""
+
+
+class _Rows:
+    """The lines of a dataset that are not blank, one after the other."""
+
+    def __init__(self, one: Dataset, begin: int) -> None:
+        self.one = one
+        self.left = [at for at in range(begin, len(one.lines)) if one.lines[at].strip()][::-1]
+
+    def next(self, what: str) -> int:
+        """The next line."""
+        if not self.left:
+            raise _DamagedError(f"there is no line of {what}")
+        return self.left.pop()
+
+    def integers(self, what: str) -> list[int]:
+        """The whole numbers of the next line."""
+        at = self.next(what)
+        if not (found := self.one.integers(at)):
+            raise _DamagedError(f"{self._line(at)} is no line of whole numbers")
+        return found
+
+    def reals(self, count: int, what: str) -> list[float]:
+        """As many numbers as are wanted, from as many lines as they take."""
+        found: list[float] = []
+        for _ in range(ceil(count / PER_LINE)):
+            at = self.next(what)
+            found += _reals(self.one.lines[at], self._line(at))
+            if len(found) >= count:
+                break
+        if len(found) != count:
+            of = f"{self._line(at)} has {counted(len(found), 'number')}"
+            raise _DamagedError(f"{of}, and {what} {'is' if count == 1 else 'are'} {count}")
+        return found
+
+    def _line(self, at: int) -> str:
+        return f"line {self.one.first + at}, {quoted(self.one.lines[at].strip(), 40)},"
+
+
+def _mode(one: Dataset) -> _Mode:
+    begin = one.definition()
+    *_, data, per_node = one.integers(begin)
     if per_node not in DIRECTIONS:
-        raise ValueError(f"it has {per_node} values at a node; those read are 1, 3 and 6")
-    if layout.reals is None:
-        at = layout.definition + 1
-        begin, nodes = at + 1, at + 1 + ceil(_integers(block[at])[1] / PER_LINE)
+        raise _DamagedError(f"it has {per_node} values at a node; those read are 1, 3 and 6")
+    rows = _Rows(one, begin + 1)
+    if one.kind == "55":
+        integers, count = [*rows.integers("the mode's numbers"), 0, 0][:2]
+        for _ in range(ceil((2 + integers) / PER_LINE_OF_INTEGERS) - 1):
+            rows.integers("the mode's numbers")
     else:
-        begin, nodes = layout.reals, layout.nodes
-    reals = [*_reals(block[begin:nodes]), *[0.0] * PER_LINE]
-    mass, viscous, hysteretic = (reals[place] for place in layout.rest)
-    values = _values(block[nodes:], per_node, data in COMPLEX)
-    return _Mode(reals[layout.frequency], mass, viscous + hysteretic / 2, values)
+        for _ in range(2):
+            rows.integers("the mode's numbers")
+        count = _REALS_2414
+    reals = rows.reals(count, "the mode's frequency and damping")
+    places = _PLACES[one.kind]
+    if len(reals) <= places[0]:
+        raise _DamagedError("it has no frequency")
+    hertz, mass, viscous, hysteretic = ([*reals, *[0.0] * PER_LINE][place] for place in places)
+    return _Mode(hertz, mass, viscous + hysteretic / 2, _values(rows, per_node, data in COMPLEX))
 
 
-def _values(lines: Sequence[str], per_node: int, pairs: bool) -> dict[str, complex]:
+def _values(rows: _Rows, per_node: int, pairs: bool) -> dict[str, complex]:
     """The mode's value at each degree of freedom."""
     values: dict[str, complex] = {}
-    count = per_node * (2 if pairs else 1)
-    filled = [line for line in lines if line.strip()]
-    start = 0
-    while start < len(filled):
-        node = _integers(filled[start])[0]
-        numbers: list[float] = []
-        start += 1
-        while len(numbers) < count and start < len(filled):
-            numbers += _reals(filled[start : start + 1])
-            start += 1
-        parts = (
-            zip(numbers[::2], numbers[1::2], strict=True) if pairs else ((value, 0.0) for value in numbers)
-        )
-        names = (f"{node}{direction}" for direction in DIRECTIONS[per_node])
-        values |= zip(names, (complex(*part) for part in parts), strict=True)
+    while rows.left:
+        node = rows.integers("nodes")[0]
+        if f"{node}{DIRECTIONS[per_node][0]}" in values:
+            raise _DamagedError(f"it has node {node} twice")
+        numbers = rows.reals(per_node * (2 if pairs else 1), f"the values at node {node}")
+        parts = numbers[::2] if pairs else numbers
+        imaginary = numbers[1::2] if pairs else [0.0] * per_node
+        for direction, real, imag in zip(DIRECTIONS[per_node], parts, imaginary, strict=True):
+            values[f"{node}{direction}"] = complex(real, imag)
     return values
 
 
@@ -186,16 +208,12 @@ def _twice(frequency: npt.NDArray[np.float64], shapes: npt.NDArray[np.float64]) 
     return said
 
 
-def _integers(line: str) -> list[int]:
-    fields = (line[start : start + 10].strip() for start in range(0, len(line), 10))
-    return [int(field) for field in fields if field]
-
-
-def _reals(lines: Sequence[str]) -> list[float]:
-    """Numbers beside each other, with or without space between; a FORTRAN exponent may be a D."""
-    found = []
-    for line in lines:
-        if _NUMBER.sub("", line).strip():
-            raise ValueError(f"{line.strip()[:40]!r} is no line of numbers")
-        found += [float(text.upper().replace("D", "E")) for text in _NUMBER.findall(line)]
-    return found
+def _reals(line: str, where: str) -> Iterator[float]:
+    """Numbers beside each other, with space between, or a sign alone."""
+    for word in line.split():
+        numbers = _NUMBER.findall(word) if _BESIDE.fullmatch(word) else [word]
+        for text in numbers:
+            value = number_in(text)
+            if value is None:
+                raise _DamagedError(f"{where} is no line of numbers: {fault_of_number(text)}")
+            yield value

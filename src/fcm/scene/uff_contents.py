@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from fcm.scene.errors import quoted
-
-Dataset = tuple[str, list[str]]  # number, lines
+from fcm.scene.uff_datasets import Dataset
 
 DATASETS = {
     "15": "nodes", "18": "coordinate systems", "55": "data at nodes", "56": "data at elements",
@@ -30,10 +30,10 @@ FUNCTIONS = {
 def contents(datasets: Iterable[Dataset]) -> str:
     """What the datasets are, those of a kind together.
 
-    >>> contents([("151", [""]), ("15", [""]), ("15", [""])])
+    >>> contents([Dataset("151", (), 3), Dataset("15", (), 6), Dataset("15", (), 9)])
     'it holds 151 ×1: header; 15 ×2: nodes'
     """
-    counts = Counter((kind[:6], _what(kind, block)) for kind, block in datasets)
+    counts = Counter((one.kind[:6], _what(one)) for one in datasets)
     if not counts:
         return "it holds no dataset at all"
     return "it holds " + "; ".join(f"{kind} ×{count}: {what}" for (kind, what), count in counts.items())
@@ -41,27 +41,28 @@ def contents(datasets: Iterable[Dataset]) -> str:
 
 def units(datasets: Iterable[Dataset]) -> list[str]:
     """A note on the units of a file, if it says them."""
-    for kind, block in datasets:
-        if kind == "164" and block and (name := block[0][10:30].strip()) and name.isprintable():
+    for one in datasets:
+        name = one.lines[0][10:30].strip() if one.kind == "164" and one.lines else ""
+        if name and name.isprintable():
             return [f"modal: the units of the file are {quoted(name)}; the scene's must be the same"]
     return []
 
 
-def _what(kind: str, block: Sequence[str]) -> str:
+def _what(one: Dataset) -> str:
     """One dataset in words."""
-    number = kind.rstrip("b")[:6].strip()
-    if number.startswith("58"):
-        return FUNCTIONS.get(_integer(block, 5, 0), "functions")
-    line = {"55": 5, "2414": 8}.get(number)
-    if line is None:
+    number = one.kind.rstrip("b")[:6].strip()
+    if number == "58":
+        return FUNCTIONS.get(_first(one, 5), "functions")
+    if number not in ("55", "2414") or one.kind.endswith("b"):
         return DATASETS.get(number, "of another kind")
-    analysis = ANALYSES.get(_integer(block, line, 1), "of another analysis")
-    result = RESULTS.get(_integer(block, line, 3), "values")
-    where = "" if number == "55" or _integer(block, 2, 0) == 1 else ", not at nodes"
+    definition = [*one.integers(one.definition()), -1, -1, -1, -1]
+    analysis = ANALYSES.get(definition[1], "of another analysis")
+    result = RESULTS.get(definition[3], "values")
+    where = "" if number == "55" or one.at_nodes() else ", not at nodes"
     return f"{analysis}, {result}{where}"
 
 
-def _integer(block: Sequence[str], line: int, place: int) -> int:
-    """An integer of a line; -1 where there is none."""
-    words = block[line].split() if len(block) > line else []
-    return int(words[place]) if len(words) > place and words[place].isdecimal() else -1
+def _first(one: Dataset, line: int) -> int:
+    """The whole number that a line begins with; -1 where there is none."""
+    word = (one.lines[line].split() if len(one.lines) > line else [])[:1]
+    return int(word[0]) if word and re.fullmatch(r"\d{1,9}", word[0], re.ASCII) else -1

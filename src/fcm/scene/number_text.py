@@ -1,0 +1,50 @@
+"""Numbers as text files have them: read as a whole or not at all, and what is wrong with the others."""
+
+from __future__ import annotations
+
+import re
+from math import isfinite
+
+from fcm.scene.errors import quoted
+
+_DIGITS = r"(?:\d+\.?\d*|\.\d+)"
+_EXPONENT = r"[EeDdQq][-+]?\d+"
+_LETTERLESS = r"(?:\d+\.\d*|\.\d+)[-+]\d{3}(?![\d.])"  # Fortran leaves the letter out for three digits
+NUMBER = rf"[-+]?(?:{_LETTERLESS}|{_DIGITS}(?:{_EXPONENT})?)"
+_WHOLE = re.compile(NUMBER, re.ASCII)
+_PARTS = re.compile(rf"([-+]?{_DIGITS})(?:[EeDdQq]?([-+]?\d+))?", re.ASCII)
+_COMMA = re.compile(rf"([-+]?\d+),(\d+)((?:{_EXPONENT})?)", re.ASCII)
+_BEHIND = re.compile(rf"({NUMBER})\s*(\S.*)", re.ASCII)
+
+
+def number_in(text: str) -> float | None:
+    """The number that a text is as a whole, in decimal or with an exponent; None if it is none, or too large.
+
+    Fortran's exponents are read: those of double precision with a D, and those of three digits without a
+    letter. What is no finite number is None: nan, inf, and what exceeds 1.8e308.
+
+    >>> number_in("1.5"), number_in("-1.005D+02"), number_in("1.50162-101"), number_in("100,5")
+    (1.5, -100.5, 1.50162e-101, None)
+    """
+    if not _WHOLE.fullmatch(text):
+        return None
+    mantissa, exponent = _PARTS.fullmatch(text).groups("0")  # type: ignore[union-attr]
+    value = float(f"{mantissa}e{exponent}")
+    return value if isfinite(value) else None
+
+
+def fault_of_number(text: str) -> str:
+    """What is wrong with a text that is not read as a number, and what to write where that is plain.
+
+    >>> fault_of_number("100,5"), fault_of_number("100.5kN")
+    ('"100,5" has a decimal comma: write 100.5', '"100.5kN" has "kN" behind the number: write 100.5')
+    >>> fault_of_number("nan"), fault_of_number("1e999")
+    ('"nan" is not a number', '"1e999" is too large for a number: 1.8e308 is the largest')
+    """
+    if _WHOLE.fullmatch(text):
+        return f"{quoted(text)} is too large for a number: 1.8e308 is the largest"
+    if match := _COMMA.fullmatch(text):
+        return f"{quoted(text)} has a decimal comma: write {match[1]}.{match[2]}{match[3]}"
+    if ((match := _BEHIND.fullmatch(text)) and match[2][0].isalpha()) or (match and match[2][0] in "%°[("):
+        return f"{quoted(text)} has {quoted(match[2])} behind the number: write {match[1]}"
+    return f"{quoted(text)} is not a number"
