@@ -3,9 +3,47 @@
 import numpy as np
 import pytest
 
+from fcm.continuation import follow
 from fcm.continuation.newton import Newton
+from fcm.harmonic.condensed import CondensedOptions
 from fcm.harmonic.system import System
 from fcm.scene import scene_from_dict
+
+WHOLE, CONDENSED = CondensedOptions(fewest=10**9), CondensedOptions(fewest=1, share=1.0)
+
+
+def strip(contacts=12, kept=(1.0, 1.6, 2.7), stiff=(14.0, 40.0, 90.0)):
+    """Smooth shapes on a row of contacts; the modes of high frequency hardly yield beside them."""
+    x = (np.arange(contacts) + 0.5) / contacts
+    frequency = [*kept, *stiff]
+    shapes = [
+        np.ravel((np.cos(np.pi * i * x), np.sin(np.pi * (i + 0.5) * x)), "F") for i in range(len(frequency))
+    ]
+    dofs = [f"x{i}" for i in range(2 * contacts)]
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": dofs,
+                "frequency": frequency,
+                "damping": [0.02] * len(frequency),
+                "shapes": [shape.tolist() for shape in shapes],
+            },
+            "contact": [
+                {
+                    "name": f"c{i}",
+                    "tangential": dofs[2 * i],
+                    "normal": dofs[2 * i + 1],
+                    "mu": 0.4,
+                    "k_u": 1.5 / contacts,
+                    "k_v": 2.0 / contacts,
+                    "n_0": 1.2 / contacts,
+                }
+                for i in range(contacts)
+            ],
+            "force": [{"dof": "x0", "amplitude": 1.2}, {"dof": "x1", "amplitude": 0.4}],
+            "response": {"frequency": [0.9, 1.5]},
+        }
+    )
 
 
 def many_contacts(contacts=36, modes=4):
@@ -53,8 +91,9 @@ def jacobian(system, z):
 
 
 @pytest.mark.parametrize("harmonics", [(1,), (1, 3)])
-def test_direction_and_orientation_are_those_of_the_whole_system(harmonics):
-    system = System(many_contacts(), harmonics)
+@pytest.mark.parametrize("scene", [many_contacts, strip])
+def test_direction_and_orientation_are_those_of_the_whole_system(scene, harmonics):
+    system = System(scene(), harmonics, condensing=CONDENSED)
     problem = system.balance()
     assert 0 < problem.rank < problem.unknowns
     rng = np.random.default_rng(2)
@@ -73,7 +112,7 @@ def test_direction_and_orientation_are_those_of_the_whole_system(harmonics):
 
 
 def test_points_of_the_curve_balance():
-    system = System(many_contacts(), (1,))
+    system = System(many_contacts(), (1,), condensing=CONDENSED)
     newton = Newton(system.balance())
     z = np.append(np.zeros(newton.problem.unknowns), 0.9)
     newton.problem.measure(np.append(np.ones(newton.problem.unknowns), 0.9))
@@ -83,3 +122,38 @@ def test_points_of_the_curve_balance():
     assert newton.correct(1.0)
     newton.problem.evaluate(newton.z)
     assert np.abs(newton.problem.residual).max() < 1e-12 * np.abs(newton.z).max()
+
+
+def stations(condensing, harmonics):
+    system = System(strip(), harmonics, condensing=condensing)
+    problem = system.balance()
+    at = (1.0, 1.15, 1.3)
+    path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), stations=at)
+    return problem, path.z[np.isin(path.parameter, at)]
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
+def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics):
+    condensed, found = stations(CONDENSED, harmonics)
+    whole, expected = stations(WHOLE, harmonics)
+    modes, parts = 3, 1 + 2 * len(harmonics)
+    assert (condensed.rank, whole.rank) == (modes * parts, 0)
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+    whole.evaluate(expected[1])
+    assert whole.differs()  # contacts slip or separate
+
+
+def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
+    left_out = CondensedOptions(fewest=1, share=1.0, stiff=1e9, corrections=1)
+    problem, found = stations(left_out, (1,))
+    expected = stations(WHOLE, (1,))[1]
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+    assert problem.condensed is not None and problem.condensed.modes > 3
+
+
+def test_many_contacts_make_no_arrays_of_ports_by_ports():
+    problem = System(strip(contacts=80), (1, 2, 3)).balance()
+    assert problem.rank == 3 * 7
+    assert np.asarray(problem.seen.G_re).size == 0
+    assert np.asarray(problem.jacobian).shape == (problem.unknowns, 1)

@@ -11,11 +11,12 @@ cdef class Bordered:
     cdef public double[::1] row
     cdef public double[::1] tangent
     cdef public double orientation
+    cdef double sign
     cdef public double moved
     cdef public int evaluations
     cdef double[::1] guess
     cdef double[::1] delta
-    cdef double[::1] closing
+    cdef double[::1] weights
     cdef bint factor(self) except -1
     cdef int solve(self) except -1
     cdef double step(self) except -1

@@ -30,11 +30,11 @@ class Bordered:
     def __init__(self, problem: Problem) -> None:
         size = problem.unknowns + 1
         self.problem = problem
-        self.solver = Solver(problem.rank + 1 if problem.rank else size)
-        self.delta, self.closing = np.zeros(size), np.zeros(size)
+        self.solver = Solver(0 if problem.rank else size)
+        self.delta, self.weights = np.zeros(size), np.zeros(size)
         self.z, self.guess = np.zeros(size), np.zeros(size)
         self.scale, self.row, self.tangent = np.ones(size), np.zeros(size), np.zeros(size)
-        self.orientation, self.moved = 0.0, 0.0
+        self.orientation, self.sign, self.moved = 0.0, 0.0, 0.0
         self.evaluations = 0
 
     @cython.cfunc
@@ -48,17 +48,17 @@ class Bordered:
         self.problem.evaluate(self.z)
         self.evaluations += 1
         if self.problem.rank:
-            for i in range(n + 1):
-                self.closing[i] = self.row[i] / self.scale[i]
-            self.problem.condense(self.closing, self.solver.matrix)
-            return self.solver.factor()
+            self.sign = self.problem.factor(self.row, self.scale)
+            return self.sign != 0.0
         for i in range(n):
             unit = 1.0 / self.scale[i]
             for j in range(n + 1):
                 self.solver.matrix[i, j] = self.problem.jacobian[i, j] * (self.scale[j] * unit)
         for j in range(n + 1):
             self.solver.matrix[n, j] = self.row[j]
-        return self.solver.factor()
+        found: cython.bint = self.solver.factor()
+        self.sign = self.solver.orientation
+        return found
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -73,14 +73,7 @@ class Bordered:
             for i in range(n + 1):
                 self.delta[i] = self.solver.right[i]
             return 0
-        for i in range(n):
-            self.delta[i] *= self.scale[i]
-        self.problem.shorten(self.delta, self.solver.right)
-        self.solver.solve()
-        self.problem.lengthen(self.solver.right, self.delta)
-        for i in range(n + 1):
-            self.delta[i] /= self.scale[i]
-        return 0
+        return self.problem.solve(self.delta)
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -108,7 +101,7 @@ class Bordered:
         size: cython.Py_ssize_t = self.problem.unknowns + 1
         total: cython.double = 0.0
         moved: cython.double = 0.0
-        self.orientation = self.solver.orientation
+        self.orientation = self.sign
         for i in range(size):
             self.delta[i] = 0.0
         self.delta[size - 1] = 1.0
@@ -135,7 +128,7 @@ class Bordered:
         n: cython.Py_ssize_t = self.problem.unknowns
         least: cython.double = 0.0
         step: cython.double = 0.0
-        error: cython.double[::1] = self.closing
+        error: cython.double[::1] = self.weights
         if self.problem.rank:
             return ROUNDINGS * EPS * sqrt(n + 1)
         for i in range(n + 1):

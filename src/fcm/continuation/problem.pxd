@@ -26,6 +26,5 @@ cdef class Problem:
     cpdef int refine(self, bint exact) except -1
     cpdef bint differs(self) except -1
     cpdef int report(self, double[::1] z, double[::1] direction) except -1
-    cpdef int condense(self, double[::1] row, double[:, ::1] matrix) except -1
-    cpdef int shorten(self, double[::1] right, double[::1] out) except -1
-    cpdef int lengthen(self, double[::1] reduced, double[::1] out) except -1
+    cpdef double factor(self, double[::1] row, double[::1] scale) except -2.0
+    cpdef int solve(self, double[::1] right) except -1

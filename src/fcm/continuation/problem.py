@@ -23,8 +23,8 @@ class Problem:
     `probe` the residual alone.
     scale (n + 1,): by `measure`. margin, kind, angle (margins,): by `bound`. output, growth (outputs,): by
     `report`.
-    rank: 0; or the size of a smaller system to which that of Newton's method is condensed. Then jacobian is
-    (n, 1), the derivative by the parameter alone; see `condense`.
+    rank: 0; or the size of a smaller system to which that of Newton's method is condensed, by the problem
+    itself. Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
     group: margins of so many in a row belong together; one is never the same as one of another group.
     boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
     coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
@@ -94,19 +94,14 @@ class Problem:
         return 0
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
-        """Fill the condensed matrix (rank + 1, rank + 1) of the equations closed by a row (n + 1,)."""
-        return 0
+    @cython.exceptval(-2.0, check=False)
+    def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
+        """Factor the equations, as evaluated last and closed by a row (n + 1,), in units of scale (n + 1,);
+        the sign of the determinant, 0 if they are singular."""
+        return 0.0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """The right side (rank + 1,) of the condensed system for one (n + 1,)."""
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        """The solution (n + 1,) from that of the condensed system with the right side given last."""
+    def solve(self, right: cython.double[::1]) -> cython.int:
+        """Replace a right side (n + 1,) of the equations factored last by the solution, in their units."""
         return 0

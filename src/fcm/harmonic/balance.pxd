@@ -25,4 +25,5 @@ cdef class Balance(Problem):
     cdef double[::1] by_frequency
     cdef int forces_at(self, double[::1] z, double[::1] direction) except -1
     cdef int pushed(self, double[::1] z, bint tangents) except -1
+    cdef int slopes(self) except -1
     cdef int contact_forces(self, double[::1] z, bint tangents) except -1

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import sqrt
 
-from fcm.harmonic.condensed import Condensed, rank_of
+from fcm.harmonic.condensed import Condensed
 from fcm.harmonic.displacement import Displacements
 from fcm.structure.receptance import Receptance
 
@@ -44,10 +44,9 @@ class Balance(Problem):
         shown: Displacements,
         counted: npt.NDArray[np.float64],
         span: cython.double,
-        flexibility: npt.NDArray[np.float64],
+        rank: cython.int = 0,
     ) -> None:
         width: cython.int = 2 + 4 * seen.count
-        rank: cython.int = rank_of(seen.modes, seen.ports, seen.count)
         Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs, rank)
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
         self.group = laws[0].margins if laws else 0  # all contacts have as many
@@ -56,7 +55,7 @@ class Balance(Problem):
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
-        self.condensed = Condensed(seen, flexibility, np.asarray(self.tangent)) if rank else None
+        self.condensed: Condensed | None = None  # of the rank, whoever gives that
         self.largest, self.size = np.zeros(2 * len(laws)), np.zeros(2 * len(laws))
 
     @cython.ccall
@@ -64,7 +63,7 @@ class Balance(Problem):
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         i: cython.Py_ssize_t
         self.pushed(z, True)
-        slope(self.seen, self.force, self.load, self.by_frequency)
+        self.slopes()
         for i in range(self.unknowns):
             self.jacobian[i, 0 if self.rank else self.unknowns] = self.by_frequency[i]
         if not self.rank:
@@ -87,7 +86,10 @@ class Balance(Problem):
         first: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
         self.contact_forces(z, tangents)
-        times_forces(self.seen, self.force, self.residual)
+        if self.condensed is None:
+            times_forces(self.seen, self.force, self.residual)
+        else:
+            np.asarray(self.residual)[:] = self.condensed.answer.to(np.asarray(self.force))
         for p in range(2 * self.contacts):
             first = (p // 2) * self.width + p % 2
             self.residual[first] -= self.share * self.rest[p]
@@ -98,6 +100,22 @@ class Balance(Problem):
             self.residual[i] += z[i]
         for i in range(self.unknowns + 1):
             self.evaluated[i] = z[i]
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def slopes(self) -> cython.int:
+        """Derivatives by the frequency."""
+        p: cython.Py_ssize_t
+        row: cython.Py_ssize_t
+        if self.condensed is None:
+            slope(self.seen, self.force, self.load, self.by_frequency)
+            return 0
+        np.asarray(self.by_frequency)[:] = self.condensed.answer.rate(np.asarray(self.force))
+        for p in range(2 * self.contacts):
+            row = (p // 2) * self.width + 2 + 4 * self.seen.driven + 2 * (p % 2)
+            self.by_frequency[row] -= self.load * self.seen.dX_re[p]
+            self.by_frequency[row + 1] -= self.load * self.seen.dX_im[p]
         return 0
 
     @cython.cfunc
@@ -223,23 +241,16 @@ class Balance(Problem):
         return False
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
+    @cython.exceptval(-2.0, check=False)
+    def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
         by = np.asarray(self.jacobian)[:, 0]
         assert self.condensed is not None
-        self.condensed.matrix(np.asarray(row), by, np.asarray(matrix))
-        return 0
+        sign: cython.double = self.condensed.factor(np.asarray(row), by, np.asarray(scale))
+        return sign
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
+    def solve(self, right: cython.double[::1]) -> cython.int:
         assert self.condensed is not None
-        self.condensed.shorten(np.asarray(right), np.asarray(out))
-        return 0
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        assert self.condensed is not None
-        self.condensed.lengthen(np.asarray(reduced), np.asarray(out))
+        self.condensed.solve(np.asarray(right))
         return 0

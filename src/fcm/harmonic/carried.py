@@ -168,6 +168,6 @@ class _Way(Replaced):
         self.at[:-1] = np.asarray(z)[:-1]
         return self.inner
 
-    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
+    def factor(self, row: FloatArray, scale: FloatArray) -> float:
         np.asarray(self.inner.jacobian)[:] = self.jacobian
-        return super().condense(row, matrix)
+        return super().factor(row, scale)

@@ -1,105 +1,199 @@
-r"""The linear system of a balance of many contacts on few modes, condensed to the modes.
+r"""The linear system of a balance of many contacts, condensed to the modes that matter beside the contacts.
 
-The contacts' displacements answer to their forces through the modes only: the Jacobian of a balance is
-1 + A B with A (unknown, rank), B (rank, unknown); rank is the number of modes times 1 + 2 harmonics. With
-b the derivative by the parameter and a row that closes the system,
+The contacts' displacements answer to their forces through the modes: the Jacobian of a balance is 1 + A B
+with A (unknown, rank), B (rank, unknown); rank is the number of modes times 1 + 2 harmonics. With b the
+derivative by the parameter and a row that closes the system,
 
     [1 + A B   b  ] [x]   [r]            [1 + B A      B b     ] [y]   [B r      ]
     [row'      rho] [l] = [s]    is      [-row' A   rho - row' b] [l] = [s - row' r],   x = r - A y - b l,
 
 of the same determinant, and no worse conditioned at a fold.
+
+A mode far above the harmonics is stiff beside the contacts: with modal mass 1 and shapes p on the ports it
+yields sum_p k_p p^2 / (w^2 - (H omega)^2) of what a contact's spring k does. Modes of which that is small are
+left out of the condensed system, which then is solved again for what the whole one, with all modes, leaves.
+Each time that shrinks by about the greatest share left out, so that the solution is that of all modes.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from fcm.continuation.dense import Solver
+from fcm.harmonic.modal_answer import ModalAnswer
 from fcm.scene.model import FloatArray
 from fcm.structure.receptance import Receptance
 
-FEWEST = 200  # unknowns from which on this is faster
-SHARE = 0.7  # and of the number of ports, how many modes at most
+
+@dataclass(frozen=True)
+class CondensedOptions:
+    """What of a balance is condensed, and how well it is solved.
+
+    fewest: unknowns from which on that is faster. share: of the unknowns, how large the condensed system
+    may be. stiff: how much a mode that is left out may yield beside the contacts. accurate: of the last
+    correction of a solution, relative to it. corrections: after so many that do not come to that, twice as
+    many modes are taken.
+    """
+
+    fewest: int = 200
+    share: float = 0.5
+    stiff: float = 0.03
+    accurate: float = 1e-8
+    corrections: int = 12
 
 
-def rank_of(modes: int, ports: int, harmonics: int) -> int:
+OPTIONS = CondensedOptions()  # where nothing else is said
+
+
+def yielding(
+    natural: FloatArray, shapes: FloatArray, flexibility: FloatArray, springs: FloatArray, highest: float
+) -> FloatArray:
+    """How much each mode (mode,) yields up to a frequency, beside springs (port,); inf if it resonates.
+
+    >>> yielding(np.array([1.0, 10.0]), np.ones((2, 1)), np.diag([1.0, 0.01]), np.array([3.0]), 5.0)
+    array([ inf, 0.04])
+    """
+    apart = natural**2 - highest**2
+    moving = np.divide(1.0, apart, out=np.full(natural.size, np.inf), where=apart > 0.0)
+    size = np.maximum(moving, np.abs(flexibility).sum(axis=1))
+    share = np.square(shapes) @ springs
+    return np.where(share > 0.0, size, 0.0) * np.where(share > 0.0, share, 1.0)
+
+
+def condensed_size(
+    yields: FloatArray, ports: int, harmonics: int, options: CondensedOptions = OPTIONS
+) -> int:
     """Size of the condensed system; 0 where the system itself is to be solved."""
-    few = modes < SHARE * ports and ports * (1 + 2 * harmonics) >= FEWEST
-    return modes * (1 + 2 * harmonics) if few else 0
+    parts = 1 + 2 * harmonics
+    rank = int((yields > options.stiff).sum()) * parts
+    unknowns = ports * parts
+    return rank if yields.size and unknowns >= options.fewest and rank < options.share * unknowns else 0
 
 
 class Condensed:
-    """A and B of a balance as it was evaluated last.
+    """A balance as it was evaluated last, closed by a row: `factor`, then `solve`.
 
     Unknowns are sorted into parts (part, port): the mean, and real and imaginary part of each harmonic;
     those of the condensed system are (part, mode).
     """
 
-    def __init__(self, seen: Receptance, flexibility: FloatArray, tangent: FloatArray) -> None:
-        self.seen, self.tangent = seen, tangent
-        self.flexibility = flexibility
-        shapes = np.asarray(seen.shapes)
-        self.shapes, self.ports, self.modes = shapes, shapes.shape[1], shapes.shape[0]
-        self.parts, self.contacts = 1 + 2 * seen.count, self.ports // 2
+    def __init__(
+        self,
+        seen: Receptance,
+        flexibility: FloatArray,
+        tangent: FloatArray,
+        yields: FloatArray,
+        options: CondensedOptions = OPTIONS,
+    ) -> None:
+        self.answer, self.tangent, self.options = ModalAnswer(seen, flexibility), tangent, options
+        self.seen, self.flexibility, self.parts = seen, flexibility, 1 + 2 * seen.count
+        self.contacts, self.width = tangent.shape[0], tangent.shape[1]
         part = [np.arange(2), *(2 + 4 * j + i + np.array([0, 2]) for j in range(seen.count) for i in (0, 1))]
         self.order = np.concatenate(part)  # of the unknowns of a contact: part by part, u and v
-        self.pairs = np.ascontiguousarray(shapes.T.reshape(self.contacts, 2, self.modes))
-        width = 2 * self.parts
-        at = np.arange(self.contacts)[None, :, None] * width + self.order.reshape(self.parts, 1, 2)
-        self.place = at.reshape(self.parts, self.ports)  # of each part and port among the unknowns
-        rank = self.parts * self.modes
-        # forces on ports by modes (contact, part port part, mode), the same by part, and the modes' answer
-        self.kept = (
-            np.empty((self.contacts, 2 * self.parts**2, self.modes)),
-            np.empty((self.parts, self.ports, rank)),
-            np.empty((self.parts, self.modes, rank)),
-        )
-        self.ordered, self.b, self.r = tangent, np.empty((0, 0)), np.empty((0, 0))
-        self.row, self.rho = self.b, 0.0
+        self.ranking = np.argsort(-yields, kind="stable")
+        self.take(int((yields > options.stiff).sum()))
+        self.by, self.row, self.scale = np.empty(0), np.empty(0), np.empty(0)
 
-    def matrix(self, row: FloatArray, by: FloatArray, out: FloatArray) -> None:
-        """Fill (rank + 1, rank + 1); row (unknown + 1,), by (unknown,) the derivative by the parameter."""
-        parts, rank = self.parts, self.parts * self.modes
-        self.b, self.row, self.rho = by[self.place], row[self.place], float(row[-1])
-        self.ordered = self.tangent[:, self.order[:, None], self.order]
-        by_mode, blocks, product = self.kept  # to have this much memory anew takes longer than to fill it
-        np.matmul(self.ordered.reshape(self.contacts, -1, 2), self.pairs, out=by_mode)
-        sorted_by_part = by_mode.reshape(self.contacts, parts, 2, rank).transpose(1, 0, 2, 3)
-        blocks.reshape(parts, self.contacts, 2, rank)[:] = sorted_by_part
-        self.answer(blocks, product)
-        out[:rank, :rank] = product.reshape(rank, rank)
-        out[np.arange(rank), np.arange(rank)] += 1.0
-        out[:rank, rank] = self.image(self.b).ravel()
-        out[rank, :rank] = -(self.row @ self.shapes.T).ravel()
-        out[rank, rank] = self.rho - np.vdot(self.row, self.b)
+    def take(self, modes: int) -> None:
+        """Condense to so many modes."""
+        self.modes = modes = min(max(modes, 1), self.ranking.size)
+        self.rank, chosen = self.parts * modes, np.sort(self.ranking[:modes])
+        self.chosen, self.shapes = chosen, np.ascontiguousarray(self.answer.shapes[chosen])
+        self.mean = self.flexibility[np.ix_(chosen, chosen)]
+        self.pairs = np.ascontiguousarray(self.shapes.T.reshape(self.contacts, 2, modes))
+        self.solver = Solver(self.rank + 1)
+        # forces on ports by modes: by contact (part port part, mode), by port; and on the modes
+        self.by_mode = np.empty((self.contacts, 2 * self.parts**2, modes))
+        self.by_port = np.empty((2 * self.contacts, self.parts * self.rank))
+        self.on_modes = np.empty((modes, self.parts, self.rank))
 
-    def shorten(self, right: FloatArray, out: FloatArray) -> None:
-        """Right side (rank + 1,) of one (unknown + 1,)."""
-        self.r = right[self.place]
-        out[:-1] = self.image(self.r).ravel()
-        out[-1] = right[-1] - np.vdot(self.row, self.r)
+    def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
+        """Of the system closed by a row (unknown + 1,) in units of scale; the sign of its determinant, or 0.
 
-    def lengthen(self, short: FloatArray, out: FloatArray) -> None:
-        """The solution (unknown + 1,) from that of the condensed system."""
-        y = short[:-1].reshape(self.parts, self.modes)
-        out[self.place] = self.r - y @ self.shapes - self.b * short[-1]
-        out[-1] = short[-1]
-
-    def image(self, x: FloatArray) -> FloatArray:
-        """B x: what the modes answer to the forces' change, (part, mode)."""
-        pairs = x.reshape(self.parts, self.contacts, 2).swapaxes(0, 1).reshape(self.contacts, -1, 1)
-        force = (self.ordered @ pairs)[:, :, 0]
-        blocks = force.reshape(self.contacts, self.parts, 2).swapaxes(0, 1)
-        out = np.empty((self.parts, self.modes, 1))
-        self.answer(blocks.reshape(self.parts, self.ports, 1), out)
-        return out[:, :, 0]
-
-    def answer(self, force: FloatArray, out: FloatArray) -> None:
-        """Fill (part, mode, column) with what the modes answer to forces on the ports (part, port, column).
-
-        One product for both parts of a harmonic: sums of whole arrays would take longer than it.
+        by (unknown,) is the derivative by the parameter.
         """
-        re, im = (np.asarray(c)[:, :, None] * self.shapes for c in (self.seen.c_re, self.seen.c_im))
-        both = np.concatenate((np.concatenate((re, -im), 2), np.concatenate((im, re), 2)), 1)
-        columns, count = out.shape[2], len(both)
-        out[0] = self.flexibility @ (self.shapes @ force[0])
-        np.matmul(both, force[1:].reshape(count, -1, columns), out=out[1:].reshape(count, -1, columns))
+        self.by, self.row, self.scale = by.copy(), row / scale, scale.copy()
+        self.ordered = self.tangent[:, self.order[:, None], self.order]
+        return self._factor()
+
+    def _factor(self) -> float:
+        rank, matrix = self.rank, np.asarray(self.solver.matrix)
+        np.matmul(self.ordered.reshape(self.contacts, -1, 2), self.pairs, out=self.by_mode)
+        sorted_by_port = self.by_mode.reshape(self.contacts, self.parts, 2, rank).transpose(0, 2, 1, 3)
+        self.by_port.reshape(self.contacts, 2, self.parts, rank)[:] = sorted_by_port
+        np.matmul(self.shapes, self.by_port, out=self.on_modes.reshape(self.modes, -1))
+        self._answered(self.on_modes, matrix)
+        matrix[np.arange(rank), np.arange(rank)] += 1.0
+        column = np.empty((rank, 1))
+        self._answered(self._pushed(self.by)[:, :, None], column)
+        matrix[:rank, rank] = column[:, 0]
+        row, last = self._parts(self.row[:-1]), self.row[-1]
+        matrix[rank, :rank] = -(row @ self.shapes.T).ravel()
+        matrix[rank, rank] = last - self.row[:-1] @ self.by
+        return self.solver.orientation if self.solver.factor() else 0.0
+
+    def solve(self, right: FloatArray) -> None:
+        """Replace a right side (unknown + 1,) in units of scale by the solution in these."""
+        whole = right.copy()
+        whole[:-1] *= self.scale[:-1]
+        found = self._condensed(whole)
+        left = whole - self._image(found)
+        count, size = 0, np.abs(found / self.scale).max()
+        while np.isfinite(size) and self.modes < self.ranking.size:
+            change = self._condensed(left)
+            found += change
+            moved, size = np.abs(change / self.scale).max(), np.abs(found / self.scale).max()
+            if not moved > self.options.accurate * size:
+                break
+            count += 1
+            left = whole - self._image(found)
+            if count % self.options.corrections == 0:
+                self.take(2 * self.modes)
+                self._factor()
+        right[:] = found / self.scale
+
+    def _condensed(self, right: FloatArray) -> FloatArray:
+        """The solution with the modes that are condensed to alone."""
+        reduced, column = np.asarray(self.solver.right), np.empty((self.rank, 1))
+        self._answered(self._pushed(right[:-1])[:, :, None], column)
+        reduced[:-1], reduced[-1] = column[:, 0], right[-1] - self.row[:-1] @ right[:-1]
+        self.solver.solve()
+        y = reduced[:-1].reshape(self.parts, self.modes)
+        found = np.empty_like(right)
+        found[:-1] = right[:-1] - self.by * reduced[-1]
+        found[self.answer.place] -= y @ self.shapes
+        found[-1] = reduced[-1]
+        return found
+
+    def _image(self, x: FloatArray) -> FloatArray:
+        """What the whole system makes of x (unknown + 1,)."""
+        out = np.empty_like(x)
+        out[:-1] = x[:-1] + self.answer.to(self._forces(x[:-1])) + self.by * x[-1]
+        out[-1] = self.row @ x
+        return out
+
+    def _forces(self, x: FloatArray) -> FloatArray:
+        """The change of the contacts' forces, (unknown,)."""
+        force: FloatArray = (self.tangent @ x.reshape(self.contacts, self.width, 1)).ravel()
+        return force
+
+    def _parts(self, x: FloatArray) -> FloatArray:
+        return x[self.answer.place]  # type: ignore[no-any-return]
+
+    def _pushed(self, x: FloatArray) -> FloatArray:
+        """Forces on the modes (mode, part) of what the contacts' forces change by x (unknown,)."""
+        return self.shapes @ self._parts(self._forces(x)).T
+
+    def _answered(self, force: FloatArray, out: FloatArray) -> None:
+        """Fill the first columns of out with the modes' answer to forces (mode, part, column)."""
+        m, columns = self.modes, force.shape[2]
+        c_re, c_im = np.asarray(self.seen.c_re)[:, self.chosen], np.asarray(self.seen.c_im)[:, self.chosen]
+        out[:m, :columns] = self.mean @ force[:, 0]
+        for j in range(self.seen.count):
+            re, im = force[:, 1 + 2 * j], force[:, 2 + 2 * j]
+            first = (1 + 2 * j) * m
+            c, d = c_re[j][:, None], c_im[j][:, None]
+            out[first : first + m, :columns] = c * re - d * im
+            out[first + m : first + 2 * m, :columns] = d * re + c * im

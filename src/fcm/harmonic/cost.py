@@ -11,7 +11,7 @@ from collections.abc import Callable
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.continuation.front import Front
-from fcm.harmonic.condensed import rank_of
+from fcm.harmonic.condensed import condensed_size
 from fcm.harmonic.system import System
 from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
 
@@ -27,12 +27,11 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
-    contacts, modes = len(system.scene.contacts), len(system.linear.natural)
-    width = 2 + 4 * harmonics
+    contacts, width = len(system.scene.contacts), 2 + 4 * harmonics
     unknowns = contacts * width
-    rank = rank_of(modes, 2 * contacts, harmonics)
+    rank = condensed_size(system.yields, 2 * contacts, harmonics, system.condensing)
     solved = rank or unknowns
-    cubes = float(solved) ** 3 + 6.0 * modes * unknowns * rank
+    cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
     each = CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes
     return evaluations * each
 

@@ -36,16 +36,11 @@ class Homotopy(Problem):
         return 0
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
-        return self.inner.condense(row, matrix)
+    @cython.exceptval(-2.0, check=False)
+    def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
+        return self.inner.factor(row, scale)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        return self.inner.shorten(right, out)
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        return self.inner.lengthen(reduced, out)
+    def solve(self, right: cython.double[::1]) -> cython.int:
+        return self.inner.solve(right)

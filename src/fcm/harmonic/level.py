@@ -84,16 +84,11 @@ class Level(Problem):
         self.balance.load = z[self.unknowns]
 
     @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def condense(self, row: cython.double[::1], matrix: cython.double[:, ::1]) -> cython.int:
-        return self.balance.condense(row, matrix)
+    @cython.exceptval(-2.0, check=False)
+    def factor(self, row: cython.double[::1], scale: cython.double[::1]) -> cython.double:
+        return self.balance.factor(row, scale)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
-    def shorten(self, right: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        return self.balance.shorten(right, out)
-
-    @cython.ccall
-    @cython.exceptval(-1, check=False)
-    def lengthen(self, reduced: cython.double[::1], out: cython.double[::1]) -> cython.int:
-        return self.balance.lengthen(reduced, out)
+    def solve(self, right: cython.double[::1]) -> cython.int:
+        return self.balance.solve(right)

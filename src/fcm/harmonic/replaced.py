@@ -14,14 +14,8 @@ class Replaced(Problem):
         Problem.__init__(self, inner.unknowns, margins, outputs, inner.rank)
         self.inner = inner
 
-    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
-        self.inner.condense(row, matrix)
-        return 0
+    def factor(self, row: FloatArray, scale: FloatArray) -> float:
+        return float(self.inner.factor(row, scale))
 
-    def shorten(self, right: FloatArray, out: FloatArray) -> int:
-        self.inner.shorten(right, out)
-        return 0
-
-    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
-        self.inner.lengthen(reduced, out)
-        return 0
+    def solve(self, right: FloatArray) -> int:
+        return int(self.inner.solve(right))

@@ -69,18 +69,14 @@ class Share(Problem):
         self.kind[:], self.angle[:] = self.balance.kind, self.balance.angle
         return 0
 
-    def condense(self, row: FloatArray, matrix: FloatArray) -> int:
-        """The condensed system."""
+    def factor(self, row: FloatArray, scale: FloatArray) -> float:
+        """The system closed by a row."""
         self.balance.jacobian[:, :] = self.jacobian
-        return int(self.balance.condense(row, matrix))
+        return float(self.balance.factor(row, scale))
 
-    def shorten(self, right: FloatArray, out: FloatArray) -> int:
-        """A right-hand side of it."""
-        return int(self.balance.shorten(right, out))
-
-    def lengthen(self, reduced: FloatArray, out: FloatArray) -> int:
-        """Unknowns from its solution."""
-        return int(self.balance.lengthen(reduced, out))
+    def solve(self, right: FloatArray) -> int:
+        """Its solution for a right side."""
+        return int(self.balance.solve(right))
 
     def _placed(self, z: FloatArray) -> FloatArray:
         self.at_omega[:-1] = np.asarray(z)[:-1]

@@ -51,8 +51,6 @@ def _least_receptance(system: System) -> FloatArray:
     seen, found = system.looking.seen, []
     for omega in system.scene.frequency_range:
         seen.at(omega)
-        j = seen.driven
-        G = np.asarray(seen.G_re)[j] + 1j * np.asarray(seen.G_im)[j]
-        found.append(np.abs(G.diagonal()))
+        found.append(np.abs(seen.between(seen.driven).diagonal()))
     least: FloatArray = np.min(found, axis=0)
     return least

@@ -106,9 +106,7 @@ def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
 
 
 def _receptance(balance: Balance) -> ComplexArray:
-    j = balance.seen.driven
-    G: ComplexArray = np.asarray(balance.seen.G_re)[j] + 1j * np.asarray(balance.seen.G_im)[j]
-    return G
+    return balance.seen.between(balance.seen.driven)
 
 
 class _Forces:

@@ -16,6 +16,7 @@ from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation.front import Front
 from fcm.harmonic.balance import Balance
+from fcm.harmonic.condensed import OPTIONS, Condensed, CondensedOptions, condensed_size, yielding
 from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
 from fcm.harmonic.level import Level
@@ -40,13 +41,14 @@ class System:
     """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
 
     With one harmonic the curves can be followed by a table: each point is then corrected with the closed
-    form, unless that is left out.
+    form, unless that is left out. condensing says when the linear systems of many contacts are condensed.
     """
 
     scene: Scene
     harmonics: tuple[int, ...] = (1,)
     table: Table | None = None
     corrected: bool = True
+    condensing: CondensedOptions = OPTIONS
     linear: Linear = field(init=False)
     coarse: CoefficientLaw = field(init=False)  # the table's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
@@ -133,14 +135,28 @@ class System:
     def balance(self) -> Balance:
         """A problem of its own, to be followed in the frequency."""
         low, high = self.scene.frequency_range
-        seen = self.linear.receptance(np.array(self.harmonics, dtype=np.float64))
-        shown, linear = _displacements(self.linear, seen), self.linear
-        balance = Balance(seen, self.laws(), shown, linear.counted, high - low, linear.flexibility)
+        linear, yields = self.linear, self.yields
+        rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensing)
+        seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
+        shown = _displacements(linear, seen)
+        balance = Balance(seen, self.laws(), shown, linear.counted, high - low, rank)
+        if rank:
+            tangent, options = np.asarray(balance.tangent), self.condensing
+            balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, options)
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
         balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
         return balance
+
+    @property
+    def yields(self) -> FloatArray:
+        """How much each mode (mode,) yields beside the contacts; none of a ring's."""
+        linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
+        if type(linear) is not Linear:
+            return np.zeros(0)
+        springs = self.springs(stuck=True)
+        return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
     def laws(self) -> list[Law]:
         """The contacts."""

@@ -32,6 +32,8 @@ def jacobian_of(balance: Balance) -> FloatArray:
 def answer(balance: Balance, force: FloatArray) -> FloatArray:
     """G F: the displacements (unknown, ...) that forces (unknown, ...) of the contacts take away."""
     seen, (mean, first) = balance.seen, places(balance)
+    if balance.condensed is not None:
+        return balance.condensed.answer.to(force)
     out = np.empty_like(force)
     out[mean] = np.asarray(seen.static) @ force[mean]
     G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)

@@ -37,9 +37,10 @@ class Linear:
     counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
     adrift: npt.NDArray[np.bool_]  # (mode,) rigid-body modes that no closed contact holds
 
-    def receptance(self, harmonics: FloatArray) -> Receptance:
-        """The structure seen from its ports at some harmonics."""
-        seen = Receptance(self.ports, self.natural, self.damping, self.force, self.static, harmonics)
+    def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
+        """The structure seen from its ports at some harmonics, with the sums over its modes or without."""
+        ends = self.force, self.static, harmonics, summed
+        seen = Receptance(self.ports, self.natural, self.damping, *ends)
         seen.grows(self.square)
         return seen
 

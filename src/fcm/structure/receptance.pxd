@@ -17,6 +17,7 @@ cdef class Receptance:
     cdef public double[::1] square_im
     cdef public double[:, ::1] static
     cdef public bint large
+    cdef public bint summed
     cdef public double[:, ::1] pairs
     cdef public double[:, ::1] total
     cdef public double[:, ::1] weights

@@ -24,7 +24,8 @@ class Receptance:
     """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (port,) the answer to the
     external forces, which act at the harmonic number `driven` of the list; c, s (harmonic, mode) the
     compliances of the modes and their derivatives; static (port, port) for mean forces; force_re, force_im,
-    slope_re, slope_im (mode,) the external forces at omega and their derivatives."""
+    slope_re, slope_im (mode,) the external forces at omega and their derivatives. Without summed, for many
+    ports, none of G is made: what asks for answers to forces goes by the modes."""
 
     def __init__(
         self,
@@ -34,6 +35,7 @@ class Receptance:
         force: npt.NDArray[np.complex128],
         static: npt.NDArray[np.float64],
         harmonics: npt.NDArray[np.float64],
+        summed: cython.bint = True,
     ) -> None:
         modes, ports = shapes.shape
         count = len(harmonics)
@@ -46,12 +48,13 @@ class Receptance:
         self.square_re, self.square_im = np.zeros(modes), np.zeros(modes)
         self.slope_re, self.slope_im = np.zeros(modes), np.zeros(modes)
         self.weights = np.zeros((4 * count, modes))  # those of the modes, and the sums over these, as one
-        self.sum = np.zeros((4 * count * ports, ports))
+        self.summed, size = summed, ports if summed else 0
+        self.sum = np.zeros((4 * count * size, size))
         self.c_re, self.c_im, self.s_re, self.s_im = np.asarray(self.weights).reshape(4, count, modes)
-        sums = np.asarray(self.sum).reshape(4, count, ports, ports)
+        sums = np.asarray(self.sum).reshape(4, count, size, size)
         self.G_re, self.G_im, self.dG_re, self.dG_im = sums
         low, self.large = np.tril_indices(ports), modes * ports * ports > LARGE
-        pairs = MANY <= ports and not self.large
+        pairs = MANY <= ports and summed and not self.large
         self.pairs = (
             np.ascontiguousarray(shapes[:, low[0]] * shapes[:, low[1]]) if pairs else np.zeros((0, 0))
         )
@@ -75,6 +78,13 @@ class Receptance:
             self.forces()
             self.external()
 
+    def between(self, j: int) -> npt.NDArray[np.complex128]:
+        """G (port, port) of the harmonic number j of the list, at the frequency put last."""
+        if self.summed:
+            return np.asarray(self.G_re)[j] + 1j * np.asarray(self.G_im)[j]  # type: ignore[no-any-return]
+        c, shapes = np.asarray(self.c_re)[j] + 1j * np.asarray(self.c_im)[j], np.asarray(self.shapes)
+        return (shapes.T * c) @ shapes  # type: ignore[no-any-return]
+
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def at(self, omega: cython.double) -> cython.int:
@@ -85,9 +95,9 @@ class Receptance:
         self.omega = omega
         self.compliances()
         self.forces()
-        if self.large:
+        if self.large and self.summed:
             self.large_sums()
-        for j in range(0 if self.large else self.count):
+        for j in range(self.count if self.summed and not self.large else 0):
             if self.ports >= MANY:
                 self.sums_by_pairs(j)
             else:

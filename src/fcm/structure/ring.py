@@ -52,7 +52,7 @@ class RingLinear(Linear):
         ports, dofs = (np.concatenate([getattr(one, name) for one in waves]) for name in ("ports", "dofs"))
         return attached_to(*(np.concatenate((shapes.real, shapes.imag)) for shapes in (ports, dofs)))
 
-    def receptance(self, harmonics: FloatArray) -> Receptance:
+    def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """The sector seen from its ports at some harmonics."""
         waves = [self._real(int(h)) for h in harmonics]
         return TravellingReceptance(waves, self.static, harmonics)
