@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
+from fcm.scene.doubtful import questions
 from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, read_base, read_loads
@@ -120,6 +121,7 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
     parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule))
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts)))
+    notes = [*notes, *questions(top, parts, draft.swept)]
     return {
         "title": top.text("title", ""),
         "units": read_units(top),

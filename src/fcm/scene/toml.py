@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from fcm.scene.errors import SceneError
+from fcm.scene.toml_slips import slips
 
 PATIENCE = 2.0  # [s] without a byte from a pipe before that is said
 LARGEST_FILE = 10_000_000  # bytes; a larger one is a mistake, or its modes belong in a file of their own
@@ -29,8 +30,8 @@ def read_toml(path: Path, source: str) -> dict[str, Any]:
         raise SceneError(source, [f"line {line}: unknown key, of more than {DEEPEST_KEY} parts"])
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(source, [f"is not valid TOML: {error}"]) from None
+    except tomllib.TOMLDecodeError:
+        raise SceneError(source, slips(text)) from None
     except RecursionError:
         raise SceneError(source, ["is nested too deeply"]) from None
     except ValueError:  # Python's limit on the digits of an integer, or of a date
@@ -60,7 +61,10 @@ def _text(path: Path, source: str) -> str:
         if max(len(pipe or b""), path.stat().st_size) > LARGEST_FILE:
             raise SceneError(source, ["is too large; keep its modes in a file of their own"])
         return (path.read_bytes() if pipe is None else pipe).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SceneError(source, ["is not UTF-8 text, so it is not a TOML file"]) from None
+    except UnicodeDecodeError as error:
+        what = "is not UTF-8 text, so it is not a TOML file: save it as UTF-8"
+        if error.object[:2] not in (b"\xff\xfe", b"\xfe\xff") and b"\0" not in error.object:
+            what += f"; the first letter that is none is in line {error.object.count(10, 0, error.start) + 1}"
+        raise SceneError(source, [what]) from None
     except OSError as error:
         raise SceneError(source, [f"cannot be read: {error.strerror or error}"]) from None

@@ -1,0 +1,85 @@
+"""Numbers that may be and are hardly meant: a ratio in percent, an angle in degrees. They are asked about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.errors import bare, shown
+from fcm.scene.rules import as_float
+from fcm.scene.section import Parts, Section
+from fcm.scene.sweep import Swept
+
+LARGEST_RATIO = 1.0  # from here on a mode does not vibrate, and more likely a percentage is meant
+LARGEST_ANGLE = 2.001 * pi  # [rad] a whole turn, and what "6.2832" is more
+
+
+def questions(top: Section, parts: Parts, swept: Sequence[Swept]) -> list[str]:
+    """A question for each key whose number is hardly meant as it is; the scene is read as it says.
+
+    damping ratios and loss factors of 1 and more, and angles of more than a turn that are given in rad.
+    """
+    found = [_of_ratio(*one) for one in _ratios(top, parts, swept)]
+    found += [_of_angle(*one) for one in _angles(top, swept)]
+    return [one for one in found if one]
+
+
+def _ratios(top: Section, parts: Parts, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float], str]]:
+    """Key, values, and what the values are parts of."""
+    structure = top.data.get("structure")
+    if isinstance(structure, Mapping):
+        damping = structure.get("damping")
+        if isinstance(damping, Mapping):
+            yield "structure.damping.loss_factor", _numbers(damping.get("loss_factor")), "the stiffness"
+        else:
+            yield "structure.damping", _numbers(damping), "critical damping"
+    elif (damping := parts["modal"].get("damping")) is not None:
+        given = top.data["modal"].get("damping") if isinstance(top.data.get("modal"), Mapping) else None
+        yield "modal.damping", _numbers(damping.tolist() if given is None else given), "critical damping"
+    for one in swept:
+        if one.key.startswith("modal.damping"):
+            yield _of_sweep(one), one.values, "critical damping"
+
+
+def _angles(top: Section, swept: Sequence[Swept]) -> Iterator[tuple[str, Iterable[float]]]:
+    for table, key in (("force", "phase"), ("base", "phase"), ("start", "angle")):
+        value = top.data.get(table)
+        if isinstance(value, Mapping):
+            yield f"{table}.{key}", _numbers(value.get(key))
+        elif isinstance(value, list | tuple):
+            for index, one in enumerate(value):
+                yield f"{table}[{index}].{key}", _numbers(one.get(key) if isinstance(one, Mapping) else None)
+    for one in swept:
+        if one.key.endswith(".phase"):
+            yield _of_sweep(one), one.values
+
+
+def _of_sweep(one: Swept) -> str:
+    return f"sweep.{bare(one.key)}"
+
+
+def _numbers(value: Any) -> list[float]:
+    """A number, or those of a list."""
+    several = value if isinstance(value, list | tuple | np.ndarray) else [value]
+    return [number for one in several if (number := as_float(one)) is not None and np.isfinite(number)]
+
+
+def _of_ratio(key: str, values: Iterable[float], whole: str) -> str:
+    value = max(values, default=0.0)
+    if value < LARGEST_RATIO:
+        return ""
+    meant = f"if {shown(value)} % is meant, write {value / 100.0:.12g}"
+    return f"{key}: is {shown(value)} right? It is {100.0 * value:.12g} % of {whole}; {meant}"
+
+
+def _of_angle(key: str, values: Iterable[float]) -> str:
+    value = max(values, default=0.0, key=abs)
+    if abs(value) < LARGEST_ANGLE:
+        return ""
+    swept = key.startswith("sweep.")
+    meant = "write it in rad" if swept else f'write "{shown(value)}deg"'
+    turns = f"{shown(value)} rad are {abs(value) / (2.0 * pi):.3g} turns"
+    return f"{key}: is {shown(value)} right? {turns}; if degrees are meant, {meant}"

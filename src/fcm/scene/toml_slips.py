@@ -1,0 +1,370 @@
+"""Slips of the hand in a TOML file: which line, and what to write there.
+
+Each remedy is tried: it is named only if the file with it is read further than without, so that what a
+message says to write can be written. The search then goes on behind it, until the file is read or nothing
+helps.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from fcm.scene.errors import quoted
+from fcm.scene.keys import LISTS
+from fcm.scene.names import at_node
+
+MOST_SLIPS = 30  # that are looked for in one file
+MOST_READ = 5_000_000  # characters that are read to try remedies, in all: some seconds
+LONGEST_MENDED = 2_000  # characters of a line in which a remedy is looked for
+LONGEST_LINE = 70  # characters that are shown of a line; of a longer one those that change
+LINES_BEFORE = 3  # lines before the one where reading ends, on which a bracket may be missing
+
+_AT = re.compile(r" \(at (?:line (\d+), column (\d+)|end of document)\)$")
+_ASIDE = re.compile(
+    r'"(?:[^"\\\n]|\\.)*"|\'[^\'\n]*\'|#.*'
+)  # strings and comments, in which nothing is mended
+_QUOTES = dict.fromkeys(map(ord, "“”„‟«»″"), '"') | dict.fromkeys(map(ord, "‘’‚‛‹›′"), "'")
+_SIGNS = {0x2212: "-", 0x2013: "-", 0x2014: "-", 0xFF0C: ",", 0xFF1D: "=", 0x066B: "."}
+_BLANKS = dict.fromkeys([0xA0, 0x2007, 0x2009, 0x202F, 0x3000], " ") | dict.fromkeys([0xFEFF, 0x200B], "")
+_WORDS = {"True": "true", "TRUE": "true", "False": "false", "FALSE": "false", "yes": "true", "no": "false",
+          "on": "true", "off": "false", "Inf": "inf", "NaN": "nan"}  # fmt: skip
+_NOTHING = ("None", "null", "nil")  # a key without a value is left out
+_KEY = r'(?:[\w-]+|"[^"]*")(?:\s*\.\s*(?:[\w-]+|"[^"]*"))*'
+_ODD_KEY = r"""^(\s*)([^\s"'=\[{][^"'=\[{]*?)\s*="""
+_VALUE = re.compile(r"([=\[,]\s*)([A-Za-z_0-9][\w:.*/\\ -]*?)(?=\s*(?:[,\]}#]|$))")
+_NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d+)?(?:[eE][-+]?\d+)?")
+
+Remedy = Callable[[str], str]  # of a line: the line as it ought to be, or the same
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """Where reading ends, and why."""
+
+    line: int | None  # from 0; None at the end of the document
+    column: int
+    why: str
+
+
+def slips(text: str) -> list[str]:
+    """What is wrong with a text that is no TOML, a sentence for each slip; empty for one that is.
+
+    >>> slips("mu = .3\\nname = shroud")
+    ['line 1, mu = .3: a number begins with a digit: write mu = 0.3', 'line 2, name = shroud: a word needs quotes: write name = "shroud"']
+    """  # noqa: E501
+    lines, said = text.replace("\r\n", "\n").split("\n"), list[str]()
+    slip: _Slip | None = None
+    tries = iter(range(MOST_READ // max(len(text), 1)))
+    while (fault := _fault(lines)) and len(said) < MOST_SLIPS:
+        found: tuple[_Slip | str, list[str]] | None = _twice(lines, fault) or _mended(lines, fault, tries)
+        if found is None:
+            said.append(_unmended(lines, fault))
+            break
+        one, lines = found
+        if isinstance(one, _Slip) and slip is not None and slip.line == one.line and slip.new == one.old:
+            one, said = replace(one, why=f"{slip.why}, {one.why}", old=slip.old), said[:-1]
+        slip = one if isinstance(one, _Slip) else None
+        said.append(str(one))
+    return said
+
+
+@dataclass(frozen=True)
+class _Slip:
+    """A line, from 0, as it is and as it ought to be."""
+
+    line: int
+    why: str
+    old: str
+    new: str
+
+    def __str__(self) -> str:
+        old, new = self.old, self.new
+        if max(len(old.strip()), len(new.strip())) > LONGEST_LINE:
+            old, new = _changed(old, new)
+        written = " and ".join(_plain(line) for line in new.split("\n"))
+        return f"line {self.line + 1}, {_plain(old)}: {self.why}: write {written}"
+
+
+def _fault(lines: list[str]) -> _Fault | None:
+    try:
+        tomllib.loads("\n".join([*lines, ""]))
+    except tomllib.TOMLDecodeError as error:
+        why = str(error)
+        if (match := _AT.search(why)) and match[1]:
+            return _Fault(int(match[1]) - 1, int(match[2]), why[: match.start()])
+        return _Fault(None, 0, why[: match.start()] if match else why)
+    except (RecursionError, ValueError):  # of a number or a date that comes of a remedy
+        return _Fault(0, 0, "")
+    return None
+
+
+def _mended(lines: list[str], fault: _Fault, tries: Iterator[int]) -> tuple[_Slip, list[str]] | None:
+    """What to say of a slip, and the lines without it."""
+    last = min(len(lines) - 1 if fault.line is None else fault.line, len(lines) - 1)
+    before = [at for at in range(last, -1, -1) if lines[at].strip()][: LINES_BEFORE + 1]
+    before = [at for at in before if len(lines[at]) <= LONGEST_MENDED]
+    for at in before:
+        for why, remedy in _REMEDIES:
+            line = remedy(lines[at])
+            if line == lines[at] or next(tries, None) is None:
+                continue
+            others = [*lines[:at], *line.split("\n"), *lines[at + 1 :]]
+            if _further(others, _fault(others), lines, fault):
+                return _Slip(at, why, lines[at], line), others
+    return None
+
+
+def _further(lines: list[str], fault: _Fault | None, before: list[str], first: _Fault) -> bool:
+    """Whether the text is read further with a remedy: less of it is left."""
+    if fault is None:
+        return True
+    if fault.line is None or first.line is None:
+        return first.line is None and fault.line is not None
+    return _left(lines, fault.line, fault.column) < _left(before, first.line, first.column)
+
+
+def _left(lines: list[str], line: int, column: int) -> tuple[int, int]:
+    return len(lines) - line, (len(lines[line]) if line < len(lines) else 0) - column
+
+
+def _changed(old: str, new: str) -> tuple[str, str]:
+    """The parts in which two lines differ, with the words that they are within."""
+    begin = next(
+        (i for i, (a, b) in enumerate(zip(old, new, strict=False)) if a != b), min(len(old), len(new))
+    )
+    begin = max((old.rfind(mark, 0, begin) for mark in " ,[{="), default=-1) + 1
+    ends = zip(reversed(old[begin:]), reversed(new[begin:]), strict=False)
+    same = next((i for i, (a, b) in enumerate(ends) if a != b), 0)
+    return old[begin : len(old) - same][:LONGEST_LINE], new[begin : len(new) - same][:LONGEST_LINE]
+
+
+def _plain(line: str) -> str:
+    """A line as a message shows it."""
+    line = line.strip()
+    short = line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]}..."
+    return short if short.isprintable() else quoted(short, LONGEST_LINE + 3)
+
+
+def _unmended(lines: list[str], fault: _Fault) -> str:
+    """What is said where no remedy helps."""
+    what = next((said for word, said in _REASONS.items() if word in fault.why), "it is not TOML")
+    if fault.line is None:
+        return f"at its end: {what}"
+    line = lines[fault.line] if fault.line < len(lines) else ""
+    return f"line {fault.line + 1}, {_plain(line)}: {what} (column {fault.column})"
+
+
+def _twice(lines: list[str], fault: _Fault) -> tuple[str, list[str]] | None:
+    """A table or a key that is there a second time; it is then left out."""
+    if not any(word in fault.why for word in ("twice", "overwrite", "mutate", "Duplicate")):
+        return None
+    at = min(fault.line if fault.line is not None else len(lines) - 1, len(lines) - 1)
+    at = next((i for i in range(at, -1, -1) if lines[i].strip()), at)
+    line = lines[at].strip()
+    name = line.strip("[] \t")
+    others = [*lines[:at], f"# {lines[at]}", *lines[at + 1 :]]
+    if line.startswith("["):
+        same = [
+            i for i in range(at) if lines[i].strip().startswith("[") and lines[i].strip().strip("[] ") == name
+        ]
+        place = f": it is in line {same[0] + 1} already" if same else ""
+        if name in LISTS:
+            right = [f"[[{name}]]" if i in (at, *same) else one for i, one in enumerate(lines)]
+            said = f"there may be several of them{place}: write [[{name}]] each time"
+            return f"line {at + 1}, {_plain(line)}: {said}", right
+        header = next((i for i in range(at + 1, len(lines)) if lines[i].strip().startswith("[")), len(lines))
+        others = [*lines[:at], *(f"# {one}" for one in lines[at:header]), *lines[header:]]
+        return (
+            f"line {at + 1}, {_plain(line)}: the table is there twice{place}: put its keys together",
+            others,
+        )
+    key = line.partition("=")[0].strip()
+    table = next((i for i in range(at - 1, -1, -1) if lines[i].lstrip().startswith("[")), -1)
+    same = [i for i in range(table + 1, at) if lines[i].partition("=")[0].strip() == key]
+    place = f"it is in line {same[0] + 1} already" if same else "it is there already"
+    said = f"the key {_plain(key)} is there twice: {place}: leave one out"
+    if "Duplicate" in fault.why:
+        said = "a key is there twice within { }: leave one out, and put a name with a dot in quotes"
+    return f"line {at + 1}, {_plain(line)}: {said}", others
+
+
+def _outside(mend: Remedy) -> Remedy:
+    """A remedy that leaves strings and comments alone."""
+
+    def remedy(line: str) -> str:
+        parts, end = [], 0
+        for aside in _ASIDE.finditer(line):
+            parts += [mend(line[end : aside.start()]), aside[0]]
+            end = aside.end()
+        return "".join([*parts, mend(line[end:])])
+
+    return remedy
+
+
+def _code(line: str) -> tuple[str, str]:
+    """A line without its comment, and that."""
+    comment = next((one.start() for one in _ASIDE.finditer(line) if one[0].startswith("#")), len(line))
+    code = line[:comment].rstrip()
+    return code, line[len(code) :]
+
+
+def _substituted(pattern: str, by: str) -> Remedy:
+    found = re.compile(pattern)
+    return _outside(lambda part: found.sub(by, part))
+
+
+def _of_code(pattern: str, by: str) -> Remedy:
+    """Of a line without its comment as a whole."""
+    found = re.compile(pattern)
+
+    def remedy(line: str) -> str:
+        code, comment = _code(line)
+        return found.sub(by, code) + comment
+
+    return remedy
+
+
+def _translated(table: dict[int, str]) -> Remedy:
+    return lambda line: line.translate(table)
+
+
+def _header(line: str) -> str:
+    """[name], or [[name]] of what there may be several of."""
+    code, comment = _code(line)
+    match = re.fullmatch(rf"\s*\[*\s*({_KEY})\s*\]*", code)
+    if not match or not code.lstrip().startswith("["):
+        return line
+    return (f"[[{match[1]}]]" if match[1] in LISTS else f"[{match[1]}]") + comment
+
+
+def _decimal_commas(line: str) -> str:
+    """Commas within numbers: alone behind "=", or in a list whose numbers are parted by more than a comma."""
+
+    def mend(part: str) -> str:
+        return re.sub(r"(?<![\w.,])([-+]?\d+),(\d+(?:[eE][-+]?\d+)?)(?![\w.])", r"\1.\2", part)
+
+    return _outside(lambda part: re.sub(r"\s*;\s*", ", ", mend(part)))(line)
+
+
+def _value_of_word(match: re.Match[str]) -> str:
+    """A word as a value: true and false, a number without its unit, or a string."""
+    before, word = match[1], match[2].rstrip()
+    if word in _WORDS:
+        return before + _WORDS[word]
+    if word in ("true", "false", "inf", "nan", *_NOTHING) or all(map(_NUMBER.fullmatch, word.split())):
+        return match[0]
+    return before + (f"'{word}'" if "\\" in word else f'"{word}"')
+
+
+def _units(line: str) -> str:
+    """Numbers without what stands behind them; an angle in degrees is a string."""
+
+    def mend(match: re.Match[str]) -> str:
+        if at_node(match[0].strip()):
+            return match[0]
+        if match[2] == "%":
+            return f"{float(match[1]) / 100.0:.12g}"
+        return f'"{match[1]}deg"' if match[2] in ("deg", "°") else match[1]
+
+    pattern = re.compile(
+        r"(?<![\w.])([-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)\s*([A-Za-zµ%°][\w/%²³^*]*)(?![\w.\s]*=)"
+    )
+    return _outside(
+        lambda part: pattern.sub(mend, part) if "=" in part or "[" in part or "," in part else part
+    )(line)
+
+
+def _closed(mark: str) -> Remedy:
+    def remedy(line: str) -> str:
+        code, comment = _code(line)
+        return f"{code}{mark}{comment}" if code else line
+
+    return remedy
+
+
+def _statements(line: str) -> str:
+    """Two keys with their values, each on a line of its own."""
+    return re.sub(rf"(=\s*\S.*?)[\s,;]+({_KEY}\s*=(?!=))", r"\1" + "\n" + r"\2", line, count=1)
+
+
+def _comma_behind(line: str) -> str:
+    return _outside(lambda part: re.sub(r"(?<=[\w\])}])\s+(?=[-+.\w\[({])", ", ", part))(
+        re.sub(r'(["\]}])\s+(?=["\[{])', r"\1, ", line)
+    )
+
+
+def _points_and_commas(line: str) -> str:
+    with_points = _decimal_commas(line)
+    return line if with_points == line else _comma_behind(with_points)
+
+
+_REMEDIES: tuple[tuple[str, Remedy], ...] = (
+    ("its quotes are typographic", _translated(_QUOTES)),
+    ("it has a character that only looks like a blank", _translated(_BLANKS)),
+    ("it has a character that only looks like a sign", _outside(_translated(_SIGNS))),
+    (
+        'a backslash within "..." begins a special character',
+        lambda line: re.sub(r'"([^"\']*\\[^"\']*)"', r"'\1'", line),
+    ),
+    ("a comment begins with #", lambda line: re.sub(r"^(\s*)(?://|/\*|;|%|!|--)\s*", r"\1# ", line)),
+    ("a comment begins with #", _of_code(r"\s(?://|;|%|!)\s.*$", lambda m: f" # {m[0].strip(' /;%!')}")),  # type: ignore[arg-type]
+    ("a table begins with its name in brackets", _header),
+    ("a number begins with a digit", _substituted(r"(?<![\w.])([-+]?)\.(?=\d)", r"\g<1>0.")),
+    ("a digit follows the point of a number", _substituted(r"(?<![\w.])([-+]?\d+)\.(?![\d\w])", r"\1.0")),
+    (
+        "a digit follows the point of a number",
+        _substituted(r"(?<![\w.])([-+]?\d+)\.(?=[eE][-+]?\d)", r"\1.0"),
+    ),
+    (
+        "an exponent begins with e",
+        _substituted(r"(?<![\w.])([-+]?\d+(?:\.\d+)?)(?:\.?)[dDqQ]([-+]?\d+)(?!\w)", r"\1e\2"),
+    ),
+    (
+        "an exponent begins with e",
+        _substituted(r"(?<![\w.])([-+]?)\.(\d+)[dDqQ]([-+]?\d+)(?!\w)", r"\g<1>0.\2e\3"),
+    ),
+    ("a number is written with a decimal point", _decimal_commas),
+    ("a number does not begin with 0", _substituted(r"(?<![\w.+-])([-+]?)0+(?=[1-9])", r"\1")),
+    ("digits are not parted", _substituted(r"(?<=\d)(?:[ '_]+(?=\d{3}\b)|_+(?!\d))", "")),
+    ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s*(?::=|==|=>|:)\s*", r"\1 = ")),
+    ("a key and its value are parted by =", _of_code(rf"([{{,]\s*{_KEY})\s*(?::=|==|:)\s*", r"\1 = ")),
+    ("a list is in brackets", _outside(lambda part: re.sub(r"=\s*\(([^()]*)\)", r"= [\1]", part))),
+    ("each key is on a line of its own", lambda line: line.replace("\r", "\n")),
+    ("each key is on a line of its own", _statements),
+    ("units are not written", _units),
+    ("a word needs quotes", _outside(lambda part: _VALUE.sub(_value_of_word, part))),
+    ("a key that is no plain word needs quotes", _of_code(_ODD_KEY, r'\1"\2" =')),
+    ("numbers have a decimal point, and commas part them", _points_and_commas),
+    ("items are parted by commas", _comma_behind),
+    ("quotes within a string are of the other kind", _of_code(r"=\s*'([^\"]*)'$", r'= "\1"')),
+    ("quotes within a string are of the other kind", _of_code(r"=\s*\"([^']*)\"$", r"= '\1'")),
+    ("items are parted by commas", _outside(lambda part: part.replace(";", ","))),
+    ("nothing follows a value", _of_code(r"[\s,;]+$", "")),
+    ("there is no comma behind the last", _of_code(r",\s*}$", " }")),
+    ("there is a bracket too many", _of_code(r"[\]}]$", "")),
+    ("the quote at its end is missing", _closed('"')),
+    ("the quote at its end is missing", _closed("'")),
+    ("the quote before it is missing", _of_code(r"=\s*([^\"'=]+)\"$", r'= "\1"')),
+    ("a bracket is missing at its end", _closed("]")),
+    ("a bracket is missing at its end", _closed("]]")),
+    ("a bracket is missing at its end", _closed(" }")),
+    ("a bracket is missing at its end", _closed(" }]")),
+    ("a comma is missing at its end", _closed(",")),
+    ("a key and its value are parted by =", _of_code(rf"^(\s*{_KEY})\s+(?=[\"'\[{{\w.+-])", r"\1 = ")),
+)
+_REASONS = {  # why reading ends, by what the parser says of it
+    "Unclosed array": "a list has no ] at its end",
+    "Unclosed inline table": "a table has no } at its end",
+    "Unterminated string": "a string has no quotes at its end",
+    "Expected '='": "there is no = behind a key",
+    "Invalid value": "there is no value behind =",
+    "Expected newline": "something follows a value",
+    "Expected ']": "a table's name has no ] at its end",
+    "Invalid initial character": "a key that is no plain word needs quotes",
+    "Illegal character": "it has a control character",
+    "Found invalid character": "it has a control character",
+    "Invalid statement": "a line is a table [name], a key = value or a comment #",
+}

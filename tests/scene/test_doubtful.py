@@ -1,0 +1,76 @@
+"""Numbers that are hardly meant are asked about, and taken as they are."""
+
+from __future__ import annotations
+
+from math import pi
+
+import pytest
+
+from fcm.scene import scene_from_dict
+
+from ..program import called
+
+STRUCTURE = {"dofs": ["u"], "mass": [1.0], "stiffness": [1.0]}
+
+
+def notes(data, **more):
+    return [one for one in scene_from_dict(data | more).notes if " right? " in one]
+
+
+@pytest.mark.parametrize(
+    "path, value, words",
+    [
+        (
+            ("modal", "damping"),
+            2,
+            ["modal.damping: is 2 right? It is 200 % of critical damping; if 2 % is meant, write 0.02"],
+        ),
+        (("modal", "damping"), [0.01, 1.0], ["modal.damping: is 1 right?"]),
+        (("modal", "damping"), [0.01, 0.99], []),
+        (
+            ("force", 0, "phase"),
+            30,
+            ['force[0].phase: is 30 right? 30 rad are 4.77 turns; if degrees are meant, write "30deg"'],
+        ),
+        (
+            ("force", 1, "phase"),
+            -90.0,
+            ['force[1].phase: is -90 right? -90 rad are 14.3 turns; if degrees are meant, write "-90deg"'],
+        ),
+        (("force", 1, "phase"), "270deg", []),
+        (("force", 1, "phase"), 2.0 * pi, []),
+        (("sweep", "force.1.phase"), [0.0, 45.0], ["if degrees are meant, write it in rad"]),
+        (("sweep", "modal.damping"), [0.01, 5.0], ['sweep."modal.damping": is 5 right? It is 500 %']),
+        (("sweep", "modal.damping"), {"from": 0.1, "to": 0.2, "count": 3}, []),
+    ],
+)
+def test_of_modes(data, path, value, words):
+    *way, last = path
+    table = data
+    for step in way:
+        table = table[step]
+    table[last] = value
+    said = notes(data)
+    assert len(said) == len(words) and all(word in one for word, one in zip(words, said, strict=True))
+
+
+@pytest.mark.parametrize(
+    "damping, words",
+    [
+        (2, "structure.damping: is 2 right?"),
+        ({"loss_factor": 3.0}, "structure.damping.loss_factor: is 3 right? It is 300 % of the stiffness"),
+        ({"mass": 4.0}, ""),
+    ],
+)
+def test_of_matrices(damping, words):
+    force, response = [{"dof": "u", "amplitude": 1.0}], {"frequency": [0.5, 1.5]}
+    said = notes({"structure": STRUCTURE | {"damping": damping}, "force": force, "response": response})
+    assert len(said) == bool(words) and all(words in one for one in said)
+
+
+def test_the_run_goes_on(tmp_path):
+    text = '[modal]\ndofs = ["u"]\nfrequency = [1]\ndamping = 2\nshapes = [[1]]\n'
+    text += '[[force]]\ndof = "u"\namplitude = 1\nphase = 30\n[response]\nfrequency = [0.5, 2]\n'
+    (tmp_path / "s.toml").write_text(text)
+    done = called("respond", tmp_path / "s.toml")
+    assert done.code == 0 and done.err.count(" right? ") == 2 and "right?" not in done.out
