@@ -14,7 +14,17 @@ TABLE = re.search(
     r"^\| package \|.*?\n\n", (ROOT / ".github/guide/work.md").read_text(encoding="utf-8"), re.M | re.S
 )[0]
 PACKAGES = [name for row in re.findall(r"^\| (`.*?) \|", TABLE, re.M) for name in re.findall(r"`(\w+)`", row)]
-NUMERICS = ("contact", "structure", "continuation", "harmonic", "track", "motion", "orbit", "reduction")
+NUMERICS = (
+    "contact",
+    "structure",
+    "continuation",
+    "harmonic",
+    "branches",
+    "track",
+    "motion",
+    "orbit",
+    "reduction",
+)
 DOWNWARDS = {  # as the guide says: scene condenses matrices by structure
     ("scene", "structure"): {"damping", "eigen", "reduced", "rigid_body"},
 }

@@ -8,11 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.continuation.follow import Progress, follow
+from fcm.continuation.newton import Newton
 from fcm.continuation.path import FloatArray, Path, Status
 from fcm.continuation.problem import Problem
 
 Follow = Callable[..., Path]  # as `follow`
 SAME = 1e-5  # solutions closer than this, in the problem's scale, are one
+BESIDE = 0.5  # of a chord: what is further from it is not on its part of a path
+CHORDS = 4  # nearest ones that are looked at
 
 
 @dataclass(frozen=True)
@@ -79,13 +82,39 @@ def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
 
 
 def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
-    """Whether a path has a point that is the solution z, at the same value of the parameter."""
-    off = path.z[path.parameter == z[-1]] - z
-    if not off.size:
-        return False
+    """Whether a solution z (n + 1,) lies on a path.
+
+    It does where it is a point of that. Between its points no distance tells, as branches come close to each
+    other: there the branch is found in the plane through the solution across the chord of the path that is
+    next to it, by Newton's method from that chord.
+    """
     problem.measure(z)
-    off /= np.asarray(problem.scale)
-    return bool((off * off).sum(axis=1).min() < SAME * SAME)
+    scale = np.array(problem.scale)
+    points = (path.z - z) / scale
+    if float((points * points).sum(axis=1).min()) < SAME * SAME:
+        return True
+    newton = Newton(problem)
+    for i, part in _beside(points):
+        row = points[i + 1] - points[i]
+        newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
+        newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
+        if newton.correct(1.0) and np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME:
+            return True
+    return False
+
+
+def _beside(points: FloatArray) -> list[tuple[int, float]]:
+    """The chords between points next to which the origin lies, the nearest first, and where on them."""
+    chord = np.diff(points, axis=0)
+    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
+    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
+    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    near = np.argsort(off)[:CHORDS].tolist()
+    return [
+        (i, float(part[i]))
+        for i in near
+        if SAME < np.sqrt(square[i]) and off[i] < BESIDE * np.sqrt(square[i])
+    ]
 
 
 def through(

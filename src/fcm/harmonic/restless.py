@@ -26,7 +26,7 @@ from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.outline import Outline
 from fcm.harmonic.start import NEAR, Found, resonances, solutions
 from fcm.harmonic.system import System
-from fcm.harmonic.trace import with_further
+from fcm.harmonic.trace import Traced, with_further
 from fcm.harmonic.unstable import Stretch, stretches_of
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
@@ -69,8 +69,12 @@ def with_branches(
     found: Accurate, looked: Sequence[Found], starts: Sequence[FloatArray], accuracy: float
 ) -> Accurate:
     """A response with the branches through further solutions, and where else it was looked for them."""
+    return with_traced(found, with_further(found.system, found.traced, looked, starts), accuracy)
+
+
+def with_traced(found: Accurate, traced: Traced, accuracy: float) -> Accurate:
+    """A response with further branches, which come after its own."""
     system, known = found.system, len(found.shown)
-    traced = with_further(system, found.traced, looked, starts)
     shown = (*found.shown, *(reported(system, path) for path in traced.branches.paths[known:]))
     every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
     return replace(every, further=found.further, begun=found.begun)

@@ -19,7 +19,6 @@ from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
 from fcm.harmonic.start import Found, looked_at
 from fcm.harmonic.system import System
-from fcm.harmonic.turned import passed_beside
 from fcm.scene.model import FloatArray
 
 
@@ -81,8 +80,7 @@ def with_levels(system: System, before: Traced) -> Traced:
 def _passed(system: System, fewer: Sequence[Found]) -> tuple[tuple[Found, ...], list[FloatArray]]:
     """What is found where the levels are followed, with all solutions that this leads to."""
     found = found_at(system, looked_at(system), fewer)
-    beside = passed_beside(system, [turn for one in found for turn in one.turns])
-    return found, [*(z for one in found for z in one.solutions), *beside]
+    return found, [z for one in found for z in one.solutions]
 
 
 def _through(system: System, starts: Sequence[FloatArray], progress: Progress | None) -> Branches:

@@ -8,17 +8,15 @@ the frequencies at which the level was followed, and that none of them tells of 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from fcm.continuation import Path
+from fcm.continuation import Mark, Path
 from fcm.continuation.newton import Newton
-from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.further import padded
-from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
@@ -39,13 +37,26 @@ class Loaded(Protocol):
 
 
 class Turn(NamedTuple):
-    """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's direction there
-    (unknown + 1,), in which that does not change; short if it turns before it passes the level 1."""
+    """Where the curve of a level turns: z (unknown + 1,), with the frequency; the curve's directions before
+    and after, which differ at a corner, (unknown + 2,): displacements, frequency, which does not change, and
+    level; short if it turns before it passes the level 1."""
 
     level: float
     z: FloatArray
-    direction: FloatArray
+    before: FloatArray
+    after: FloatArray
     short: bool
+
+    @property
+    def direction(self) -> FloatArray:
+        """In which displacements and frequency change there, (unknown + 1,)."""
+        return self.before[:-1]
+
+    @property
+    def directions(self) -> tuple[FloatArray, ...]:
+        """In which displacements, frequency and level change there: in the middle, before, after."""
+        smooth = self.before is self.after
+        return (self.before,) if smooth else (self.before + self.after, self.before, self.after)
 
     @property
     def may_come(self) -> bool:
@@ -54,8 +65,11 @@ class Turn(NamedTuple):
 
     def padded(self, harmonics: Sequence[int], more: Sequence[int]) -> Turn:
         """That of a balance with some harmonics as one of more."""
-        z, direction = (padded(one, harmonics, more) for one in (self.z, self.direction))
-        return self._replace(z=z, direction=direction)
+        before, after = (
+            np.append(padded(one[:-1], harmonics, more), one[-1]) for one in (self.before, self.after)
+        )
+        after = before if self.before is self.after else after
+        return self._replace(z=padded(self.z, harmonics, more), before=before, after=after)
 
 
 def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
@@ -64,26 +78,16 @@ def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:
     rises = [after > before for before, after in pairwise(levels)]
     found = []
     for i in (i for i in range(1, len(rises)) if rises[i] != rises[i - 1]):
-        z, direction = np.append(unit * path.z[i, :-1], omega), np.append(path.direction[i, :-1], 0.0)
-        found.append(Turn(levels[i], z, direction, (levels[i] < 1.0) == rises[i - 1]))
+        z, before = np.append(unit * path.z[i, :-1], omega), _direction(path, i, unit)
+        corner = path.mark[i] & Mark.CORNER
+        after = _direction(path, i + 1, unit) if corner else before
+        found.append(Turn(levels[i], z, before, after, (levels[i] < 1.0) == rises[i - 1]))
     return tuple(found)
 
 
-def passed_beside(system: System, turns: Sequence[Turn]) -> Iterator[FloatArray]:
-    """Stable solutions (unknown + 1,) at the level 1 beside turns short of it, at whatever frequencies.
-
-    At a turn the balance F(x, omega, level) = 0 is singular in the displacements x alone. With the part of x
-    along the curve held, the frequency takes its place among the unknowns, and is found for other levels,
-    stage by stage, up to 1. That is beside a fold, of which one side at most is stable.
-    """
-    of = None
-    for turn in turns:
-        if not turn.may_come:
-            continue
-        balance, newton = system.afresh(), system.front.newton
-        if came(balance, newton, turn):
-            of = of or multipliers_of(system, system.scene.frequency_range[1])
-            yield from (z for z in beside(newton) if of.verdict(z, enough=(1.0,)).stable == 1.0)
+def _direction(path: Path, i: int, unit: float) -> FloatArray:
+    """Of a curve of the level at its point, (unknown + 2,)."""
+    return unit * np.insert(path.direction[i], -1, 0.0)
 
 
 def came(problem: Loaded, newton: Newton, turn: Turn) -> bool:

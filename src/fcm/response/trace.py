@@ -24,6 +24,7 @@ from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.incomplete import FLOATING, incomplete
+from fcm.response.isolated import with_all_branches
 from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
 from fcm.response.short_of import short_of
@@ -162,8 +163,8 @@ def _curve(followed: _Followed) -> Curve:
 
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
     """A response with its stability, and with what was missed where nothing was stable."""
-    followed = _with_stability(_Followed(found, [], []), accuracy)
     least = np.inf if accuracy is None else accuracy
+    followed = _with_stability(_Followed(with_all_branches(found, accuracy), [], []), accuracy)
     more, stable = with_missed(followed.found, followed.stable, least)
     followed = _with_stability(replace(followed, found=more, stable=stable), accuracy)
     if accuracy is not None:

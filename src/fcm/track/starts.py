@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
 from fcm.harmonic.error import reported
 from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import linear_of
 from fcm.track.onset import onset
@@ -43,7 +43,7 @@ def special_points(system: System, conditions: list[Condition]) -> Special:
 
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
     """
-    curves = traced(system)
+    curves = every_branch(system)
     branches, unsure = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
     found = []
     for path in branches.paths:

@@ -1,0 +1,142 @@
+r"""Isolated branches: they begin and end where a curve of folds crosses the level 1.
+
+Where the level of the forces turns short of 1 at a frequency, two solutions meet that the response at the
+level 1 does not have there. Along the curve of these folds in (frequency, level) the level may come to 1;
+from there on the response has the two solutions, and the crossing is a fold of their branch. What turns
+beyond 1 lies between two solutions of the response at that frequency, whose branches are followed anyhow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.branches.fold_continuation import Folds, folds_from
+from fcm.branches.options import FOLDS, FoldOptions
+from fcm.branches.surface import Surface
+from fcm.continuation import Path
+from fcm.continuation.branches import contains
+from fcm.harmonic.cost import seconds_of
+from fcm.harmonic.further import padded
+from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.start import Found, few_of
+from fcm.harmonic.system import System
+from fcm.harmonic.turned import Turn
+from fcm.harmonic.work import TooLongError
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Crossings:
+    """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to, and whether all
+    of these curves were followed as far as they are looked at."""
+
+    solutions: tuple[FloatArray, ...]
+    complete: bool
+
+
+def crossings(
+    system: System, found: Sequence[Found], paths: tuple[Path, ...], options: FoldOptions = FOLDS
+) -> Crossings:
+    """Those that lie on none of some paths.
+
+    Parameters
+    ----------
+    system : System
+        Whose level was followed; with many harmonics the folds are followed with a few of them, and what
+        they come to is led to all.
+    found : sequence of Found
+        At which frequencies, and where it turned.
+    paths : tuple of Path
+        The branches that are known.
+    """
+    few = system.with_harmonics(system.harmonics[: few_of(system)])
+    solutions, span = list[FloatArray](), system.scene.frequency_range
+    seconds = max(options.share * system.work.seconds, options.unnoticed)
+    try:
+        with system.work.up_to(system.work.seconds + seconds):
+            for curve in _curves(few, found, span, options):
+                for z in _at_level_one(few, system, curve):
+                    known = any(contains(path, z, system.afresh()) for path in paths)
+                    if span[0] <= z[-1] <= span[1] and not known:
+                        solutions.append(z)
+    except TooLongError:
+        return Crossings(tuple(solutions), False)
+    return Crossings(tuple(solutions), True)
+
+
+def _curves(
+    few: System, found: Sequence[Found], span: tuple[float, float], options: FoldOptions
+) -> Iterator[Folds]:
+    """The curves of the folds that are short of the level 1, each once."""
+    surface, known = Surface(few.afresh()), list[Folds]()
+    paid = 0
+
+    def pay() -> None:
+        nonlocal paid
+        new, paid = surface.evaluations - paid, surface.evaluations
+        few.work.take(seconds_of(few, new, len(few.harmonics)))
+
+    for one in found:
+        for turn in one.turns:
+            turn = turn.padded(one.harmonics, few.harmonics)
+            if not turn.short or not options.lowest < turn.level < options.highest:
+                continue
+            if any(_has(curve, turn, surface, options) for curve in known):
+                continue
+            start = np.append(turn.z, turn.level)
+            try:
+                curve = folds_from(surface, start, turn.directions, span, options, pay)
+            finally:
+                surface.balance.load = 1.0
+            if curve is not None:
+                known.append(curve)
+                yield curve
+
+
+def _has(curve: Folds, turn: Turn, surface: Surface, options: FoldOptions) -> bool:
+    """Whether a curve passes a fold."""
+    z = np.append(turn.z, turn.level)
+    surface.measure(z)
+    points = (curve.z - z) / np.asarray(surface.scale)
+    off = points[:, -2]
+    for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0).tolist():
+        chord = points[i + 1] - points[i]
+        part = off[i] / (off[i] - off[i + 1]) if off[i] != off[i + 1] else 0.0
+        if np.linalg.norm(points[i] + part * chord) < options.near * np.linalg.norm(chord):
+            return True
+    return False
+
+
+def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatArray]:
+    """The solutions of a system beside the crossings of the level 1 by a curve of folds."""
+    off = curve.level - 1.0
+    for i in np.flatnonzero(off[:-1] * off[1:] < 0.0).tolist():
+        part = off[i] / (off[i] - off[i + 1])
+        z = (curve.z[i] + part * (curve.z[i + 1] - curve.z[i]))[:-1]
+        way = curve.singular[i if part < 0.5 else i + 1][:-1]
+        there = _in_its_plane(few, z, way)
+        if there is not None and few.harmonics != system.harmonics:
+            there = _led(few, system, there, way)
+        if there is not None:
+            yield there
+
+
+def _in_its_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
+    """The solution near a guess, in the plane across a direction in the displacements."""
+    balance, newton = system.afresh(), system.front.newton
+    balance.measure(z)
+    newton.scale[:], newton.z[:] = balance.scale, z
+    row = way / np.asarray(balance.scale)
+    newton.row[:] = row / np.linalg.norm(row)
+    return np.array(newton.z) if newton.correct(1.0) else None
+
+
+def _led(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
+    """The solution with more harmonics near one with few."""
+    lifted = Lifted(system.balance(), list(few.harmonics), list(system.harmonics), 1e-6)
+    if not lifted.beside(z, way):
+        return None
+    return _in_its_plane(system, np.array(lifted.newton.z), padded(way, few.harmonics, system.harmonics))

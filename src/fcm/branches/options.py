@@ -1,0 +1,45 @@
+"""The tolerances with which branches are looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FoldOptions:
+    """How folds of the level of the forces are followed in (frequency, level).
+
+    Lengths are in the scaled unknowns: displacements by their own size, the frequency by its range, the level
+    by itself.
+    """
+
+    lowest: float = 0.25  # level at which a curve of folds is left, being too far below 1,
+    highest: float = 4.0  # and above it
+    first: float = 0.01  # step,
+    longest: float = 0.3
+    shortest: float = 1e-4  # with which no fold was found any more
+    turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
+    most_turn: float = 0.9  # and by which it may at most
+    fine: float = 0.02  # [rad] to which the direction of the chord is found
+    upright: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
+    wider: tuple[float, ...] = (1.0, 5.0, 25.0)  # times the first step: circles about a start beside a fold
+    circle: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
+    most: int = 400  # steps of a curve
+    near: float = 0.3  # of a step: a known fold this near to a curve is on it
+    share: float = 0.5  # of the work before, that all curves may take,
+    unnoticed: float = 0.2  # and seconds of work that they may in any case
+
+
+FOLDS = FoldOptions()
+
+
+@dataclass(frozen=True)
+class ProlongationOptions:
+    """Which points of a branch are prolongated to more harmonics."""
+
+    of_a_kind: int = 8  # peaks, and folds
+    even: int = 9  # points along the branch
+    enough: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
+
+
+PROLONGATION = ProlongationOptions()

@@ -1,0 +1,20 @@
+from fcm.continuation.dense cimport Solver
+from fcm.harmonic.balance cimport Balance
+
+cdef class Surface:
+    cdef public Balance balance
+    cdef public int n
+    cdef public double[::1] z
+    cdef public double[::1] centre
+    cdef public double[::1] scale
+    cdef public double[:, ::1] axes
+    cdef public double[:, ::1] tangents
+    cdef public double value
+    cdef public int evaluations
+    cdef Solver solver
+    cdef double[::1] at
+    cdef double[::1] right
+    cpdef bint put(self, double ahead, double aside) except -1
+    cdef bint factor(self) except -1
+    cdef double correct(self, double ahead, double aside) except -2
+    cdef bint look(self) except -1

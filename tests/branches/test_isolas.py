@@ -1,0 +1,146 @@
+"""Isolated branches, which only the folds of the level of the forces lead to."""
+
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fcm.branches.fold_continuation import Ending, folds_from
+from fcm.branches.isolas import crossings
+from fcm.branches.search import every_branch
+from fcm.branches.surface import Surface
+from fcm.continuation import Mark, Status
+from fcm.harmonic.start import looked_at, solutions
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
+from fcm.scene import load_scene
+
+SCENES = Path(__file__).parent / "scenes"
+
+
+def scene(name):
+    return load_scene(SCENES / f"{name}.toml").each_curve()[0]
+
+
+def branches_of(curve):
+    """Frequencies and amplitudes of each branch, and whether its points are stable."""
+    cut = np.concatenate(([-1], np.flatnonzero(np.isnan(curve.frequency)), [len(curve.frequency)]))
+    parts = [slice(a + 1, b) for a, b in pairwise(cut)]
+    return [(curve.frequency[one], curve.amplitude[one], curve.stable[one]) for one in parts]
+
+
+def passings(curve, omega):
+    """Amplitudes (dof,) and stability where the branches pass a frequency."""
+    for frequency, amplitude, stable in branches_of(curve):
+        off = frequency - omega
+        for i in np.flatnonzero(off[:-1] * off[1:] < 0.0):
+            part = off[i] / (off[i] - off[i + 1])
+            yield (1.0 - part) * amplitude[i] + part * amplitude[i + 1], stable[i]
+
+
+@pytest.mark.parametrize("harmonics", [None, 7])
+def test_a_closed_branch_of_an_impact_oscillator_is_found(harmonics):
+    """At 1.6 rad/s an independent march settles at 0.5009; the branch spans 1.492 to 1.969 rad/s. Neither the
+    ends of the range nor the resonance have more solutions than one."""
+    given = None if harmonics is None else tuple(range(1, harmonics + 1))
+    curve = traced_curve(scene("closed_impact"), Wanted(given, 1e-2))
+    assert curve.complete
+    there = [amplitude for amplitude, stable in passings(curve, 1.6) if stable == 1.0]
+    assert min(abs(float(one[0]) / 0.5009 - 1.0) for one in there) < 5e-3
+    spans = [(frequency.min(), frequency.max()) for frequency, _, _ in branches_of(curve)]
+    assert min(abs(low - 1.492) + abs(high - 1.969) for low, high in spans) < 2e-3
+
+
+def folds_of(system, omega):
+    """The curves of folds from the turns of the level at a frequency."""
+    for turn in solutions(system, omega, np.inf).turns:
+        surface = Surface(system.afresh())
+        z = np.append(turn.z, turn.level)
+        yield turn, folds_from(surface, z, turn.directions, system.scene.frequency_range)
+
+
+def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies():
+    """With four harmonics: at 1.6 rad/s the level turns at 2.308 and 0.896, as following it there says."""
+    system = System(scene("closed_impact"), (1, 2, 3, 4))
+    expected = sorted(turn.level for turn in solutions(system, 1.6, np.inf).turns)[:2]
+    assert expected == pytest.approx([0.896, 2.308], abs=1e-3)
+    found = []
+    for turn, curve in folds_of(system, 1.0):
+        if curve is None or not turn.short:
+            continue
+        off = curve.frequency - 1.6
+        for i in np.flatnonzero(off[:-1] * off[1:] < 0.0):
+            found.append(curve.level[i] + off[i] / (off[i] - off[i + 1]) * np.diff(curve.level[i : i + 2])[0])
+    for level in expected:
+        assert min(abs(one / level - 1.0) for one in found) < 2e-2
+
+
+def test_folds_in_corners_are_followed_round_a_closed_curve():
+    """From a corner, through others, back to it: each of its points has a fold there by its level curve."""
+    system = System(scene("closed_two_modes"), (1, 2, 3, 4, 5))
+    curve, *_ = (
+        curve
+        for turn, curve in folds_of(system, 2.0001)
+        if turn.short and abs(turn.level - 1.4895) < 1e-2 and curve is not None
+    )
+    assert curve.endings == (Ending.CLOSED, Ending.CLOSED)
+    for omega in (1.9, 2.1):
+        off = curve.frequency - omega
+        levels = [
+            curve.level[i] + off[i] / (off[i] - off[i + 1]) * (curve.level[i + 1] - curve.level[i])
+            for i in np.flatnonzero(off[:-1] * off[1:] < 0.0)
+        ]
+        turns = np.array([turn.level for turn in solutions(system, omega, np.inf).turns])
+        assert levels
+        for level in levels:
+            assert np.abs(turns / level - 1.0).min() < 1e-2
+
+
+def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold():
+    """The solutions beside the crossings are on branches with folds there, and on none that was known."""
+    system = System(scene("closed_impact"), (1, 2, 3, 4))
+    known = traced(system)
+    found = crossings(system, known.found, known.branches.paths)
+    assert found.complete and len(found.solutions) == 2
+    low, high = sorted(z[-1] for z in found.solutions)
+    before = [len(solutions(system, omega, np.inf).solutions) for omega in (low - 0.01, low + 0.01)]
+    after = [len(solutions(system, omega, np.inf).solutions) for omega in (high - 0.01, high + 0.01)]
+    assert before == [1, 3] and after[0] - after[1] == 2
+    assert all(low > omega or omega > high for omega in looked_at(system))
+
+
+KNOWN = Path(__file__).parents[1] / "harmonic/scenes"
+MARCHED = [
+    # where the curve of folds leads to them, and motions at which marches of the contact law from random
+    # states settle, by the method of Runge and Kutta or with steps of a fixed length
+    ("loose_isola", (0.977, 1.15), None, 1.05324, (0.4170, np.nan, np.nan, 0.1473), 2e-2),
+    ("between_levels", None, 4, 1.266, (9.174, 27.28), 5e-3),
+    ("between_levels", None, 6, 1.266, (9.174, 27.28), 5e-3),
+    ("far_isola", None, 5, 1.3, (1.107, 3.222, 4.367, 1.662), 5e-3),
+    ("far_isola", None, 7, 1.3, (1.107, 3.222, 4.367, 1.662), 5e-3),
+    ("cornered_isola", None, 5, 1.0384, (2.51734, 1.44807), 2e-2),
+]
+
+
+@pytest.mark.parametrize(("name", "span", "harmonics", "omega", "marched", "within"), MARCHED)
+def test_closed_branches_that_marches_settle_on_are_found(name, span, harmonics, omega, marched, within):
+    """Each is closed, and the level of the forces passes 1 on it at none of the frequencies that are looked
+    at. The first comes to be with more harmonics than one, the last has corners on its curve of folds."""
+    one = load_scene(KNOWN / f"{name}.toml").each_curve()[0]
+    one = one if span is None else replace(one, frequency_range=span)
+    given = None if harmonics is None else tuple(range(1, harmonics + 1))
+    curve = traced_curve(one, Wanted(given, 1e-2))
+    off = [np.nanmax(np.abs(amplitude / marched - 1.0)) for amplitude, _ in passings(curve, omega)]
+    assert curve.complete and min(off) < within
+
+
+def test_a_closed_branch_is_traced_once():
+    """From 1.2585 to 1.3581 rad/s; two crossings of the level 1 lead to it."""
+    one = load_scene(KNOWN / "far_isola.toml").each_curve()[0]
+    found = every_branch(System(one, (1, 2, 3, 4, 5))).branches
+    (closed,) = (path for path in found.paths if path.status is Status.CLOSED)
+    assert len(closed.where(Mark.FOLD)) == 2
