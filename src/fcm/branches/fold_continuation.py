@@ -141,7 +141,8 @@ class _Follower:
             found = list(self._around(self.options.first * wider))
             pairs = [(a, b) for i, a in enumerate(found) for b in found[i + 1 :]]
             if pairs:
-                return list(min(pairs, key=lambda pair: np.cos(pair[0].angle - pair[1].angle)))
+                opposite = np.argmin([np.cos(one.angle - other.angle) for one, other in pairs])
+                return list(pairs[opposite])
         return []
 
     def run(self, start: FloatArray, singular: FloatArray, way: _Way) -> tuple[list[_Point], Ending]:
