@@ -187,7 +187,7 @@ def test_static_loads_are_swept():
         ({"file": "spin.npz", "dof": "1x"}, "load[0]: has both dof and file"),
         ({"file": "short.npz"}, "load[0].file: has 2 numbers, but the structure has 4 rows"),
         ({"file": "flat.npz"}, "holds a matrix; one row or column is needed"),
-        ({"file": "spin.dat"}, "such a file is .npz, .mat, .mtx, .op4"),
+        ({"file": "spin.dat"}, "such a file is .npz, .mat, .h5, .hdf5, .mtx, .sti"),
     ],
 )
 def test_mistakes_of_loads(tmp_path, load, words):

@@ -210,7 +210,7 @@ def test_a_node_and_a_direction_in_several_ways(name):
     [
         ({"stiffness": "gone.npz"}, r'structure.stiffness: "gone.npz" is not there'),
         ({"stiffness": ""}, "structure.stiffness: is empty; name a file"),
-        ({"stiffness": "K.dat"}, "such a file is .npz, .mat, .mtx, .op4"),
+        ({"stiffness": "K.dat"}, "such a file is .npz, .mat, .h5, .hdf5, .mtx, .sti, .mas, .pch, .op4"),
         ({"mass": 3}, "structure.mass: must be a file, or a list of rows, is 3"),
         ({"mass": [[1, 0], [0, 1]]}, "structure.mass: has 2 rows, but the stiffness has 3"),
         ({"mass": [[1, 0, 0], [0, 1]]}, "structure.mass[1]: has 2 numbers, but the first row has 3"),

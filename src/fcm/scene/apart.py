@@ -1,4 +1,4 @@
-"""Files that the readers of other packages read (.mat, .op4), by a process of its own.
+"""Files that the readers of other packages read (.mat, .h5, .op4), by a process of its own.
 
 Those readers can crash the interpreter on a damaged file, and take the memory that a file says it needs. So
 they run in a child with a limit on its memory: whatever becomes of it, here there are arrays or an error.
@@ -85,8 +85,8 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
             check_tags(content, wanted, largest)
         found = loadmat(path, variable_names=list(wanted))
         all_of_it = whosmat(path)
-    except NotImplementedError:
-        raise DataFileError(f"{quoted(path.name)} is of MATLAB's version 7.3; save it with -v7") from None
+    except NotImplementedError:  # of MATLAB's version 7.3
+        return _hdf5(path, wanted, largest)
     arrays = {name: found[name] for name in wanted if name in found}
     structs = [name for name, _, kind in all_of_it if kind == "struct"]
     if structs and not arrays:
@@ -110,6 +110,14 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     return found
 
 
+def _hdf5(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
+    """Variables of an HDF5 file."""
+    from fcm.scene.formats.hdf5 import read_hdf5
+
+    found, held = read_hdf5(path, wanted, largest)
+    return found | {NAMES: np.array(held, dtype=str)}
+
+
 def _unusable(path: Path, error: Exception) -> DataFileError:
     """What is wrong with a package pyyeti that is there and cannot be imported."""
     why = str(error).partition("\n")[0]
@@ -119,7 +127,7 @@ def _unusable(path: Path, error: Exception) -> DataFileError:
     )
 
 
-_READERS = {".mat": _mat, ".op4": _op4}
+_READERS = {".mat": _mat, ".op4": _op4, ".h5": _hdf5, ".hdf5": _hdf5}
 
 
 def _parts(value: Any) -> list[tuple[str, Any]]:

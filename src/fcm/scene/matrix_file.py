@@ -1,4 +1,8 @@
-"""A matrix from a file: .npz (of scipy or numpy), .mat, .mtx (MatrixMarket), .op4 (Nastran, by pyyeti)."""
+"""A matrix from a file, and the names of its rows where the file has them.
+
+.npz (of scipy or numpy), .mat (MATLAB, 7.3 too), .h5 (HDF5), .mtx (MatrixMarket or Abaqus), .sti and .mas
+(CalculiX), .pch (Nastran DMIG), .op4 (Nastran, by pyyeti), .hb (Harwell-Boeing; of Ansys .matrix).
+"""
 
 from __future__ import annotations
 
@@ -13,13 +17,21 @@ from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.formats.abaqus import is_abaqus, read_abaqus
+from fcm.scene.formats.calculix import read_calculix
+from fcm.scene.formats.dmig import read_dmig
+from fcm.scene.formats.harwell_boeing import read_harwell_boeing
+from fcm.scene.formats.labelled import Labelled
 from fcm.scene.matrix_market import read_matrix_market
 from fcm.scene.model import FloatArray
 
-ENDINGS = (".npz", ".mat", ".mtx", ".op4")
+ENDINGS = (
+    *(".npz", ".mat", ".h5", ".hdf5", ".mtx", ".sti", ".mas", ".pch", ".op4"),
+    *(".hb", ".rsa", ".rua", ".matrix"),
+)
 
 
-def read_matrix(name: str, files: Files) -> Any:
+def read_matrix(name: str, files: Files) -> Labelled:
     """The matrix of a file as a scipy sparse array; "model.mat:K" is the one of that name in the file."""
     path, chosen = split_name(name)
     ending = Path(path).suffix.lower()
@@ -27,13 +39,17 @@ def read_matrix(name: str, files: Files) -> Any:
         raise DataFileError(f"{quoted(path)} cannot be read: such a file is {', '.join(ENDINGS)}")
     if ending == ".op4":  # pyyeti gives the names in lower case
         chosen = chosen.lower()
+    if ending == ".pch":  # Nastran's names are upper case
+        chosen = chosen.upper()
     with files.opened(path) as where:
-        return _matrix(_chosen(_READERS[ending](where, chosen, files), chosen, path), path, files)
+        found = _READERS[ending](where, chosen, files)
+        which = _chosen({name: one.matrix for name, one in found.items()}, chosen, path)
+        return Labelled(_matrix(found[which].matrix, path, files), found[which].rows)
 
 
 def read_vector(name: str, files: Files) -> FloatArray:
     """The numbers of a file that holds one row or column of them."""
-    matrix = read_matrix(name, files)
+    matrix = read_matrix(name, files).matrix
     if min(matrix.shape) != 1:
         raise DataFileError(f"{quoted(name)} holds a matrix; one row or column is needed")
     return np.asarray(matrix.toarray().ravel(), dtype=np.float64)
@@ -51,17 +67,19 @@ def is_matrix_file(name: str) -> bool:
 def split_name(name: str) -> tuple[str, str]:
     """The file and the name of the matrix in it, empty if it is not named.
 
-    >>> split_name("model.mat:K"), split_name("K.mtx")
-    (('model.mat', 'K'), ('K.mtx', ''))
+    >>> split_name("model.mat:K"), split_name("model.h5:blade/K"), split_name("K.mtx")
+    (('model.mat', 'K'), ('model.h5', 'blade/K'), ('K.mtx', ''))
     """
-    match = re.fullmatch(r"(.*\.\w+):(\w+)", name)
+    match = re.fullmatch(r"(.*\.\w+):([\w/]+)", name)
     return (match[1], match[2]) if match else (name, "")
 
 
-def _from_npz(path: Path, chosen: str, files: Files) -> dict[str, Any]:
+def _from_npz(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
     """All arrays; or the one sparse matrix that `scipy.sparse.save_npz` has written."""
     arrays = read_npz(path, None, files)
-    return {"": _from_parts(arrays)} if "format" in arrays and "shape" in arrays else dict(arrays)
+    if "format" in arrays and "shape" in arrays:
+        return {"": Labelled(_from_parts(arrays))}
+    return {name: Labelled(one) for name, one in arrays.items()}
 
 
 def _from_parts(arrays: Arrays) -> Any:
@@ -81,11 +99,26 @@ def _from_parts(arrays: Arrays) -> Any:
     return matrix
 
 
-def _from_mtx(path: Path, chosen: str, files: Files) -> dict[str, Any]:
-    return {chosen or "matrix": read_matrix_market(path, files)}  # it has no name
+def _from_mtx(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
+    """The matrix of a MatrixMarket file, or of one that Abaqus calls so; it has no name."""
+    if is_abaqus(path):
+        return read_abaqus(path, files.largest)
+    return {chosen or "matrix": Labelled(read_matrix_market(path, files))}
 
 
-def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
+def _from_calculix(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
+    return read_calculix(path, files.largest)
+
+
+def _from_dmig(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
+    return read_dmig(path, files.largest)
+
+
+def _from_harwell_boeing(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
+    return read_harwell_boeing(path, files.largest)
+
+
+def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Labelled]:
     arrays = read_apart(path, [chosen] if chosen else [], files)
     sparse = [name.removesuffix(".row") for name in arrays if name.endswith(".row")]
     found: dict[str, Any] = {name: array for name, array in arrays.items() if "." not in name}
@@ -96,15 +129,15 @@ def _from_others(path: Path, chosen: str, files: Files) -> dict[str, Any]:
         what = f"no matrix {quoted(chosen)}" if chosen else "no matrix"
         held = choices(map(str, arrays[NAMES])) if arrays[NAMES].size else "nothing"
         raise DataFileError(f"{quoted(path.name)} holds {what}; it holds {held}")
-    return found
+    return {name: Labelled(one) for name, one in found.items()}
 
 
-def _chosen(found: dict[str, Any], chosen: str, path: str) -> Any:
-    """The matrix of a name; without one, the only matrix that there is."""
+def _chosen(found: dict[str, Any], chosen: str, path: str) -> str:
+    """The name of the matrix asked for; without one, of the only matrix that there is."""
     arrays = {name: one if scipy.sparse.issparse(one) else np.atleast_2d(one) for name, one in found.items()}
     matrices = {name: one for name, one in arrays.items() if one.ndim == 2}
     if chosen in matrices:
-        return matrices[chosen]
+        return chosen
     if not matrices:
         raise DataFileError(
             f"{quoted(path)} holds no matrix; it holds {choices(found) if found else 'nothing'}"
@@ -114,10 +147,11 @@ def _chosen(found: dict[str, Any], chosen: str, path: str) -> Any:
     if len(matrices) > 1:
         example = quoted(f"{path}:{next(iter(matrices))}")
         raise DataFileError(f"{quoted(path)} has {choices(matrices)}; say which, as in {example}")
-    return next(iter(matrices.values()))
+    return next(iter(matrices))
 
 
 def _matrix(found: Any, path: str, files: Files) -> Any:
+    found = found if scipy.sparse.issparse(found) else np.atleast_2d(found)
     if found.dtype.kind not in "biufc":
         raise DataFileError(f"{quoted(path)} holds a matrix of {found.dtype}, not of numbers")
     files.check_size(Path(path), 8 * max(found.shape))  # a sparse array has a number for each row or column
@@ -135,4 +169,11 @@ def _matrix(found: Any, path: str, files: Files) -> Any:
     return matrix
 
 
-_READERS = {".npz": _from_npz, ".mtx": _from_mtx} | dict.fromkeys((".mat", ".op4"), _from_others)
+_READERS = {
+    ".npz": _from_npz,
+    ".mtx": _from_mtx,
+    **dict.fromkeys((".mat", ".h5", ".hdf5", ".op4"), _from_others),
+    **dict.fromkeys((".sti", ".mas"), _from_calculix),
+    ".pch": _from_dmig,
+    **dict.fromkeys((".hb", ".rsa", ".rua", ".matrix"), _from_harwell_boeing),
+}

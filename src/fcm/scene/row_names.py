@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+import scipy.sparse
+
+from fcm.scene.errors import choices
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.formats.calculix import calculix_names
+from fcm.scene.formats.harwell_boeing import ansys_names
+from fcm.scene.formats.labelled import Labelled
 from fcm.scene.names import Names, RowNames, checked_names
 from fcm.scene.section import Section
 
 
-def row_names(section: Section, files: Files, rows: int | None) -> Names | None:
-    """The names of the rows: a list, or a file with one on each line."""
+def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | None:
+    """The names of the rows: a list, a file with one on each line, or else those of the matrices' files."""
     value = section.data.get("dofs", section.data.get("file"))
     if "dofs" in section.data and "file" in section.data:
         section.wrong("", "has both dofs and file; give the names of the rows once")
         return None
+    if value is None and labels:
+        return RowNames(labels)
     if value is None:
         section.wrong("dofs", 'missing; give a list of the names of the rows, or a file such as "dofs.txt"')
         return None
@@ -22,15 +33,57 @@ def row_names(section: Section, files: Files, rows: int | None) -> Names | None:
         key = "dofs" if "dofs" in section.data else "file"
         try:
             with files.opened(value) as path:
-                value = names_of(_text(path))
+                value = names_of_file(path)
         except DataFileError as error:
             for fault in error.faults:
                 section.wrong(key, fault)
             return None
     names = checked_names(section, value)
-    if names is not None and rows is not None and len(names) != rows:
-        section.wrong("dofs", f"names {len(names)} rows, but the stiffness has {rows}")
-    return None if names is None else RowNames(names)
+    if names is None:
+        return None
+    found = RowNames(names)
+    missing = [one for one in found if labels and RowNames(labels).find(one) == ""]
+    if missing:
+        section.wrong(
+            "dofs",
+            f"{choices(missing)} {'is' if len(missing) == 1 else 'are'} no row of the matrices; "
+            "their files name the node and direction of each, so dofs can be left out",
+        )
+        return None
+    return found
+
+
+def labels_of(matrices: Iterable[Labelled | None]) -> tuple[str, ...]:
+    """The rows that the files of some matrices name, those of the first one first."""
+    return tuple(dict.fromkeys(name for one in matrices if one is not None for name in one.rows))
+
+
+def in_order(section: Section, key: str, given: Labelled | None, dofs: Names | None) -> Any:
+    """A matrix with its rows in the order of the structure's; where its file names none it is in that order.
+
+    A row that the file does not have is zero, as programs leave out what has no mass. None after a mistake.
+    """
+    if given is None or not given.rows or dofs is None:
+        return None if given is None else given.matrix
+    names = [dofs.find(one) for one in given.rows]
+    unknown = [one for one, name in zip(given.rows, names, strict=True) if not name]
+    if unknown:
+        section.wrong(key, f"has rows that dofs does not name: {choices(unknown)}")
+        return None
+    place = np.array([dofs.place[name] for name in names])
+    entries = given.matrix.tocoo()
+    row, column = entries.coords
+    shape = (len(dofs), len(dofs))
+    return scipy.sparse.csc_array((entries.data, (place[row], place[column])), shape=shape)
+
+
+def names_of_file(path: Path) -> list[str]:
+    """The names of rows in a text file, of CalculiX (.dof) or Ansys (.mapping) too."""
+    text = _text(path)
+    lines = text.splitlines()
+    if path.suffix.lower() == ".dof":
+        return calculix_names(lines, path.name)
+    return ansys_names(lines) if path.suffix.lower() == ".mapping" else names_of(text)
 
 
 def _text(path: Path) -> str:

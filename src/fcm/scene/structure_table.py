@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,10 +12,11 @@ import scipy.sparse
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
 from fcm.scene.errors import choices, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
+from fcm.scene.formats.labelled import Labelled
 from fcm.scene.keys import names
 from fcm.scene.matrix_file import is_matrix_file, read_matrix
 from fcm.scene.names import Names
-from fcm.scene.row_names import row_names
+from fcm.scene.row_names import in_order, labels_of, row_names
 from fcm.scene.rules import ANY, NOT_NEGATIVE, RULES, as_float
 from fcm.scene.section import Section
 from fcm.structure.eigen import StructureError, system_of
@@ -54,12 +55,16 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     before = top.mistakes.count
     section.only(*names("structure"))
     read = top.mistakes.count
-    K, M = (_matrix(section, key, files) for key in ("stiffness", "mass"))
+    given = {key: _matrix(section, key, files) for key in ("stiffness", "mass")}
+    labels = labels_of(given.values())
+    dofs = row_names(section, files, labels)
+    K, M = (in_order(section, key, one, dofs) for key, one in given.items())
     rows = None if K is None else K.shape[0]
     if K is not None and M is not None and M.shape[0] != rows:
         section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
     sound = top.mistakes.count == read
-    dofs = row_names(section, files, rows)
+    if dofs is not None and rows is not None and len(dofs) != rows:
+        section.wrong("dofs", f"names {len(dofs)} rows, but the stiffness has {rows}")
     read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
         check_symmetric(section, key, matrix, dofs)
@@ -68,7 +73,7 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     sound = sound and top.mistakes.count == read
     damping = _damping(section, files, rows, dofs)
     modes = _modes(section)
-    coupling = _coupling(section, files, rows)
+    coupling = _coupling(section, files, rows, dofs)
     keep = section.data.get("flexibility", True)
     if not isinstance(keep, bool):
         section.wrong("flexibility", f"must be true or false, is {kind(keep)}")
@@ -101,21 +106,23 @@ def _check_definite(section: Section, K: Any, M: Any) -> None:
         section.wrong("", str(error))
 
 
-def _matrix(section: Section, key: str, files: Files) -> Any:
-    """A square matrix as a scipy sparse array: of a file, a list of rows, or the list of a diagonal."""
+def _matrix(section: Section, key: str, files: Files) -> Labelled | None:
+    """A square matrix: of a file, a list of rows, or the list of a diagonal."""
     if section.missing(key, 'a file such as "K.npz", or a list of rows'):
         return None
     return matrix_of(section, key, section.data[key], files)
 
 
-def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
+def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled | None:
     """The matrix that a value of a key is; None after a mistake."""
+    rows: tuple[str, ...] = ()
     if isinstance(value, str):
         if not value:
             section.wrong(key, "is empty; name a file")
             return None
         try:
-            matrix = read_matrix(value, files)
+            found = read_matrix(value, files)
+            matrix, rows = found.matrix, found.rows
         except DataFileError as error:
             for fault in error.faults:
                 section.wrong(key, fault)
@@ -127,7 +134,7 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Any:
     if matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
         section.wrong(key, f"must be square, has {matrix.shape[0]} rows and {matrix.shape[1]} columns")
         return None
-    return matrix if check_numbers(section, key, matrix) else None
+    return Labelled(matrix, rows) if check_numbers(section, key, matrix) else None
 
 
 def _from_rows(section: Section, key: str, value: Any) -> Any:
@@ -153,7 +160,7 @@ def _from_rows(section: Section, key: str, value: Any) -> Any:
     return None if uneven else scipy.sparse.csc_array(np.array(good))
 
 
-def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[str] | None) -> dict[str, Any]:
+def _damping(section: Section, files: Files, rows: int | None, dofs: Names | None) -> dict[str, Any]:
     """What the damping is: a ratio, proportional, a matrix, a loss factor."""
     found: dict[str, Any] = {"ratio": None, "by_mass": 0.0, "by_stiffness": 0.0, "C": None, "hysteretic": 0.0}
     right = 'a ratio, { mass = , stiffness = }, { loss_factor = } or a file such as "C.npz"'
@@ -167,7 +174,7 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Sequence[st
     if isinstance(value, str) and not is_matrix_file(value):
         section.wrong("damping", f"must be {right}, is {quoted(value)}")
         return found
-    C = matrix_of(section, "damping", value, files)
+    C = in_order(section, "damping", matrix_of(section, "damping", value, files), dofs)
     if C is not None and rows is not None and C.shape[0] != rows:
         section.wrong("damping", f"has {C.shape[0]} rows, but the stiffness has {rows}")
     check_symmetric(section, "damping", C, dofs)
@@ -188,7 +195,7 @@ def _proportional(table: Section) -> dict[str, Any]:
     }
 
 
-def _coupling(section: Section, files: Files, rows: int | None) -> Coupling | None:
+def _coupling(section: Section, files: Files, rows: int | None, dofs: Names | None) -> Coupling | None:
     """The blocks to the next sector; None where there are none, or after a mistake."""
     if "coupling" not in section.data:
         return None
@@ -199,13 +206,14 @@ def _coupling(section: Section, files: Files, rows: int | None) -> Coupling | No
     if not table.data:
         table.wrong("", "is empty; give { stiffness = } or { mass = , stiffness = }")
         return None
-    K, M = (_block(table, key, files, rows) for key in ("stiffness", "mass"))
+    K, M = (_block(table, key, files, rows, dofs) for key in ("stiffness", "mass"))
     return Coupling(K, M)
 
 
-def _block(table: Section, key: str, files: Files, rows: int | None) -> Any:
+def _block(table: Section, key: str, files: Files, rows: int | None, dofs: Names | None) -> Any:
     """A block to the next sector, zero where it is not given."""
-    block = matrix_of(table, key, table.data[key], files) if key in table.data else None
+    given = matrix_of(table, key, table.data[key], files) if key in table.data else None
+    block = in_order(table, key, given, dofs)
     if block is not None and rows is not None and block.shape[0] != rows:
         table.wrong(key, f"has {block.shape[0]} rows, but the stiffness has {rows}")
     return scipy.sparse.csc_array((rows or 1, rows or 1)) if block is None else block

@@ -1,0 +1,1 @@
+"""Matrices as finite-element programs write them: one module for each format."""

@@ -1,0 +1,90 @@
+"""Columns of numbers in a text, each line with as many as are asked for."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.scene.errors import quoted
+from fcm.scene.number_text import fault_of_number, number_in
+
+MARK = b"\xef\xbb\xbf"  # of UTF-8, which some editors write at the beginning
+
+
+class Columns(NamedTuple):
+    """Integers (line, whole column), reals (line,), and the number of each line in the file."""
+
+    whole: npt.NDArray[np.int64]
+    real: npt.NDArray[np.float64]
+    line: npt.NDArray[np.int64]
+
+
+def read_columns(path: Path, whole: int, between: str | None = None, comment: str = "**") -> Columns:
+    """Lines of some integers and a real number each; blank lines and comments are passed over.
+
+    ValueError names the line that is otherwise, and what a line must be.
+    """
+    content = path.read_bytes().removeprefix(MARK)
+    lines = _numbers_of_lines(content, comment.encode())
+    kind = np.dtype([("whole", np.int64, (whole,)), ("real", np.float64)])
+    try:
+        found = np.loadtxt(io.BytesIO(content), kind, delimiter=between, comments=comment, ndmin=1)
+    except (ValueError, UnicodeDecodeError):
+        found = _line_by_line(content, kind, between, comment)
+    good = np.isfinite(found["real"])
+    if not good.all():
+        raise ValueError(f"line {lines[int(good.argmin())]}: is no finite number")
+    return Columns(found["whole"], found["real"], lines)
+
+
+def _numbers_of_lines(content: bytes, comment: bytes) -> npt.NDArray[np.int64]:
+    """The numbers, from 1, of the lines that hold something."""
+    lines = content.split(b"\n")
+    return np.array(
+        [i for i, one in enumerate(lines, 1) if one.partition(comment)[0].strip()], dtype=np.int64
+    )
+
+
+def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None, comment: str) -> npt.NDArray[Any]:
+    """The same with numbers as Fortran writes them, or the first line that is wrong."""
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError:
+        raise ValueError("it is no text in UTF-8; save it as that") from None
+    found = []
+    for number, line in enumerate(text.split("\n"), 1):
+        words = line.partition(comment)[0].strip()
+        if words:
+            found.append(_row([one.strip() for one in words.split(between)], kind, number, between))
+    return np.array(found, dtype=kind)
+
+
+def _row(words: Sequence[str], kind: np.dtype[Any], number: int, between: str | None) -> tuple[Any, float]:
+    count = kind["whole"].shape[0] + 1
+    if len(words) != count:
+        apart = "commas" if between == "," else "blanks"
+        raise ValueError(f"line {number} has {len(words)} entries; {count} are needed, with {apart} between")
+    places = []
+    for word in words[:-1]:
+        if not re.fullmatch(r"[+-]?\d{1,18}", word):
+            raise ValueError(f"line {number}: {quoted(word)} must be a whole number")
+        places.append(int(word))
+    return tuple(places), real_of(words[-1], number)
+
+
+def real_of(word: str, line: int) -> float:
+    """The number of a word; ValueError with the line and what to write where it is none.
+
+    >>> real_of("1.005D+02", 7)
+    100.5
+    """
+    value = number_in(word)
+    if value is None:
+        raise ValueError(f"line {line}: {fault_of_number(word)}")
+    return value

@@ -1,0 +1,133 @@
+"""Matrices of Nastran in a punch file (.pch): bulk data entries DMIG, in fields of 8, of 16, or with commas.
+
+The header of a matrix has its form (6 symmetric, 1 square) and type (1, 2 real; 3, 4 complex). Each further
+entry is a column: its point and component, then point, component and value of each row.
+Source: MSC Nastran Quick Reference Guide, DMIG.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from fcm.scene.formats.columns import real_of
+from fcm.scene.formats.labelled import Labelled, labelled_from
+
+SMALL, LARGE = 8, 16  # characters of a field
+SYMMETRIC, SQUARE = 6, 1  # forms
+REAL = (1, 2)  # types
+
+
+@dataclass
+class Entries:
+    """Of one matrix, as they are read."""
+
+    form: int
+    line: list[int] = field(default_factory=list)
+    places: list[tuple[int, int, int, int]] = field(default_factory=list)
+    value: list[float] = field(default_factory=list)
+
+
+def read_dmig(path: Path, largest: int) -> dict[str, Labelled]:
+    """All matrices of a punch file by their names, with the names of their rows."""
+    found: dict[str, Entries] = {}
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise ValueError("it is no text in UTF-8; save it as that") from None
+    for number, fields in _entries(text):
+        _take(found, number, fields)
+    if not found:
+        raise ValueError("it holds no DMIG entries; Nastran punches matrices by EXTSEOUT(DMIGPCH)")
+    return {name: _labelled(name, one) for name, one in found.items() if one.value}
+
+
+def _entries(text: str) -> Iterator[tuple[int, list[str]]]:
+    """The fields of each DMIG entry, its continuations joined, and the number of its first line."""
+    first, fields = 0, list[str]()
+    for number, line in enumerate(text.splitlines(), 1):
+        body = line.partition("$")[0].rstrip()
+        if not body:
+            continue
+        if body[0] in "*+" or (body[0] == "," and fields) or (body[0] == " " and fields):
+            if fields:  # else a continuation of an entry that is not read
+                fields += _fields(body)[1:]
+            continue
+        if fields:
+            yield first, fields
+        kind = body.replace(",", " ").split()[0].upper()
+        first, fields = number, _fields(body) if kind in ("DMIG", "DMIG*") else []
+    if fields:
+        yield first, fields
+
+
+def _fields(line: str) -> list[str]:
+    """Fields of a line without its continuation mark; the first is the entry's name."""
+    if "," in line:
+        words = [one.strip() for one in line.split(",")]
+        count = 5 if words[0].endswith("*") else 9
+        return words[:count] + [""] * (count - len(words))
+    line = line.expandtabs(SMALL)
+    wide = LARGE if "*" in line[:SMALL] else SMALL
+    count = 4 if wide == LARGE else 8
+    body = line[SMALL:].ljust(count * wide)
+    return [line[:SMALL].strip(), *(body[i * wide : (i + 1) * wide].strip() for i in range(count))]
+
+
+def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
+    """One entry: a header, or a column."""
+    name, body = fields[1], fields[2:]
+    if (body[0] == "0") == (name in found):
+        what = "two headers" if name in found else "no header before its columns"
+        raise ValueError(f"line {number}: DMIG {name} has {what}")
+    if name not in found:
+        form, kind = (_whole(one, number) for one in (body[1], body[2]))
+        if form not in (SYMMETRIC, SQUARE):
+            raise ValueError(f"line {number}: DMIG {name} is of form {form}; 6 (symmetric) or 1 is read")
+        if kind not in REAL:
+            raise ValueError(
+                f"line {number}: DMIG {name} is complex (type {kind}); damping as a loss_factor is"
+            )
+        found[name] = Entries(form)
+        return
+    entries, column = found[name], (_whole(body[0], number), _whole(body[1] or "0", number))
+    rest = body[3:]  # a blank field stands behind the column
+    for start in range(0, len(rest), 4):
+        group = rest[start : start + 3]
+        if not any(group):
+            continue
+        if len(group) < 3 or not group[0] or not group[2]:
+            raise ValueError(f"line {number}: DMIG {name} has a row without a point, or without a value")
+        value = nastran_real(group[2], number)
+        entries.line.append(number)
+        entries.places.append((_whole(group[0], number), _whole(group[1] or "0", number), *column))
+        entries.value.append(value)
+
+
+def nastran_real(word: str, line: int) -> float:
+    """A real of Nastran, which leaves out the letter of the exponent: 1.0+5.
+
+    >>> nastran_real("1.5+3", 1), nastran_real("-2.D-1", 1), nastran_real("1.5E3", 1)
+    (1500.0, -0.2, 1500.0)
+    """
+    return real_of(re.sub(r"(?<=[\d.])([+-])", r"E\1", word), line)
+
+
+def _whole(word: str, number: int) -> int:
+    if not word.lstrip("+-").isdecimal():
+        raise ValueError(f'line {number}: "{word}" must be a whole number')
+    return int(word)
+
+
+def _labelled(name: str, entries: Entries) -> Labelled:
+    places = np.array(entries.places, dtype=np.int64)
+    node, direction = places[:, 0::2], places[:, 1::2]
+    line, value = np.array(entries.line, dtype=np.int64), np.array(entries.value)
+    try:
+        return labelled_from(node, direction, line, value, mirrored=entries.form == SYMMETRIC)
+    except ValueError as error:
+        raise ValueError(f"DMIG {name}, {error}") from None

@@ -1,0 +1,143 @@
+"""Matrices in the Harwell-Boeing format as text (.hb, .rsa, .rua; Ansys writes .matrix by HBMAT).
+
+The header says how many lines the pointers, indices and values take, and the Fortran format of each. Of a
+symmetric matrix (RSA) one triangle is stored. Right-hand sides behind the values are passed over.
+Source: Duff, Grimes and Lewis, Users' guide for the Harwell-Boeing sparse matrix collection (1992).
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from fcm.scene.formats.columns import real_of
+from fcm.scene.formats.labelled import Labelled, symmetric_from
+
+FORMAT = re.compile(r"\(\s*(?:\d+P\s*,?\s*)?(\d*)\s*([IEDFG])\s*(\d+)(?:\.\d+(?:E\d+)?)?\s*\)", re.IGNORECASE)
+HEAD = 4  # lines before the pointers; one more where there are right-hand sides
+
+
+class Fields(NamedTuple):
+    """A Fortran format: how many fields a line has, and how wide each is."""
+
+    number: int
+    width: int
+
+
+def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
+    """The matrix of a file; its rows have no names there."""
+    lines = path.read_bytes().decode("latin-1").splitlines()
+    if len(lines) < HEAD:
+        raise ValueError("it has no header of the Harwell-Boeing format")
+    cards = [_count(lines[1], i, 2) for i in range(5)]
+    kind = lines[2][:3].upper()
+    if kind not in ("RSA", "RUA"):
+        raise ValueError(
+            f'line 3: "{lines[2][:3]}" is the kind of matrix; RSA or RUA, real and assembled, is read'
+        )
+    rows, columns, entries = (_count(lines[2], i, 3) for i in range(1, 4))
+    if rows != columns:
+        raise ValueError(f"line 3: it has {rows} rows and {columns} columns; a square matrix is needed")
+    if 8 * max(rows, entries) > largest:
+        raise MemoryError
+    formats = [_format(lines[3][i : i + 16], 4) for i in (0, 16)] + [_format(lines[3][32:52], 4)]
+    begin = HEAD + (cards[4] > 0)
+    parts = []
+    for card, form, size in zip(cards[1:4], formats, (columns + 1, entries, entries), strict=True):
+        parts.append(_numbers(lines, begin, card, form, size))
+        begin += card
+    pointer, index, value = _whole(parts[0]), _whole(parts[1]), parts[2]
+    steps = np.diff(pointer)
+    if pointer[0] != 1 or pointer[-1] != entries + 1 or (steps < 0).any():
+        raise ValueError("its pointers of columns do not rise from 1 to the number of entries")
+    if entries and (index.min() < 1 or index.max() > rows):
+        raise ValueError(f"it has indices of rows beyond 1 to {rows}")
+    column = np.repeat(np.arange(columns), steps)
+    if kind == "RSA":
+        line = HEAD + (cards[4] > 0) + cards[1] + np.arange(entries) // formats[1].number + 1
+        return {"matrix": Labelled(symmetric_from(index - 1, column, line, value, rows))}
+    return {"matrix": Labelled(scipy.sparse.coo_array((value, (index - 1, column)), shape=(rows, rows)))}
+
+
+def _count(line: str, field: int, number: int) -> int:
+    """A whole number of the header, in fields of 14 characters."""
+    word = line[14 * field : 14 * (field + 1)].strip()
+    if field == 4 and not word:  # no right-hand sides
+        return 0
+    if not word.isdecimal():
+        raise ValueError(f'line {number}: "{word}" in columns {14 * field + 1} on must be a whole number')
+    return int(word)
+
+
+def _format(word: str, number: int) -> Fields:
+    found = FORMAT.fullmatch(word.strip())
+    if not found:
+        raise ValueError(f'line {number}: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)')
+    return Fields(int(found[1] or 1), int(found[3]))
+
+
+def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) -> npt.NDArray[np.float64]:
+    """So many numbers in some lines of one format."""
+    if cards * form.number < size or begin + cards > len(lines):
+        raise ValueError(f"it is cut off: line {begin + 1} on must hold {size} numbers")
+    at_once = _at_once(lines[begin : begin + cards], form, size)
+    if at_once is not None:
+        return at_once
+    found = list[float]()
+    for number, line in enumerate(lines[begin : begin + cards], begin + 1):
+        for i in range(min(form.number, size - len(found))):
+            word = line[i * form.width : (i + 1) * form.width].strip()
+            found.append(real_of(word, number))
+    if len(found) < size:
+        raise ValueError(f"it is cut off: line {begin + 1} on must hold {size} numbers, has {len(found)}")
+    return np.array(found)
+
+
+def _at_once(lines: list[str], form: Fields, size: int) -> npt.NDArray[np.float64] | None:
+    """The same by numpy; None where a number has to be looked at by itself."""
+    full = form.number * form.width
+    joined = "".join(line[:full].ljust(full) for line in lines).encode("latin-1")
+    words = np.frombuffer(joined, dtype=f"S{form.width}")[:size]
+    if b"_" in joined or not size:
+        return None
+    try:
+        found = np.char.replace(np.char.upper(words), b"D", b"E").astype(np.float64)
+    except ValueError:
+        return None
+    return found if np.isfinite(found).all() else None
+
+
+def _whole(numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    whole = numbers.astype(np.int64)
+    if (whole != numbers).any():
+        raise ValueError("a pointer or an index is no whole number")
+    return whole
+
+
+def ansys_names(lines: list[str]) -> list[str]:
+    """Names of rows from a mapping file of Ansys: the equation, its node, and UX to ROTZ.
+
+    >>> ansys_names(["Matrix Eqn  Node  DOF", "  1   7  UX", "  2   7  ROTZ"])
+    ['7x', '7rz']
+    """
+    found: list[str] = []
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        if len(words) != 3 or not words[0].isdecimal() or not words[1].isdecimal():
+            if found and words:
+                raise ValueError(f"line {number}: must be an equation, a node and UX to ROTZ")
+            continue
+        direction = re.fullmatch(r"(U|ROT)([XYZ])", words[2].upper())
+        if not direction:
+            raise ValueError(
+                f'line {number}: "{words[2]}" is no displacement UX to UZ or rotation ROTX to ROTZ'
+            )
+        if int(words[0]) != len(found) + 1:
+            raise ValueError(f"line {number}: equation {words[0]} comes where {len(found) + 1} should")
+        found.append(f"{int(words[1])}{'r' if direction[1] == 'ROT' else ''}{direction[2].lower()}")
+    return found

@@ -1,0 +1,100 @@
+"""Matrices in HDF5 files: of MATLAB 7.3 (.mat), and of any program (.h5, .hdf5), by h5py.
+
+A dataset of two dimensions is a matrix; MATLAB stores its transpose. A group with data, indices and indptr
+(or MATLAB's data, ir and jc) is a sparse one. The name of a matrix is its path in the file, as group/K.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.sparse
+
+MATLAB = ("data", "ir", "jc")
+SCIPY = ("data", "indices", "indptr")
+
+
+def read_hdf5(path: Path, wanted: Collection[str], largest: int) -> tuple[dict[str, Any], list[str]]:
+    """The variables of those names, or all of numbers where none is named; and the names of all.
+
+    A variable is an array, a sparse matrix, or an array of strings.
+    """
+    try:
+        import h5py
+    except ModuleNotFoundError:
+        raise ValueError("it needs the package h5py: pip install 'fcm[hdf5]', or write it as .npz") from None
+    with h5py.File(path, "r") as file:
+        matlab = bool(file.userblock_size)  # where MATLAB writes its header
+        places: dict[str, Any] = {}
+        file.visititems(lambda name, one: places.update({name: one}))
+        held = {name: one for name, one in places.items() if _is_variable(name, places)}
+        chosen = {name: held[name] for name in wanted if name in held} if wanted else {
+            name: one for name, one in held.items() if _is_sparse(one) or one.dtype.kind in "biuf"
+        }  # fmt: skip
+        if sum(_bytes(one) for one in chosen.values()) > largest:
+            raise MemoryError
+        return {name: _variable(file, one, matlab) for name, one in chosen.items()}, list(held)
+
+
+def _is_sparse(one: Any) -> bool:
+    return hasattr(one, "keys") and _parts(one) is not None
+
+
+def _is_variable(name: str, places: dict[str, Any]) -> bool:
+    """Whether a name is that of an array, or of a sparse matrix, and not a part of one."""
+    if name.startswith("#"):  # where MATLAB keeps what its cells refer to
+        return False
+    one, parent = places[name], places.get(name.rpartition("/")[0])
+    if hasattr(one, "keys"):
+        return _is_sparse(one)
+    return not (parent is not None and _is_sparse(parent)) and hasattr(one, "ndim")
+
+
+def _parts(group: Any) -> tuple[str, str, str] | None:
+    return next((names for names in (MATLAB, SCIPY) if all(name in group for name in names)), None)
+
+
+def _bytes(one: Any) -> int:
+    parts = one.values() if hasattr(one, "keys") else [one]
+    return sum(int(part.size) * 8 for part in parts if hasattr(part, "size"))
+
+
+def _variable(file: Any, one: Any, matlab: bool) -> Any:
+    if _is_sparse(one):
+        return _sparse(one)
+    array = np.asarray(one[()])
+    if array.dtype.kind == "O":  # references of a cell, or strings
+        return np.array([_text(file, item) for item in array.T.ravel()], dtype=str)
+    if matlab and one.attrs.get("MATLAB_class") == b"char":
+        rows = array.T.reshape(array.shape[::-1] if array.ndim == 2 else (1, -1))
+        return np.array(["".join(map(chr, row)).rstrip() for row in rows], dtype=str)
+    return array.T if matlab else array
+
+
+def _text(file: Any, item: Any) -> str:
+    """A string, or the characters that a reference leads to."""
+    if isinstance(item, bytes | str):
+        return item.decode("utf-8") if isinstance(item, bytes) else item
+    return "".join(map(chr, np.asarray(file[item][()]).T.ravel()))
+
+
+def _sparse(one: Any) -> Any:
+    names = _parts(one)
+    assert names is not None
+    data, indices, pointer = (np.asarray(one[name][()]) for name in names)
+    size = len(pointer) - 1
+    if names == MATLAB:
+        shape, by_row = (int(one.attrs.get("MATLAB_sparse", size)), size), False
+    else:
+        form = one.attrs.get("format", one.attrs.get("encoding-type", "csr"))
+        by_row = (form.decode() if isinstance(form, bytes) else str(form)).startswith("csr")
+        given = one.attrs.get("shape", one["shape"][()] if "shape" in one else (size, size))
+        shape = (int(given[0]), int(given[1]))
+    matrix = (scipy.sparse.csr_array if by_row else scipy.sparse.csc_array)(
+        (data, indices, pointer), shape=shape
+    )
+    matrix.check_format(full_check=True)
+    return matrix
