@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fcm.cli.columns import UNKNOWN, UNSTABLE, aligned, number, ranges, short, swept
-from fcm.cli.jump_table import jump_table
+from fcm.cli.jump_table import jump_table, untold_table
 from fcm.rotation import MOST_DOFS, greatest_first, is_rotation, unit_of
 
 Curve = Mapping[str, Any]  # one of the summary's "curves"
 
+_AT_REST = "0 the degree of freedom does not move, beside rounding"
 _EDGE = "*"  # beside the frequency of a peak where the range ends
 _UNTOLD = "- not told: with more harmonics none was found near this peak, or a higher one elsewhere"
 _OF_LEVELS = "- not told: what more harmonics would change could not be estimated at this peak"
@@ -31,7 +32,7 @@ def as_table(summary: Mapping[str, Any], unit: str) -> str:
         return of_modes(summary, names, unit)
     dofs, length = _greatest(curves), summary.get("units", {}).get("length", "")
     parts = [_curves(curves, names, dofs, unit, length)]
-    parts += filter(None, [jump_table(curves, names, dofs, unit)])
+    parts += filter(None, [table(curves, names, dofs, unit) for table in (jump_table, untold_table)])
     parts += [_scatter(one, dofs, unit) for one in summary.get("scatter", ())]
     return "\n\n".join(parts)
 
@@ -90,6 +91,8 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
     if (count := len(curves[0]["peak"])) > len(dofs):
         turning = ", displacements before rotations" if any(map(is_rotation, curves[0]["peak"])) else ""
         lines.append(f"the {len(dofs)} of {count} degrees of freedom with the greatest peaks{turning}")
+    if any(_at_rest(curve, dof) for curve in curves for dof in dofs):
+        lines.append(_AT_REST)
     if any(_at_edge(curve, dof) for curve in curves for dof in dofs):
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
     marks = {_stability(curve, dof) for curve in curves for dof in dofs}
@@ -112,10 +115,15 @@ def _at_edge(curve: Curve, dof: str) -> bool:
     return bool((curve["peak"].get(dof) or {}).get("at_edge"))
 
 
+def _at_rest(curve: Curve, dof: str) -> bool:
+    """Whether a degree of freedom does not move."""
+    return (curve["peak"].get(dof) or {}).get("amplitude") == 0.0
+
+
 def _stability(curve: Curve, dof: str) -> str:
     """A mark beside a peak of which it is not known that it is stable."""
     peak = curve["peak"].get(dof) or {}
-    if peak.get("amplitude") is None or "stable" not in peak or peak["stable"]:
+    if not peak.get("amplitude") or "stable" not in peak or peak["stable"]:
         return ""
     return UNKNOWN if peak["stable"] is None else UNSTABLE
 
@@ -123,13 +131,16 @@ def _stability(curve: Curve, dof: str) -> str:
 def _untold(curve: Curve, dof: str) -> bool:
     """Whether the error of a peak of a balance is not known."""
     peak = curve["peak"].get(dof) or {}
-    return "harmonics" in curve and peak.get("amplitude") is not None and peak.get("error") is None
+    return "harmonics" in curve and bool(peak.get("amplitude")) and peak.get("error") is None
 
 
 def _curve_row(curve: Curve, dofs: list[str], balanced: bool) -> list[str]:
     cells = swept(curve)
     for dof in dofs:
         peak = curve["peak"].get(dof) or {}
+        if _at_rest(curve, dof):
+            cells += ["0", "-", "-"]
+            continue
         at = number(peak.get("frequency")) + (_EDGE if peak.get("at_edge") else "")
         height = number(peak.get("amplitude")) + _stability(curve, dof)
         cells += [height, at, short(peak.get("error"))]

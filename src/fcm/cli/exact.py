@@ -152,7 +152,7 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
     if not families:
         return
     count = sum(int(np.isfinite(one.family_greatest).any(axis=1).sum()) for one in families)
-    spread = max(float(np.nanmax(1.0 - one.family_least / one.family_greatest)) for one in families)
+    spread = max(map(_spread, families))
     yield (
         f"points that are not unique: {count}; a contact never slips there, and its residual friction "
         f"changes an amplitude by up to {spread:.0%} (family_least to family_greatest, of stable motions "
@@ -164,6 +164,15 @@ def _not_unique(found: Sequence[Orbits]) -> Iterator[str]:
             f"at {partly} of them it may change more: not every residual friction was reached "
             "(family_complete is 0)"
         )
+
+
+def _spread(orbits: Orbits) -> float:
+    """The greatest share of an amplitude by which residual friction changes it."""
+    import numpy as np
+
+    moves = orbits.family_greatest > 0.0
+    most = orbits.family_greatest[moves]
+    return float(np.max((most - orbits.family_least[moves]) / most, initial=0.0))
 
 
 def _unsure(found: Sequence[Orbits]) -> Iterator[str]:

@@ -30,6 +30,13 @@ class ModeError(ValueError):
 
 
 @dataclass(frozen=True)
+class RoundingOptions:
+    """last_digits : units of the last digit of float64 that a sum of forces may be off."""
+
+    last_digits: float = 100.0
+
+
+@dataclass(frozen=True)
 class Mode:
     """Points of a nonlinear mode: modal amplitude, frequency, damping ratio, and the modes' motion over a."""
 
@@ -97,16 +104,33 @@ def mode_at(system: System, problem: Autonomous, path: Path) -> Mode:
     """The mode at the points of a path."""
     found = [problem.motion(z) for z in path.z]
     modes = system.linear.natural.size
+    omega, damping = (np.array([getattr(one, name) for one in found]) for name in ("omega", "damping"))
+    Q = np.array([one.Q for one in found], dtype=np.complex128).reshape(-1, len(system.harmonics), modes)
     return Mode(
         system,
         problem,
         path,
         np.array([one.amplitude for one in found]),
-        np.array([one.omega for one in found]),
-        np.array([one.damping for one in found]),
+        omega,
+        np.where(np.abs(damping) <= damping_rounding(system, omega, Q), 0.0, damping),
         np.array([one.mean for one in found]).reshape(-1, modes),
-        np.array([one.Q for one in found], dtype=np.complex128).reshape(-1, len(system.harmonics), modes),
+        Q,
     )
+
+
+def damping_rounding(
+    system: System, omega: FloatArray, Q: ComplexArray, options: RoundingOptions | None = None
+) -> FloatArray:
+    """Up to which damping ratio there is none, beside rounding, (point,).
+
+    The work of a cycle is what is left of forces of the stiffness, omega^2, and of the contacts' springs:
+    of their sum so many last digits, over 2 omega^2.
+    """
+    springs = system.springs(stuck=True)
+    stretched = (np.abs(Q @ system.linear.ports) ** 2 @ springs).sum(axis=1)
+    units = (options or RoundingOptions()).last_digits * np.finfo(np.float64).eps
+    found: FloatArray = units * (omega**2 + stretched) / (2.0 * omega**2)
+    return found
 
 
 def linear_modes(system: System, number: int) -> list[Guess]:

@@ -22,6 +22,7 @@ from fcm.response.search import FOUND
 from fcm.response.unreached import Unreached
 from fcm.response.visit import STATES
 from fcm.response.wanted import ResponseError
+from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.scene.model import Scene
@@ -125,6 +126,7 @@ class _Run:
                 response = self._swept(scene, lighter.exact, progress)
         said += on_contacts(response.curves, scenes[0].contacts)
         response.left_out = [*said, *([ONLY] if self.work.only_peaks else [])]
+        response.curves = [without_rounding(one) for one in response.curves]
         return response
 
     def _swept(self, scene: Scene, scenes: Sequence[Scene], progress: Progress | None) -> Response:

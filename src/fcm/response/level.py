@@ -30,6 +30,7 @@ from fcm.response.groups import lost_curve
 from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
+from fcm.results.at_rest import without_rounding
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Progress
@@ -79,7 +80,7 @@ def trace_levels(
         (_without(curve, omega, NOT_BEGUN), partial(_level, curve, wanted, omega, span))
         for curve, omega in ways
     ]
-    curves = one_by_one(tasks, progress)
+    curves = [without_rounding(one) for one in one_by_one(tasks, progress)]
     response = Response.of(scene, curves, "level of the forces")
     response.seconds = time.perf_counter() - begin
     return response

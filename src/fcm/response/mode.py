@@ -20,6 +20,7 @@ from fcm.response.groups import lost_curve
 from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
+from fcm.results.at_rest import without_rounding
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Progress
@@ -77,6 +78,7 @@ def trace_modes(
         )
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None
+    curves = [without_rounding(one) for one in curves]
     response = Response.of(scene, curves, f"nonlinear mode {number}")
     response.seconds = time.perf_counter() - begin
     return response

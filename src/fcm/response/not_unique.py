@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from fcm.at_rest import RestOptions
 from fcm.motion.errors import SimulationError
 from fcm.motion.matrices import has_friction
 from fcm.orbit.family import Family, family
@@ -18,6 +19,7 @@ from fcm.response.search import Extents, Search
 from fcm.results.orbits import Stuck
 from fcm.scene.model import FloatArray, Scene
 
+REST = RestOptions()
 UNIQUE = 1e-6  # relative range of amplitudes below which they are the same
 
 
@@ -68,7 +70,7 @@ def _told(scene: Scene, points: list[Sample], out: Extents, search: Search) -> E
         least = np.min([found.least, *(one.family.least for one in those)], axis=0)
         greatest = np.max([found.greatest, *(one.family.greatest for one in those)], axis=0)
         whole = found.complete and not search.over
-        if (greatest - least > UNIQUE * greatest).any():
+        if (greatest - least > UNIQUE * greatest + REST.displacement * greatest.max(initial=0.0)).any():
             out.least[k], out.greatest[k], out.whole[k] = least, greatest, whole
         elif not whole:
             out.whole[k] = 0.0

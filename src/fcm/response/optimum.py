@@ -15,7 +15,7 @@ from fcm.response.curve_sweep import checkpoint_of
 from fcm.response.least import Found, Task, with_values
 from fcm.response.optima import optima
 from fcm.response.sweep import trace
-from fcm.response.wanted import wanted_of
+from fcm.response.wanted import ResponseError, wanted_of
 from fcm.results.gist import gist_of, without_points
 from fcm.results.peak import stability_at_top
 from fcm.results.result import INTERRUPTED, Curve, Response
@@ -60,7 +60,7 @@ def optimise(
     Raises
     ------
     ResponseError
-        If nothing has a peak in the range.
+        If nothing has a peak in the range, or what is to be least does not move.
     KeyboardInterrupt
         If nothing is found then; else what was least so far is returned, without a response.
     """
@@ -80,6 +80,8 @@ def optimise(
         response = trace(there, progress=shown, harmonics=tracking.harmonics, **options)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
+    for one, curve in zip(tracking.optima, response.curves, strict=True):
+        _check_moves(one, curve)
     tracking.optima = [_with_error(one, c) for one, c in zip(tracking.optima, response.curves, strict=True)]
     tracking.problems += _higher(tracking, response)
     if wanted.harmonics is None:
@@ -144,6 +146,14 @@ def _at(free: Scene, numbers: list[Number], optima: list[Optimal]) -> Scene:
         there = with_values(curve, numbers, np.array(list(found.values.values())))
         curves.append(replace(there, parameters={**curve.parameters, **found.values}, curves=(), draft=None))
     return replace(free, curves=tuple(curves))
+
+
+def _check_moves(found: Optimal, curve: Curve) -> None:
+    """Raise ResponseError where what was minimised is rounding."""
+    still = [dof for dof, _ in found.active if curve.peaks[dof].amplitude == 0.0]
+    if still and found.value > 0.0:
+        verb = "does" if len(still) == 1 else "do"
+        raise ResponseError(f"optimum: {' and '.join(still)} {verb} not move, beside rounding")
 
 
 def _with_error(found: Optimal, curve: Curve) -> Optimal:

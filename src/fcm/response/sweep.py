@@ -16,6 +16,7 @@ from fcm.response.curve_sweep import CurveSweep, checkpoint_of
 from fcm.response.groups import Work
 from fcm.response.trace import METHODS
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
+from fcm.results.at_rest import without_rounding
 from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part
@@ -120,6 +121,7 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
             lighter = leave_out(curves, 0.0, highest)
             response = sweep.run(lighter, part(progress, FIRST, 1.0))
     response = restored(response, lighter)
+    response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:
         said.append("the table: no contact needs it (no effect)")
     response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.wanted)]

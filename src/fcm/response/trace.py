@@ -158,6 +158,7 @@ def _curve(followed: _Followed) -> Curve:
         loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         levels=[one.omega for one in found.traced.found],
+        digits=bool(rounding.any()),
     )
 
 

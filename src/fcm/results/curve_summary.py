@@ -75,7 +75,8 @@ def _untold(one: Untold, dofs: tuple[str, ...], unit: str) -> dict[str, Any]:
 
 def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
     """A peak, and whether it is where the range ends, so that it is none of the curve's own."""
-    at_edge = curve.complete and curve.level is None and peak.frequency in gist.ends
+    moves = peak.amplitude > 0.0
+    at_edge = moves and curve.complete and curve.level is None and peak.frequency in gist.ends
     return {
         "amplitude": peak.amplitude,
         "frequency": float(in_unit(peak.frequency, unit)),

@@ -65,6 +65,7 @@ class Curve:
     loose: int = 0  # points at which a contact never slips and another may feel it, if that is not told
     gist: Gist | None = None  # in the place of most points, where only peaks and folds were asked for
     mode: NonlinearMode | None = None
+    digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from fcm.at_rest import at_rest
 from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -162,6 +163,7 @@ class Search:
         problem = self.way.tracked(condition)
         problem.measure(z)
         amplitude = problem.along(z)[1]
+        amplitude = np.where(at_rest(amplitude), 0.0, amplitude)
         heights = [
             Height(float(amplitude[t.dof]), 0.0, z, t.dof)
             for t in self.targets

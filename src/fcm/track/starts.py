@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import copy
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from fcm.at_rest import at_rest
 from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
 from fcm.harmonic.error import reported
@@ -46,22 +47,32 @@ def special_points(system: System, conditions: list[Condition]) -> Special:
     curves = every_branch(system)
     branches, unsure = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
     found = []
-    for path in branches.paths:
+    amplitudes = _amplitudes(system, branches.paths, conditions)
+    for path, amplitude in zip(branches.paths, amplitudes, strict=True):
         for condition in conditions:
-            found += [(condition, z) for z in _points(system, path, condition)]
+            found += [(condition, z) for z in _points(system, path, amplitude, condition)]
     if not branches.paths:
         return Special(found, "no solution was found at either end of the range", unsure)
     wrong = "" if branches.status.name == "COMPLETE" else branches.status.value
     return Special(found, wrong, unsure)
 
 
-def _points(system: System, path: Path, condition: Condition) -> Iterator[FloatArray]:
+def _amplitudes(system: System, paths: Sequence[Path], conditions: list[Condition]) -> list[FloatArray]:
+    """Along each path, (point, dof), 0 of what moves by rounding alone; none where no peak is sought."""
+    if not paths or all(condition.kind is not Kind.PEAK for condition in conditions):
+        return [np.zeros((len(path.z), 0)) for path in paths]
+    every = [reported(system, path).amplitude for path in paths]
+    moves = ~at_rest(np.max([one.max(axis=0) for one in every], axis=0))
+    return [one * moves for one in every]
+
+
+def _points(system: System, path: Path, amplitude: FloatArray, condition: Condition) -> Iterator[FloatArray]:
     if condition.kind is Kind.FOLD:
         yield from path.z[path.where(Mark.FOLD)]
     elif condition.kind is Kind.END:
         yield from path.z[path.parameter == condition.omega]
     elif condition.kind is Kind.PEAK:
-        yield from path.z[_tops(reported(system, path).amplitude[:, condition.which])]
+        yield from path.z[_tops(amplitude[:, condition.which])]
     else:
         yield from _onsets(system, path, condition)
 

@@ -1,0 +1,82 @@
+"""What moves by rounding alone is at rest: it has no peak, and no error."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.at_rest import RestOptions, at_rest
+from fcm.results.gist import Gist
+from fcm.results.jumps import Swept
+from fcm.results.nonlinear_mode import NonlinearMode
+from fcm.results.peak import Peak
+from fcm.results.result import Curve
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+def without_rounding(curve: Curve, options: RestOptions | None = None) -> Curve:
+    """The curve with amplitudes of 0 where a degree of freedom moves by rounding alone.
+
+    The peak of such a one is at no frequency, and has no error. Means stay: what is at rest may be displaced.
+    """
+    rest = _at_rest(curve, options or RestOptions())
+    if not rest.any():
+        return curve
+    changed: dict[str, Any] = {
+        name: _still(getattr(curve, name), rest) for name in ("amplitude", "fundamental", "error")
+    }
+    changed["peaks"] = {
+        dof: Peak(0.0, np.nan, np.nan, peak.stable) if still and np.isfinite(peak.amplitude) else peak
+        for (dof, peak), still in zip(curve.peaks.items(), rest.tolist(), strict=True)
+    }
+    if curve.harmonic is not None:
+        changed["harmonic"] = _still(curve.harmonic, rest)
+    if (orbits := curve.orbits) is not None:
+        names = ("cycle_least", "cycle_greatest", "family_least", "family_greatest")
+        arrays: dict[str, Any] = {name: _still(getattr(orbits, name), rest) for name in names}
+        arrays["swept"] = None if orbits.swept is None else _swept(orbits.swept, rest)
+        changed["orbits"] = replace(orbits, **arrays)
+    if curve.mode is not None:
+        changed["mode"] = _mode(curve.mode, {dof for dof, one in zip(curve.peaks, rest, strict=True) if one})
+    if curve.gist is not None:
+        changed["gist"] = _gist(curve.gist, rest)
+    return replace(curve, **changed)
+
+
+def _at_rest(curve: Curve, options: RestOptions) -> BoolArray:
+    """Which degrees of freedom (dof,) move by rounding alone, or not at all."""
+    peaks = curve.peaks.values()  # between points they may be higher, and a nonlinear mode has none
+    size = np.fmax.reduce([[peak.amplitude for peak in peaks], *curve.amplitude], axis=0)
+    rest = at_rest(size, options)
+    if curve.digits:
+        rest &= (size == 0.0) | [peak.error >= options.uncertain for peak in peaks]
+    return rest
+
+
+def _gist(gist: Gist, rest: BoolArray) -> Gist:
+    return replace(gist, swept=_swept(gist.swept, rest))
+
+
+def _mode(mode: NonlinearMode, rest: Collection[str]) -> NonlinearMode:
+    resonances = [
+        one._replace(amplitude={dof: 0.0 if dof in rest else a for dof, a in one.amplitude.items()})
+        for one in mode.resonances
+    ]
+    return replace(mode, resonances=resonances)
+
+
+def _swept(swept: Swept, rest: BoolArray) -> Swept:
+    jumps = [
+        replace(one, before=_still(one.before, rest), after=_still(one.after, rest)) for one in swept.jumps
+    ]
+    return Swept(jumps, [replace(one, before=_still(one.before, rest)) for one in swept.untold])
+
+
+def _still(values: npt.NDArray[Any], rest: BoolArray) -> npt.NDArray[Any]:
+    """With 0 in some columns (..., dof), where there is a number."""
+    return np.where(np.isnan(values) | ~rest, values, 0.0)
