@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.eigenvalues import Eigenvalues
-from fcm.harmonic.finer import Finer, beyond
+from fcm.harmonic.finer import PORTS, Finer, beyond
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.propagator import Propagator
 from fcm.harmonic.refined import Refined
@@ -55,7 +55,9 @@ class Multipliers:
         soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
         stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
-        self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), contact, harmonics)
+        summed = linear.ports.shape[1] <= PORTS
+        seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
+        self.finer = Finer(seen, contact, harmonics)
         carried = system.propagators.setdefault(stiffness.modes, Propagator())
         self.fine = Monodromy(stiffness, Transitions(contact, finer), carried)
         self.plain = Monodromy(stiffness, Transitions(contact, harmonics), carried)

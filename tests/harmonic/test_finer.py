@@ -1,0 +1,50 @@
+"""What further harmonics a balanced motion has, beside those that are balanced."""
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.multipliers import Multipliers
+from fcm.harmonic.start import solutions
+from fcm.harmonic.system import System
+from fcm.scene import scene_from_dict
+
+
+def halves(contacts):
+    """Two masses that only their contacts hold together, of which the first slips."""
+    share = 400.0 / contacts
+    pair = {"tangential": {"a": 1.0, "b": -1.0}, "normal": "n", "mu": 0.5, "k_u": share, "k_v": share}
+    return scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["a", "b", "n"],
+                "frequency": [1.0, 1.1, 1.05],
+                "damping": [0.01, 0.01, 0.01],
+                "shapes": np.eye(3).tolist(),
+            },
+            "contact": [
+                {"name": f"c{i}", "n_0": 0.3 if i % 2 == 0 else 30.0} | pair for i in range(contacts)
+            ],
+            "force": [{"dof": "a", "amplitude": 2.0}],
+            "response": {"frequency": [0.9, 1.2]},
+        }
+    )
+
+
+def only(scene, omega, harmonics):
+    (z,) = solutions(System(scene, harmonics), omega).solutions
+    return z
+
+
+@pytest.mark.parametrize("contacts", [2, 12])  # few ports, and many
+def test_halves_held_together_by_contacts_have_the_further_harmonics_that_are_balanced(contacts):
+    scene, omega = halves(contacts), 1.0
+    few = Multipliers(System(scene), omega)
+    finer = few.finer
+    finer.at(only(scene, omega, (1,)))
+    harmonics = tuple(int(h) for h in finer.seen.harmonics)
+    z = only(scene, omega, harmonics)
+    width = 2 + 4 * len(harmonics)
+    added, balanced = (np.reshape(x, (contacts, width))[:, 6:] for x in (finer.x, z[:-1]))
+    assert np.abs(balanced).max() > 0.0
+    assert np.abs(added - balanced).max() < 0.5 * np.abs(balanced).max()
+    assert few.verdict(only(scene, omega, (1,))).stable == 1.0
