@@ -16,23 +16,30 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ENDINGS = (".png", ".svg", ".pdf")
+PAGE = ".html"
 
 
-def draws_file(ending: str) -> Callable[[Any], Any]:
-    """The argument FILE and the option -o of a command that draws a file of results."""
+def draws_file(ending: str, page: bool = False) -> Callable[[Any], Any]:
+    """The argument FILE and the option -o of a command that draws a file of results, as a page too."""
+    kinds = ".png, .svg or .pdf, or a page to look into, .html" if page else ".png, .svg or .pdf"
     option = output_option(
-        "-o", "--output", endings=ENDINGS,
-        help=f"The picture to write: .png, .svg or .pdf.  [default: FILE with the ending {ending}]",
+        "-o", "--output", endings=(*ENDINGS, PAGE) if page else ENDINGS,
+        help=f"The picture to write: {kinds}.  [default: FILE with the ending {ending}]",
     )  # fmt: skip
     kind = click.Path(exists=True, dir_okay=False, readable=True, path_type=Path)
     return lambda command: click.argument("file", type=kind)(option(command))
 
 
-def picture_of(file: Path, output: Path | None, ending: str) -> Path:
+def picture_of(file: Path, output: Path | None, ending: str, page: bool = False) -> Path:
     """Where the picture of a file of results goes."""
     output = output or file.with_name(file.stem + ending)
-    check_output(output, ENDINGS)
+    check_output(output, (*ENDINGS, PAGE) if page else ENDINGS)
     return output
+
+
+def is_page(output: Path) -> bool:
+    """Whether what is to be written is a page to look into."""
+    return output.suffix.lower() == PAGE
 
 
 def angles(_ctx: click.Context, _param: click.Parameter, texts: tuple[str, ...]) -> tuple[float, ...]:

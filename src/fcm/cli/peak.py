@@ -6,12 +6,13 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, is_page, picture_of, save_picture
 from fcm.cli.messages import Messages, pass_messages
+from fcm.files import replacing
 
 
 @click.command()
-@draws_file("-peak.png")
+@draws_file("-peak.png", page=True)
 @click.option(
     "--dof", metavar="NAME",
     help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
@@ -30,8 +31,17 @@ def peak(
     from fcm.plot.peak import draw_peak, read_peaks
     from fcm.plot.tracked import draw_tracked, read_tracked
 
-    output = picture_of(file, output, "-peak.png")
+    output = picture_of(file, output, "-peak.png", page=True)
     tracked = read_tracked(file)
+    if is_page(output):
+        if folds or (tracked is not None and against is None):
+            raise click.UsageError("tracked peaks and folds are drawn to .png, .svg or .pdf, not to a page.")
+        from fcm.plot.interactive import peak_page
+
+        with replacing(output) as partial:
+            peak_page(read_peaks(file), dof, against, partial)
+        messages.info(f"wrote {output}")
+        return
     if tracked is not None and against is None:
         figure = draw_tracked(tracked, dof=dof, folds=folds)
     elif folds:

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, is_page, picture_of, save_picture
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
+from fcm.files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,7 +41,7 @@ def plot() -> None:
 
 
 @click.command()
-@draws_file(".png")
+@draws_file(".png", page=True)
 @click.option(
     "--dof", metavar="NAME",
     help="The degree of freedom to draw.  [default: the first; of more than 4 that of the greatest peak]",
@@ -73,11 +74,23 @@ def response(
     """Draw the response curves of FILE, the netCDF file of `fcm respond -o FILE`.
 
     Unstable parts are dashed, those of which that is not told dotted, and the errors of the curves drawn
-    below them, where the file knows them.
+    below them, where the file knows them. A page (.html) has every degree of freedom, and the numbers of the
+    point under the mouse.
     """
     from fcm.plot import draw_response, read_points, read_response
 
-    output = picture_of(file, output, ".png")
+    output = picture_of(file, output, ".png", page=True)
+    if is_page(output):
+        if band is not None or points is not None:
+            raise click.UsageError(
+                "a page has curves alone; write --band and --points to .png, .svg or .pdf."
+            )
+        from fcm.plot.interactive import response_page
+
+        with replacing(output) as partial:
+            response_page(read_response(file), dof, log, partial)
+        messages.info(f"wrote {output}")
+        return
     if band is not None:
         save_picture(_bands(file, dof, log, points, band), output)
         messages.info(f"wrote {output}")

@@ -1,0 +1,168 @@
+"""A page to look into a response: every curve, hover for its numbers, zoom, a menu of degrees of freedom.
+
+The page is one HTML file that holds all it needs, by plotly; no network is used when it is opened.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fcm.plot.errors import PlotError
+from fcm.plot.labels import short_names, with_unit
+from fcm.plot.peak import Peaks
+from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
+from fcm.plot.style import has_decades, sequence_colours
+
+STATES = ("stable", "unstable", "not told whether stable")
+DASHES = dict(zip(STATES, ("solid", "dash", "dot"), strict=True))
+
+
+def response_page(response: DrawnResponse, dof: str | None, log: bool | None, path: Path) -> None:
+    """Write the page of a response.
+
+    Parameters
+    ----------
+    dof : str, optional
+        The degree of freedom that is shown first; a menu has the others.
+    log : bool, optional
+        Whether the axis of the amplitude is logarithmic; by default if the peaks span more than a decade.
+    path : Path
+        Where the page goes; its picture is one trace for each curve and state of stability.
+    """
+    curves = [curve for curve in response.curves if np.isfinite(curve.amplitude).any()]
+    if not curves:
+        raise PlotError("the file holds no point of any curve")
+    column, go = response.column(dof), _plotly()
+    figure, parts = go.Figure(), list(_parts(curves))
+    colours = dict(zip(map(id, curves), sequence_colours(len(curves)), strict=True))
+    for curve, state, rows, first in parts:
+        name, y = _name(curve, response), _masked(curve, rows, column)
+        figure.add_scatter(
+            x=curve.frequency, y=y, mode=_mode(y), name=name,
+            legendgroup=name, showlegend=first, customdata=_said(curve, state),
+            line={"color": colours[id(curve)], "dash": DASHES[state], "width": 1.5}, marker={"size": 4},
+            hovertemplate="%{x:.6g}: <b>%{y:.6g}</b>, %{customdata[1]}, error %{customdata[0]}",
+        )  # fmt: skip
+    heights = [float(np.nanmax(curve.amplitude[:, column])) for curve in curves]
+    along = "log" if wide(curves) and response.frequency_unit != LEVEL else "linear"
+    up = "log" if (has_decades(heights) if log is None else log) else "linear"
+    figure.update_xaxes(title=_frequency(response.frequency_unit), type=along)
+    figure.update_yaxes(title=_amplitude(response, column), type=up)
+    said = [f"{dash}: {state}" for state, dash in DASHES.items() if any(state == part[1] for part in parts)]
+    title = {"text": "; ".join(said), "font": {"size": 13}, "x": 0.5}
+    figure.update_layout(updatemenus=_menu(response, parts, column), title=title, **_LAYOUT)
+    _write(figure, path)
+
+
+def peak_page(peaks: Peaks, dof: str | None, against: str | None, path: Path) -> None:
+    """Write the page of peaks against what was swept: one trace for each degree of freedom."""
+    from fcm.plot.dof import column_of
+
+    keys = list(peaks.parameters)
+    if not keys:
+        raise PlotError("the file has one curve: there is nothing to draw its peak against")
+    if against is not None and against not in keys:
+        raise PlotError(f"nothing was swept as {against!r}; swept were {', '.join(keys)}")
+    key, shown, figure = against or keys[0], column_of(peaks.dofs, dof), _plotly().Figure()
+    order = np.argsort(peaks.parameters[key], kind="stable")
+    for number, name in enumerate(peaks.dofs):
+        states = _states_of_peaks(peaks, number, order)
+        figure.add_scatter(
+            x=peaks.parameters[key][order], y=peaks.amplitude[order, number], name=name, mode="lines+markers",
+            visible=True if number == shown else "legendonly",
+            customdata=np.stack((peaks.frequency[order, number].astype(str), states), axis=1),
+            hovertemplate="%{x:.6g}: <b>%{y:.6g}</b> at %{customdata[0]}, %{customdata[1]}",
+        )  # fmt: skip
+    figure.update_xaxes(title=with_unit(short_names(keys)[key], peaks.units.get(key, "")))
+    figure.update_yaxes(title=with_unit("Peak amplitude", peaks.length))
+    figure.update_layout(**_LAYOUT)
+    _write(figure, path)
+
+
+_LAYOUT: dict[str, Any] = {"template": "simple_white", "hovermode": "closest", "margin": {"t": 60, "r": 20}}
+
+
+def _plotly() -> Any:
+    try:
+        from plotly import graph_objects
+    except ModuleNotFoundError:
+        raise PlotError(
+            "a page needs the package plotly: pip install 'fcm[html]', or write .png, .svg or .pdf"
+        ) from None
+    return graph_objects
+
+
+def _write(figure: Any, path: Path) -> None:
+    text = figure.to_html(include_plotlyjs=True, full_html=True, default_height="95vh")
+    path.write_text(text, encoding="utf-8")
+
+
+def _parts(curves: Sequence[DrawnCurve]) -> Iterator[tuple[DrawnCurve, str, BoolArray, bool]]:
+    """The points of each state of stability of each curve, and whether they are the first of the curve."""
+    for curve in curves:
+        there = np.isfinite(curve.frequency)
+        unstable = np.zeros_like(there) if curve.stable is None else ~curve.stable
+        untold = np.zeros_like(there) if curve.untold is None else curve.untold
+        every = zip(STATES, (~unstable & ~untold, unstable & ~untold, untold), strict=True)
+        found = [(state, rows & there) for state, rows in every if (rows & there).any()]
+        for number, (state, rows) in enumerate(found):
+            yield curve, state, rows, number == 0
+
+
+def _masked(curve: DrawnCurve, rows: BoolArray, column: int) -> FloatArray:
+    """The amplitude at some points and at their neighbours, so that parts meet; NaN elsewhere."""
+    beside = rows.copy()
+    beside[1:] |= rows[:-1]
+    return np.where(beside, curve.amplitude[:, column], np.nan)
+
+
+def _mode(y: FloatArray) -> str:
+    """How a trace is drawn: as lines, with marks where a point stands alone, as of peaks alone."""
+    there = np.concatenate(([False], np.isfinite(y), [False]))
+    alone = there[1:-1] & ~there[:-2] & ~there[2:]
+    return "lines+markers" if alone.any() else "lines"
+
+
+def _said(curve: DrawnCurve, state: str) -> Any:
+    """What is shown of each point beside its place: the error and the stability."""
+    error = curve.truncation_error
+    told = np.full(len(curve.frequency), np.nan) if error is None else error
+    shown = ["not told" if np.isnan(one) else f"{one:.1e}" for one in told]
+    return np.stack((np.array(shown), np.full(len(shown), state)), axis=1)
+
+
+def _name(curve: DrawnCurve, response: DrawnResponse) -> str:
+    names = short_names(curve.parameters)
+    each = ((names[key], value, response.units.get(key, "")) for key, value in curve.parameters.items())
+    return ", ".join(f"{name} = {value:.4g} {unit}".rstrip() for name, value, unit in each) or "response"
+
+
+def _frequency(unit: str) -> str:
+    return "Level of the forces" if unit == LEVEL else f"Frequency ({unit})"
+
+
+def _amplitude(response: DrawnResponse, column: int) -> str:
+    return with_unit(f"Amplitude of {response.dofs[column]}", response.length)
+
+
+def _menu(response: DrawnResponse, parts: Sequence[Any], column: int) -> list[Mapping[str, Any]]:
+    """A menu of the degrees of freedom; none where there is one."""
+    if len(response.dofs) < 2:
+        return []
+    buttons = []
+    for number, name in enumerate(response.dofs):
+        change = {"y": [_masked(curve, rows, number) for curve, _, rows, _ in parts]}
+        title = {"yaxis.title.text": _amplitude(response, number)}
+        buttons.append({"label": name, "method": "update", "args": [change, title]})
+    place = {"x": 0.0, "xanchor": "left", "y": 1.12, "yanchor": "top"}
+    return [{"buttons": buttons, "active": column, "direction": "down", **place}]
+
+
+def _states_of_peaks(peaks: Peaks, column: int, order: Any) -> Any:
+    if peaks.unstable is None:
+        return np.full(len(order), STATES[2])
+    return np.where(peaks.unstable[order, column], STATES[1], "not unstable")
