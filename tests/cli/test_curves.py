@@ -71,7 +71,7 @@ def test_a_peak_at_which_no_motion_stays_is_marked():
     _header, row, *said = as_table({"curves": [one]}, "Hz").splitlines()
     assert row.split()[:9:3] == ["1.00000", "2.00000!", "3.00000?"]
     assert said == [
-        "! the motion is not stable there: none stays at this peak",
+        "! unstable: the motion is not stable there: none stays at this peak",
         "? whether the motion is stable there is not told",
     ]
     assert as_table({"curves": [curve({"u": 1.0})]}, "Hz").count("\n") == 1

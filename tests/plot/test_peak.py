@@ -108,7 +108,7 @@ def test_a_curve_that_is_not_complete_is_not_drawn():
 
 
 def test_peaks_at_which_no_motion_stays_are_crossed():
-    some = replace(peaks(n_0=[0, 10, 20]), unstable=np.array([[1, 0], [0, 0], [1, 0]], bool))
+    some = replace(peaks(n_0=[0, 10, 20]), stable=np.array([[0.0, 1], [1, 1], [0, 1]]))
     upper, lower = draw_peak(some).axes
     for axes, values in ((upper, some.amplitude), (lower, some.frequency)):
         (cross,) = (line for line in axes.lines if line.get_marker() == "x")
@@ -117,6 +117,14 @@ def test_peaks_at_which_no_motion_stays_are_crossed():
     assert "not stable" in lower.get_title(loc="left")
     for settled in (draw_peak(some, dof="v"), draw_peak(peaks(n_0=[0, 10, 20]))):
         assert not any(line.get_marker() == "x" for axes in settled.axes for line in axes.lines)
+
+
+@pytest.mark.parametrize(
+    ("stable", "said"), [(1.0, ""), (0.0, ", unstable"), (np.nan, ", stability not told")]
+)
+def test_the_least_peak_is_not_told_without_its_stability(stable, said):
+    some = replace(peaks(n_0=[0, 10, 20]), stable=np.array([[1, 1], [stable, 1], [1, 1]]))
+    assert title(draw_peak(some).axes[0]) == f"least peak 6{said} at $n_{{0}}$ = 10"
 
 
 def test_decades_of_positive_values_are_logarithmic():

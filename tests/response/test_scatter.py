@@ -144,6 +144,28 @@ def scatter_of(response):
     return made
 
 
+def test_peaks_that_no_motion_stays_at_are_said_to_be_unstable(scatter_of, response):
+    """By hand: of four draws one peak is not stable, and of one that is not told."""
+    curves = [curve_with([1] * 7) for _ in range(4)]
+    for curve, stable in zip(curves, (1.0, 0.0, np.nan, 1.0), strict=True):
+        curve.peaks["u"] = curve.peaks["u"]._replace(stable=stable)
+    one = scatter_of(curves)
+    assert (one["peak"]["u"]["unstable"], one["peak"]["u"]["untold"]) == (0.25, 0.25)
+    from fcm.cli.curves import as_table
+    from fcm.results.curve_fields import scatter_fields
+
+    printed = summary(response) | {"scatter": [one | {"peak": dict.fromkeys("uv", one["peak"]["u"])}]}
+    (line,) = [row for row in as_table(printed, "rad/s").splitlines() if row.split()[:2] == ["peak", "u"]][
+        -1:
+    ]
+    assert line.endswith("25% unstable, 25% of stability not told")
+    numbers = [{"contact.c.n_0": float(i)} for i, _ in enumerate(curves)]
+    own = [replace(curve, parameters=by) for curve, by in zip(curves, numbers, strict=True)]
+    fields = scatter_fields(scatter(replace(response, curves=own, dofs=("u",))), "rad/s")
+    assert fields["peak_unstable_share"].values.tolist() == [[0.25]]
+    assert fields["peak_untold_share"].values.tolist() == [[0.25]]
+
+
 def test_what_is_not_known_is_printed_and_written(scatter_of, response):
     from fcm.cli.curves import as_table
     from fcm.results.curve_fields import scatter_fields

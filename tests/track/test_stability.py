@@ -1,6 +1,7 @@
 """Whether a motion stays at tracked peaks and at the least peak, against the exact motion there."""
 
 import json
+import re
 from pathlib import Path
 
 import netCDF4
@@ -62,8 +63,15 @@ def test_tracked_peaks_that_no_motion_stays_at_are_told_written_and_drawn(fcm, n
 def test_the_least_peak_has_a_mark_where_no_motion_stays(fcm, narrow):
     scene = narrow(2.2, 2.3, OPTIMUM)
     done = fcm("respond", scene, "--harmonics", "1", "-o", "a.nc")
-    place, said = done.out.splitlines()[1:3]
-    assert done.code == 0 and place.endswith("rad/s!") and said.startswith("! the motion is not stable there")
+    least, place, said = done.out.splitlines()[:3]
+    assert ", unstable (error" in least
+    assert (
+        done.code == 0
+        and place.endswith("rad/s!")
+        and said.startswith("! unstable: the motion is not stable there")
+    )
+    assert fcm("plot", "peak", "a.nc", "-o", "a.svg").code == 0
+    assert re.search(r"least peak [0-9.e-]+, unstable at", Path("a.svg").read_text("utf-8"))
     with netCDF4.Dataset("a.nc") as file:
         assert file["optimum_stable"][:].tolist() == [[0.0]]
         (found,) = json.loads(file.summary)["optimum"]

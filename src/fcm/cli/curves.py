@@ -47,7 +47,8 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
     rows = []
     for dof in dofs if found["peak"] else ():
         for name, kind in ((f"peak {dof}", "amplitude"), (f"at {unit}", "frequency")):
-            rows.append([name, *map(number, found["peak"][dof][kind].values()), ""])
+            stays = _of_stable(found["peak"][dof]) if kind == "amplitude" else ""
+            rows.append([name, *map(number, found["peak"][dof][kind].values()), stays])
     rows += [
         [name, *map(number, one["frequency"].values()), _of_how_many(one)] for name, one in jumps.items()
     ]
@@ -57,6 +58,12 @@ def _scatter(found: Mapping[str, Any], dofs: list[str], unit: str) -> str:
         return head
     percents = next(iter(found["jumps"].values()))["frequency"]
     return f"{head}\n" + aligned([["", *(f"{percent} %" for percent in percents), ""], *rows], left=1)
+
+
+def _of_stable(peak: Mapping[str, Any]) -> str:
+    """How many of the peaks are unstable, or may be."""
+    shares = ((peak["unstable"], "unstable"), (peak["untold"], "of stability not told"))
+    return ", ".join(f"{share:.0%} {what}" for share, what in shares if share)
 
 
 def _of_how_many(jump: Mapping[str, Any]) -> str:
@@ -97,7 +104,7 @@ def _curves(curves: Sequence[Curve], names: list[str], dofs: list[str], unit: st
         lines.append(f"{_EDGE} at an end of the range: beyond it the curve may rise further")
     marks = {_stability(curve, dof) for curve in curves for dof in dofs}
     if UNSTABLE in marks:
-        lines.append(f"{UNSTABLE} the motion is not stable there: none stays at this peak")
+        lines.append(f"{UNSTABLE} unstable: the motion is not stable there: none stays at this peak")
     if UNKNOWN in marks:
         lines.append(f"{UNKNOWN} whether the motion is stable there is not told")
     if any(_untold(curve, dof) for curve in curves for dof in dofs):

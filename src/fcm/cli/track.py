@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SHOWN = 3  # problems on a terminal; --json has all
 WHAT = ("folds", "peaks", "slip", "separation", "closing")
 _SAID = {
-    UNSTABLE: f"\n{UNSTABLE} the motion is not stable there: none stays at this peak",
+    UNSTABLE: f"\n{UNSTABLE} unstable: the motion is not stable there: none stays at this peak",
     UNKNOWN: f"\n{UNKNOWN} whether the motion is stable there is not told",
 }
 OF_NO_USE = {  # beside --track, and why
@@ -154,9 +154,16 @@ def _optimum(one: Mapping[str, Any], unit: str) -> str:
     )
     said = "".join(text for mark, text in _SAID.items() if mark in map(_mark, one["at"]))
     least = (
-        f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g} (error {short(one['error'])})"
+        f"least {' and '.join(map(plain, one['minimise']))}: {one['value']:.6g}{_stays(one)} "
+        f"(error {short(one['error'])})"
     )
     return f"{least} with {where}{kind}\n{at}{f'; {swept}' if swept else ''}{said}"
+
+
+def _stays(one: Mapping[str, Any]) -> str:
+    """What is said beside the least peak where no motion stays at it, or that is not told."""
+    found = [place["stable"] for place in one["at"]]
+    return ", unstable" if False in found else ", stability not told" if None in found else ""
 
 
 def _mark(place: Mapping[str, Any]) -> str:

@@ -64,6 +64,17 @@ def with_unit(text: str, unit: str) -> str:
     return f"{text} ({unit})" if unit else text
 
 
+def staying(stable: float) -> str:
+    """What is said beside a peak of which it is not known that a motion stays there.
+
+    >>> staying(1.0), staying(0.0), staying(float("nan"))
+    ('', ', unstable', ', stability not told')
+    """
+    if stable != stable:
+        return ", stability not told"
+    return "" if stable else ", unstable"
+
+
 def frequency_label(unit: str) -> str:
     if unit == "level":
         return "Level of the forces"

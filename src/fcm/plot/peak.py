@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
+from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
 from fcm.plot.read import BoolArray, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import HEIGHT, WIDTH, house_style, logarithmic_axis, new_figure, sequence_colours
 from fcm.rotation import unit_of
@@ -43,7 +43,7 @@ class Peaks:
     frequency: FloatArray  # (curve, dof) in the file's unit
     complete: BoolArray  # (curve,)
     length: str = ""  # unit of displacements, if the file says it
-    unstable: BoolArray | None = None  # (curve, dof) whether the motion is not stable there; None: not known
+    stable: FloatArray | None = None  # (curve, dof) 1, 0 or NaN as of a point; None: the file does not say it
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
@@ -57,12 +57,12 @@ def read_peaks(path: Path) -> Peaks:
         shape = (len(complete), len(dofs))
         if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
             raise ValueError(f"its peaks have shape {amplitude.shape}, not {shape}")
-        unstable = floats(variables["peak_stable"]) == 0.0 if "peak_stable" in variables else None
-        if unstable is not None and unstable.shape != shape:
-            raise ValueError(f"peak_stable has shape {unstable.shape}, not {shape}")
+        stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
+        if stable is not None and stable.shape != shape:
+            raise ValueError(f"peak_stable has shape {stable.shape}, not {shape}")
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
         units = swept_units(variables, swept)
-    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), unstable, units)
+    return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units)
 
 
 def draw_peak(peaks: Peaks, dof: str | None = None, against: str | None = None) -> Figure:
@@ -176,12 +176,13 @@ def _mark_least(upper: Axes, lower: Axes, peaks: Peaks, key: str, column: int, k
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     values = {name: float(values[least]) for name, values in peaks.parameters.items()}
     where = curve_label(values, units=peaks.units)
-    upper.set_title(f"least peak {y:.4g} at {where}", loc="right", fontsize=8, color=_MARK)
+    stays = "" if peaks.stable is None or y == 0.0 else staying(float(peaks.stable[least, column]))
+    upper.set_title(f"least peak {y:.4g}{stays} at {where}", loc="right", fontsize=8, color=_MARK)
 
 
 def _mark_unstable(both: tuple[Axes, Axes], peaks: Peaks, key: str, column: int, known: BoolArray) -> None:
     """A cross on each peak at which no motion stays, and what it means."""
-    if peaks.unstable is None or not (at := known & peaks.unstable[:, column]).any():
+    if peaks.stable is None or not (at := known & (peaks.stable[:, column] == 0.0)).any():
         return
     for axes, values in zip(both, (peaks.amplitude, peaks.frequency), strict=True):
         axes.plot(peaks.parameters[key][at], values[at, column], "x", color=_MARK, markersize=4)

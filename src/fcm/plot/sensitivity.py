@@ -10,6 +10,7 @@ import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
+from fcm.plot.labels import staying
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import WIDTH, house_style, new_figure
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 _NEEDED = (
     "sensitivity", "frequency_sensitivity", "number", "number_value", "peak_amplitude", "peak_frequency",
+    "peak_stable",
     "peak_kind", "dof",
 )  # fmt: skip
 _MOST = 20  # bars
@@ -38,6 +40,7 @@ class DrawnSensitivity:
     frequency: FloatArray  # (curve, dof, number) the same of the peak's frequency
     kind: tuple[tuple[str, ...], ...]  # of each curve and dof
     units: dict[str, str]  # of the swept values
+    stable: FloatArray  # (curve, dof) whether the motion at the peak is, 1, 0 or NaN
 
 
 def read_sensitivity(path: Path) -> DrawnSensitivity:
@@ -62,6 +65,7 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
             frequency * relative[1],
             tuple(tuple(map(str, row)) for row in kind),
             swept_units(variables, swept),
+            floats(variables["peak_stable"]),
         )
 
 
@@ -110,4 +114,5 @@ def _title(drawn: DrawnSensitivity, curve: int, column: int) -> str:
         each = drawn.parameters[curve].items()
         parts.append(", ".join(f"{key} = {value:.4g} {drawn.units[key]}".rstrip() for key, value in each))
     parts.append(_REMARKS.get(drawn.kind[curve][column], ""))
+    parts.append(staying(float(drawn.stable[curve, column])).removeprefix(", "))
     return "; ".join(filter(None, parts))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
-from fcm.plot.labels import frequency_label, symbols, with_unit
+from fcm.plot.labels import frequency_label, staying, symbols, with_unit
 from fcm.plot.read import FloatArray, floats
 from fcm.plot.style import (
     HEIGHT,
@@ -53,6 +53,7 @@ class DrawnTracking:
     frequency_unit: str
     tracks: tuple[DrawnTrack, ...]
     optimum: tuple[float, float] | None = None  # the number, and the peak
+    stays: str = ""  # what is to be said of the stability of that
     length: str = ""
     unit: str = ""  # of the number
 
@@ -78,18 +79,28 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             there = np.isfinite(number[i])
             columns = (one[i][there] for one in (number, frequency, amplitude, turn, trough, stable))
             tracks.append(DrawnTrack(what, *columns))
-        optimum = None
+        optimum, stays = None, ""
         if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
             optimum = (float(variables["optimum_number"][0, 0]), float(variables["optimum_peak"][0]))
+            stays = _stays(variables)
         return DrawnTracking(
             str(getattr(variables["tracked_number"], "key", "")),
             tuple(str(name) for name in np.atleast_1d(variables["dof"][:])),
             str(getattr(data, "frequency_unit", "rad/s")),
             tuple(tracks),
             optimum,
+            stays,
             str(getattr(variables["tracked_amplitude"], "units", "")),
             str(getattr(variables["tracked_number"], "units", "")),
         )
+
+
+def _stays(variables: Any) -> str:
+    """What is to be said of the stability of the motion at the optimum, or at those peaks that are equal."""
+    if "optimum_stable" not in variables:
+        return ""
+    told = floats(variables["optimum_stable"])[0][np.isfinite(floats(variables["optimum_frequency"])[0])]
+    return staying(0.0 if (told == 0.0).any() else float(told.min(initial=1.0)))
 
 
 def draw_tracked(drawn: DrawnTracking, dof: str | None = None, folds: bool = False) -> Figure:
@@ -192,4 +203,4 @@ def _mark_optimum(upper: Axes, lower: Axes, drawn: DrawnTracking) -> None:
         axes.axvline(x, color=_MARK, linewidth=0.5, linestyle=(0, (4, 3)), zorder=0)
     (symbol,) = symbols([drawn.key])
     at = f"{symbol} = {x:.5g} {drawn.unit}".rstrip()
-    upper.set_title(f"least peak {y:.5g} at {at}", loc="right", fontsize=8, color=_MARK)
+    upper.set_title(f"least peak {y:.5g}{drawn.stays} at {at}", loc="right", fontsize=8, color=_MARK)

@@ -101,6 +101,16 @@ def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:
             np.stack([one.untold for one in found]),
             {"long_name": "share of curves that may jump, as stability is not told", "units": "1"},
         ),
+        "peak_unstable_share": Field(
+            ("scatter", "dof"),
+            np.stack([one.peak_unstable for one in found]),
+            {"long_name": "share of curves that are not stable at the greatest amplitude", "units": "1"},
+        ),
+        "peak_untold_share": Field(
+            ("scatter", "dof"),
+            np.stack([one.peak_untold for one in found]),
+            {"long_name": "share of curves of which that is not told", "units": "1"},
+        ),
     }
 
 

@@ -96,6 +96,7 @@ def _sensitivity(curve: Curve, found: Sensitivities, unit: str) -> dict[str, Any
         numbers = zip(found.numbers, found.values, height, frequency, strict=True)
         out[dof] = {
             "peak": kind.value,
+            "stable": None if np.isnan(curve.peaks[dof].stable) else bool(curve.peaks[dof].stable),
             "numbers": {
                 key: {
                     "value": float(value),

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.results.gist import gist_of
+from fcm.results.peak import Peak
 from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray
 from fcm.units import in_unit
@@ -36,6 +37,8 @@ class Scatter:
     jump: FloatArray  # (percent, sweep); NaN where no curve jumps
     jumping: FloatArray  # (sweep,)
     untold: FloatArray  # (sweep,)
+    peak_unstable: FloatArray  # (dof,) share of the curves whose peak is not stable
+    peak_untold: FloatArray  # (dof,) share of those of whose peak that is not known
 
 
 def scatter(response: Response) -> list[Scatter]:
@@ -56,12 +59,19 @@ def scatter(response: Response) -> list[Scatter]:
 def _of(parameters: dict[str, float], curves: Sequence[Curve]) -> Scatter:
     peaks = np.array([[peak[:2] for peak in curve.peaks.values()] for curve in curves])
     heights, frequencies = (peaks[..., i] if curves else np.full((1, 1), np.nan) for i in range(2))
+    stable = np.array([[_stays(peak) for peak in curve.peaks.values()] for curve in curves] or [[1.0]])
     each = [[_first(curve, sweep) for sweep in SWEEPS] for curve in curves]
     jumps = np.array(each or [[NONE] * len(SWEEPS)])
     return Scatter(
         parameters, len(curves), _percentiles(heights), _percentiles(frequencies),
         _percentiles(jumps), np.isfinite(jumps).mean(axis=0), np.isnan(jumps).mean(axis=0),
+        (stable == 0.0).mean(axis=0), np.isnan(stable).mean(axis=0),
     )  # fmt: skip
+
+
+def _stays(peak: Peak) -> float:
+    """Whether the motion is stable at a peak; what does not move has none that could be lost."""
+    return 1.0 if peak.amplitude == 0.0 else peak.stable
 
 
 def _first(curve: Curve, sweep: str) -> float:
@@ -101,7 +111,12 @@ def summary_of(one: Scatter, dofs: Sequence[str], unit: str) -> dict[str, Any]:
         "parameters": one.parameters,
         "curves": one.curves,
         "peak": {
-            dof: {"amplitude": by_percent(one.peak[:, d]), "frequency": by_percent(frequency[:, d])}
+            dof: {
+                "amplitude": by_percent(one.peak[:, d]),
+                "frequency": by_percent(frequency[:, d]),
+                "unstable": float(one.peak_unstable[d]),
+                "untold": float(one.peak_untold[d]),
+            }
             for d, dof in enumerate(dofs)
             if one.curves
         },
