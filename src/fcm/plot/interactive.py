@@ -163,6 +163,7 @@ def _menu(response: DrawnResponse, parts: Sequence[Any], column: int) -> list[Ma
 
 
 def _states_of_peaks(peaks: Peaks, column: int, order: Any) -> Any:
-    if peaks.unstable is None:
+    if peaks.stable is None:
         return np.full(len(order), STATES[2])
-    return np.where(peaks.unstable[order, column], STATES[1], "not unstable")
+    stable = peaks.stable[order, column]
+    return np.where(np.isnan(stable), STATES[2], np.where(stable == 0.0, STATES[1], STATES[0]))
