@@ -12,11 +12,15 @@ PAIRS = {"name": "shroud", "nodes": [[40, 41], [50, 51]], "tangential": {"x": 0.
 NUMBERS = {"mu": 0.3, "k_u": 1.0, "k_v": 2.0, "n_0": 6.0}
 
 
-def read(contact=None, **top):
+def read(contact=None, folder=".", **top):
     modal = {"dofs": DOFS, "frequency": [1.0, 3.0], "damping": 0.05, "shapes": np.eye(2, 12) + 0.1}
     force = [{"dof": "40x", "amplitude": 1.0}]
     data = {"modal": modal, "force": force, "response": {"frequency": [0.8, 1.2]}}
-    return scene_from_dict(data | {"contact": contact or [PAIRS | NUMBERS]} | top, "test.toml")
+    return scene_from_dict(data | {"contact": contact or [PAIRS | NUMBERS]} | top, "test.toml", folder)
+
+
+def of_file(folder, contact):
+    return read([contact], folder)
 
 
 def refused(contact=None, **top):
@@ -42,10 +46,93 @@ def test_nodes_that_touch_the_ground():
     assert weights(one.normal) == {"40z": 1.0} and weights(other.tangential) == {"50x": 0.6, "50y": 0.8}
 
 
-def test_a_total_preload_is_shared_by_areas():
-    contacts = read([PAIRS | NUMBERS | {"areas": [1.0, 2.0]}]).contacts
-    assert [contact.n_0 for contact in contacts] == pytest.approx([2.0, 4.0])
-    assert [contact.k_u for contact in contacts] == [1.0, 1.0]
+def test_totals_are_shared_by_areas():
+    scene = read([PAIRS | NUMBERS | {"areas": [1.0, 2.0]}])
+    assert [contact.n_0 for contact in scene.contacts] == pytest.approx([2.0, 4.0])
+    assert [contact.k_u for contact in scene.contacts] == pytest.approx([1 / 3, 2 / 3])
+    assert [contact.k_v for contact in scene.contacts] == pytest.approx([2 / 3, 4 / 3])
+    assert [contact.mu for contact in scene.contacts] == [0.3, 0.3]
+    assert any("k_u, k_v and n_0 are totals" in note for note in scene.notes)
+
+
+def test_a_gap_is_that_of_each_pair():
+    gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
+    contacts = read([PAIRS | gap | {"areas": [1.0, 2.0]}]).contacts
+    assert [contact.n_0 for contact in contacts] == pytest.approx([-0.1 * 2 / 3, -0.1 * 4 / 3])
+
+
+def test_a_list_has_a_number_for_each_pair():
+    given = {"mu": [0.1, 0.2], "n_0": [5.0, -1.0], "areas": [1.0, 3.0]}
+    one, other = read([PAIRS | NUMBERS | given]).contacts
+    assert (one.mu, other.mu, one.n_0, other.n_0) == (0.1, 0.2, 5.0, -1.0)
+    assert (one.k_u, other.k_u) == (0.25, 0.75)
+
+
+FILE = """node,other,area,n_0,mu,x
+40,41,1.0,1.5D+1,0.1,0.0
+50,,3.0,-2,0.2,0.1  # touches the ground
+"""
+
+
+def test_pairs_and_their_numbers_in_a_file(tmp_path):
+    (tmp_path / "pairs.csv").write_text(FILE, "utf-8-sig")
+    given = {key: value for key, value in (PAIRS | NUMBERS).items() if key not in ("n_0", "mu")}
+    one, other = of_file(tmp_path, given | {"nodes": "pairs.csv"}).contacts
+    assert weights(one.normal) == {"40z": 1.0, "41z": -1.0} and weights(other.normal) == {"50z": 1.0}
+    assert (one.n_0, other.n_0, one.mu, other.mu) == (15.0, -2.0, 0.1, 0.2)
+    assert (one.k_u, other.k_u, other.k_v) == (0.25, 0.75, 1.5)
+
+
+@pytest.mark.parametrize("text", ["3.5\n-1\n", "51 -1  # by its other node\n40, 3.5\n7 8\n"])
+def test_preloads_in_a_file(tmp_path, text):
+    (tmp_path / "n_0.txt").write_text(text)
+    contacts = of_file(tmp_path, PAIRS | NUMBERS | {"n_0": "n_0.txt"}).contacts
+    assert [contact.n_0 for contact in contacts] == [3.5, -1.0]
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("node,other,n_0,mu\n40,41,1,5,0.1\n", "line 2 has 5 entries; the first line names 4"),
+        ('node,other,n_0,mu\n40,41,"1,5",0.1\n', 'line 2: n_0: "1,5" has a decimal comma: write 1.5'),
+        ("node,n_0,mu\n40,1,0.1\n", 'line 1: has no column "other"'),
+        ("node,other,n_0,mu,n_0\n", 'has two columns "n_0"'),
+        ("node,other,n_0,mu\n", "holds no pair of nodes"),
+        ("", "is empty; its first line must name its columns"),
+        ("node,other,n_0,mu\n40,40,1,0.1\n", "a pair of the same node twice, 40"),
+        ("node,other,n_0,mu\n40,99,1,0.1\n", "node 99 has no degree of freedom"),
+        ("node,other,n_0,mu\n40,41,1,-0.1\n", "nodes (mu): must"),
+        ("node,other,n_0,mu,k_u\n40,41,1,0.1,1\n", 'k_u: is given here and as a column of "pairs.csv"'),
+        (
+            "node,other,n_0,mu,pressure\n40,41,1,0.1,1\n",
+            'has the columns "pressure", which mean nothing here',
+        ),
+        ("node,other,n_0,mu,area\n40,41,1,0.1,0\n", "its areas must be greater than 0"),
+    ],
+)
+def test_wrong_files_of_pairs(tmp_path, text, words):
+    (tmp_path / "pairs.csv").write_text(text)
+    given = {key: value for key, value in (PAIRS | NUMBERS).items() if key not in ("n_0", "mu")}
+    with pytest.raises(SceneError) as caught:
+        of_file(tmp_path, given | {"nodes": "pairs.csv"})
+    assert words in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text, words",
+    [
+        ("1\n2\n3\n", "has 3 numbers for 2 pairs"),
+        ("40 1\n40 2\n50 3\n", "has two numbers for one node"),
+        ("40 1\n", 'has no number for the pair of node "50"'),
+        ("40 1\n2\n", "line 2: must be a number, or a node and a number"),
+        ("1kN\n2\n", 'line 1: "1kN" has "kN" behind the number'),
+    ],
+)
+def test_wrong_files_of_numbers(tmp_path, text, words):
+    (tmp_path / "n_0.txt").write_text(text)
+    with pytest.raises(SceneError) as caught:
+        of_file(tmp_path, PAIRS | NUMBERS | {"n_0": "n_0.txt"})
+    assert words in str(caught.value)
 
 
 @pytest.mark.parametrize("key", ["contact.shroud.n_0", "contact.shroud_*.n_0", "contact.*.n_0"])
@@ -96,8 +183,6 @@ def test_a_node_that_is_not_there_is_named_once():
 
 
 def test_areas_without_what_they_share():
-    gap = {key: value for key, value in NUMBERS.items() if key != "n_0"} | {"gap": 0.1}
-    assert "areas: share a total preload n_0" in refused([PAIRS | gap | {"areas": [1, 2]}])
     plain = {"name": "a", "tangential": "40x", "normal": "40z", "areas": [1.0]}
     assert "areas: is of no use without nodes" in refused([plain | NUMBERS])
 

@@ -44,7 +44,8 @@ def response_page(response: DrawnResponse, dof: str | None, log: bool | None, pa
         figure.add_scatter(
             x=curve.frequency, y=y, mode=_mode(y), name=name,
             legendgroup=name, showlegend=first, customdata=_said(curve, state),
-            line={"color": colours[id(curve)], "dash": DASHES[state], "width": 1.5, "simplify": False}, marker={"size": 4},
+            line={"color": colours[id(curve)], "dash": DASHES[state], "width": 1.5, "simplify": False},
+            marker={"size": 4},
             hovertemplate="%{x:.6g}: <b>%{y:.6g}</b>, %{customdata[1]}, error %{customdata[0]}",
         )  # fmt: skip
     heights = [float(np.nanmax(curve.amplitude[:, column])) for curve in curves]

@@ -94,9 +94,10 @@ TABLES: dict[str, dict[str, Key]] = {
     "contact": {
         "name": Key("of the contact", "string"),
         "tangential": Key("the displacement u along which it slides", _DIRECTION),
-        "nodes": Key("pairs [[a, b], ...] instead of one contact; u and v are of a less b", "list", "none"),
-        "areas": Key("of the pairs: n_0, also a swept one, is the total preload, shared by them",
-                     POSITIVE, "n_0 of each pair"),
+        "nodes": Key("pairs [[a, b], ...], or a .csv file, instead of one contact; u and v are of a less b",
+                     "list or file", "none"),
+        "areas": Key("of the pairs: k_u, k_v and n_0, also swept ones, are totals, shared by them",
+                     POSITIVE, "the numbers are of each pair"),
         "normal": Key("the displacement v that loads it: n = max(n_0 + k_v v, 0)", _DIRECTION),
         "mu": Key("friction coefficient", RULES["mu"]),
         "k_u": Key("tangential contact stiffness", RULES["k_u"]),

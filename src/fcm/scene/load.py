@@ -30,6 +30,7 @@ from fcm.scene.linear import (
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
 from fcm.scene.optimum import read_optimum
+from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.parts import (
     contact_of,
     read_contacts,
@@ -164,7 +165,7 @@ def _parts(
     cyclic = read_cyclic(top)
     modal, matrices = read_linear(top, files, unit, cyclic)
     parts: Parts = {"modal": modal, "cyclic": cyclic}
-    parts["contact"] = read_contacts(top, modal["dofs"])
+    parts["contact"] = read_contacts(top, modal["dofs"], files)
     parts["force"] = read_forces(top, modal["dofs"])
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
     parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)
@@ -180,6 +181,7 @@ def _parts(
     else:
         parts, notes = without_rounding(with_base(parts), ends, unit)
         notes = [*modal["notes"], *notes]
+    notes = [*notes, *notes_of_shares(parts["contact"])]
     if top.mistakes.count:
         return parts, (), []
     asked = response is not None and "output" in response.data

@@ -3,23 +3,61 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import isnan
+from math import isnan, nan
 from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import choices, kind, quoted
+from fcm.scene.files import DataFileError, Files
 from fcm.scene.model import FloatArray
 from fcm.scene.names import DIRECTIONS, Names
-from fcm.scene.rules import ANY, POSITIVE
+from fcm.scene.pair_file import (
+    COORDINATES,
+    NODES,
+    NUMBERS,
+    PairTable,
+    read_numbers_of_pairs,
+    read_pair_table,
+)
+from fcm.scene.rules import ANY, POSITIVE, RULES
 from fcm.scene.section import Section, described
 
 Pair = tuple[str, ...]  # two nodes, or one that touches the ground
+SHARED = ("k_u", "k_v", "n_0")  # by areas, in proportion to them
 
 
-def read_pairs(section: Section) -> list[Pair]:
-    """The pairs of nodes; empty after a mistake."""
+def read_pairs(section: Section, files: Files) -> PairTable:
+    """The pairs of nodes and the numbers that a file has of them; empty after a mistake."""
     value = section.data["nodes"]
+    if not isinstance(value, str):
+        return PairTable(_listed(section, value))
+    try:
+        with files.opened(value) as path:
+            table = read_pair_table(path)
+    except DataFileError as error:
+        for fault in error.faults:
+            section.wrong("nodes", fault)
+        return PairTable([])
+    same = [pair for pair in table.pairs if len(set(pair)) < len(pair)]
+    if same:
+        section.wrong("nodes", f"{quoted(value)} has a pair of the same node twice, {same[0][0]}")
+    given = [name for name in table.numbers if name != "area" and name in section.data]
+    given += ["area"] if "area" in table.numbers and "areas" in section.data else []
+    for name in given:
+        key = "areas" if name == "area" else name
+        section.wrong(key, f"is given here and as a column of {quoted(value)}; give it once")
+    if table.unused:
+        section.wrong(
+            "nodes",
+            f"{quoted(value)} has the columns {choices(table.unused)}, which mean nothing here; "
+            f"its columns may be {', '.join((*NODES, *NUMBERS, *COORDINATES))}",
+        )
+    return table
+
+
+def _listed(section: Section, value: Any) -> list[Pair]:
+    """The pairs of a list in the scene."""
     if not isinstance(value, list | tuple) or not value:
         section.wrong("nodes", f"must be a list of pairs such as [[40, 41], [50, 51]], is {kind(value)}")
         return []
@@ -95,21 +133,102 @@ def _at(dofs: Names, node: str, direction: str) -> str:
     return dofs.find(f"{node}{direction}") or dofs.find(f"{node}_{direction}")
 
 
-def read_shares(section: Section, count: int) -> list[float]:
-    """The share of each pair in the total preload, by areas; 1 for each where no areas are given."""
-    if "areas" not in section.data:
-        return [1.0] * count
-    if "nodes" not in section.data:
-        section.wrong("areas", "is of no use without nodes, whose areas they are")
-        return [1.0] * count
-    if "gap" in section.data:
-        section.wrong("areas", "share a total preload n_0; a gap is the same for all")
-    areas = section.vector("areas", POSITIVE)
+def read_numbers(section: Section, table: PairTable, files: Files) -> dict[str, list[float]]:
+    """mu, k_u, k_v, and n_0 or gap of each pair, of one number for all, a list, or a file; and their areas.
+
+    A total that the areas share is given as the total: see `shares`.
+    """
+    count = len(table.pairs)
+    load = load_key(section, table.numbers)
+    found: dict[str, list[float]] = {}
+    for key in ("mu", "k_u", "k_v", load):
+        column = table.numbers.get(key)
+        value = section.data.get(key)
+        if column is not None:
+            path = f"{section.at('nodes')} ({key})"
+            found[key] = [section.checked(one, path, RULES[key]) for one in column]
+        elif isinstance(value, str) or _is_list(value):
+            found[key] = _of_each(section, key, table, files)
+        else:
+            found[key] = [
+                section.number(key, RULES[key]) if key in section.data or key != load else nan
+            ] * count
+    return found
+
+
+def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list[float]:
+    """The numbers of a list, or of a file, one for each pair; nan after a mistake."""
+    value, count = section.data[key], len(table.pairs)
+    nothing = [nan] * count
+    if isinstance(value, str):
+        try:
+            with files.opened(value) as path:
+                value = read_numbers_of_pairs(path, table.pairs)
+        except DataFileError as error:
+            for fault in error.faults:
+                section.wrong(key, fault)
+            return nothing
+    numbers = section.numbers(value, section.at(key), RULES[key])
+    if numbers is not None and count and len(numbers) != count:
+        section.wrong(key, f"must have one number for each of the {count} pairs, has {len(numbers)}")
+        return nothing
+    return nothing if numbers is None else [float(number) for number in numbers]
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, list | tuple | np.ndarray)
+
+
+def load_key(section: Section, columns: Mapping[str, Any] | None = None) -> str:
+    """Which of preload and gap the contact is given by."""
+    given = [key for key in ("n_0", "gap") if key in section.data or key in (columns or {})]
+    if len(given) == 2:
+        section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
+    elif not given:
+        section.wrong("", "has neither n_0 nor gap; give one: gap means n_0 = -k_v * gap")
+    return given[0] if given else "n_0"
+
+
+def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
+    """Of each pair, its share of each number that is one total for all, by areas; none without areas.
+
+    k_u, k_v and n_0 are totals; mu and a gap are the same for all.
+    """
+    count = len(table.pairs)
+    areas = table.numbers.get("area")
+    if "areas" in section.data:
+        if "nodes" not in section.data:
+            section.wrong("areas", "is of no use without nodes, whose areas they are")
+            return [{}] * count
+        given = section.vector("areas", POSITIVE)
+        pairs = section.data["nodes"]
+        known = count or (len(pairs) if _is_list(pairs) else 0)
+        if given is not None and known and len(given) != known:
+            section.wrong("areas", f"must have one number for each of the {known} pairs, has {len(given)}")
+        areas = None if given is None or len(given) != count else given.tolist()
+    elif areas is not None and any(not area > 0.0 for area in areas):
+        section.wrong("nodes", "its areas must be greater than 0")
+        areas = None
     if areas is None:
-        return [1.0] * count
-    pairs = section.data["nodes"]
-    if isinstance(pairs, list | tuple) and len(areas) != len(pairs):
-        section.wrong("areas", f"must have one number for each of the {len(pairs)} pairs, has {len(areas)}")
-    if len(areas) != count:
-        return [1.0] * count
-    return [float(area) for area in areas / areas.sum()]
+        return [{}] * count
+    own = {key for key in SHARED if key in table.numbers or not _is_one(section.data.get(key))}
+    parts = np.asarray(areas) / np.sum(areas)
+    return [{key: float(part) for key in SHARED if key not in own} for part in parts]
+
+
+def _is_one(value: Any) -> bool:
+    return not isinstance(value, str) and not _is_list(value)
+
+
+def notes_of_shares(drafts: Iterable[Mapping[str, Any]]) -> list[str]:
+    """What is said of contacts whose pairs share totals by their areas: which numbers these are."""
+    groups: dict[str, list[Mapping[str, Any]]] = {}
+    for draft in drafts:
+        if draft.get("share"):
+            groups.setdefault(draft["group"], []).append(draft)
+    said = []
+    for name, pairs in groups.items():
+        *some, last = pairs[0]["share"]
+        totals = f"{', '.join(some)} and {last} are totals" if some else f"{last} is a total"
+        said.append(f"contact {quoted(name)}: {totals}, which its {len(pairs)} pairs share by their areas")
+    return said

@@ -6,11 +6,21 @@ from math import nan
 from typing import Any
 
 from fcm.scene.errors import quoted, shown
+from fcm.scene.files import Files
 from fcm.scene.keys import names
 from fcm.scene.modal import UNITS
 from fcm.scene.model import NO_RANGE, Contact, Force
 from fcm.scene.names import Names, same_names, unfit_name
-from fcm.scene.node_pairs import along, check_nodes, read_direction, read_pairs, read_shares
+from fcm.scene.node_pairs import (
+    along,
+    check_nodes,
+    load_key,
+    read_direction,
+    read_numbers,
+    read_pairs,
+    shares,
+)
+from fcm.scene.pair_file import PairTable
 from fcm.scene.rules import (
     FRACTION,
     MOST_HARMONICS,
@@ -28,10 +38,10 @@ ONE = "give a range, and a single frequency within it by --at"
 MAX_STEP = 0.05  # longest step along a curve when the scene names none
 
 
-def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
+def read_contacts(top: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
     """The contacts as read, in the words of the file."""
     sections = top.tables("contact")
-    drafts = [draft for section in sections for draft in _contacts(section, dofs)]
+    drafts = [draft for section in sections for draft in _contacts(section, dofs, files)]
     for name, group in same_names(draft["name"] for draft in drafts if draft["name"]):
         written = "" if len(set(group)) == 1 else " (in other Unicode characters)"
         top.wrong(
@@ -40,7 +50,7 @@ def read_contacts(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
     return drafts
 
 
-def _contacts(section: Section, dofs: Dofs) -> list[dict[str, Any]]:
+def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]]:
     """The contacts of one [[contact]]: one, or one for each of its pairs of nodes."""
     name = section.text("name")
     if name:
@@ -48,41 +58,33 @@ def _contacts(section: Section, dofs: Dofs) -> list[dict[str, Any]]:
     if isinstance(section.data.get("name"), str) and (fault := unfit_name(name)):
         section.wrong("name", fault)
     section.only(*names("contact"))
-    draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
-    load = _load(section)
-    draft[load] = section.number(load, RULES[load]) if load in section.data else nan
     keys = ("tangential", "normal")
     if "nodes" not in section.data:
-        read_shares(section, 0)
+        shares(section, PairTable([]))
+        draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
+        load = load_key(section)
+        draft[load] = section.number(load, RULES[load]) if load in section.data else nan
         return [draft | {"name": name} | {key: section.weights(key, dofs) for key in keys}]
-    pairs = read_pairs(section)
-    shares = read_shares(section, len(pairs))
+    table = read_pairs(section, files)
+    numbers, parts = read_numbers(section, table, files), shares(section, table)
     directions = {key: read_direction(section, key) for key in keys}
-    check_nodes(section, directions.values(), pairs, dofs)
+    check_nodes(section, directions.values(), table.pairs, dofs)
     return [
-        draft
-        | {"name": f"{name}_{number}", "group": name, "share": share}
+        {key: values[i] for key, values in numbers.items()}
+        | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i]}
         | {key: along(directions[key], pair, dofs) for key in keys}
-        for number, (pair, share) in enumerate(zip(pairs, shares, strict=True), 1)
+        for i, pair in enumerate(table.pairs)
     ]
-
-
-def _load(section: Section) -> str:
-    """Which of preload and gap the contact is given by."""
-    given = [key for key in ("n_0", "gap") if key in section.data]
-    if len(given) == 2:
-        section.wrong("", "has both n_0 and gap; give one: gap means n_0 = -k_v * gap")
-    elif not given:
-        section.wrong("", "has neither n_0 nor gap; give one: gap means n_0 = -k_v * gap")
-    return given[0] if given else "n_0"
 
 
 def contact_of(draft: dict[str, Any]) -> Contact:
     """The contact of what was read: a gap becomes the preload -k_v * gap."""
-    n_0 = draft["n_0"] * draft.get("share", 1.0) if "n_0" in draft else -draft["k_v"] * draft["gap"]
     for key in ("tangential", "normal"):
         draft[key].flags.writeable = False
-    numbers = {key: draft[key] for key in ("name", "tangential", "normal", "mu", "k_u", "k_v")}
+    share = draft.get("share", {})
+    numbers = {key: draft[key] * share.get(key, 1.0) for key in ("k_u", "k_v", "n_0") if key in draft}
+    n_0 = numbers.pop("n_0") if "n_0" in numbers else -numbers["k_v"] * draft["gap"]
+    numbers |= {key: draft[key] for key in ("name", "tangential", "normal", "mu")}
     return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
 
 

@@ -1,0 +1,120 @@
+"""Files for contacts over pairs of nodes: the pairs with their numbers, and one number for each pair."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from fcm.scene.errors import choices, quoted
+from fcm.scene.files import DataFileError
+from fcm.scene.number_text import fault_of_number, number_in
+
+NODES = ("node", "other")  # columns of the two nodes; other is empty where a node touches the ground
+NUMBERS = ("area", "mu", "k_u", "k_v", "n_0", "gap")
+COORDINATES = ("x", "y", "z")
+
+
+@dataclass(frozen=True)
+class PairTable:
+    """Pairs of nodes, and what a file says of each.
+
+    numbers: by column, (pair,); unused: names of columns that nothing is read from.
+    """
+
+    pairs: list[tuple[str, ...]]
+    numbers: dict[str, list[float]] = field(default_factory=dict)
+    unused: tuple[str, ...] = ()
+
+
+def read_pair_table(path: Path) -> PairTable:
+    """The pairs of a CSV file, whose first line names its columns.
+
+    The columns are node, other, and any of area, mu, k_u, k_v, n_0, gap; the columns x, y, z are passed over.
+
+    Raises
+    ------
+    DataFileError
+        With each line that is wrong, what is wrong there, and what would be right.
+    """
+    lines = list(_lines(path))
+    if not lines:
+        raise DataFileError(f"{quoted(path.name)} is empty; its first line must name its columns: node,other")
+    header = [word.strip() for word in lines[0][1]]
+    missing = [name for name in NODES if name not in header]
+    twice = [name for name in dict.fromkeys(header) if header.count(name) > 1]
+    if missing or twice:
+        what = f"has no column {choices(missing)}" if missing else f"has two columns {choices(twice)}"
+        raise DataFileError(f"{quoted(path.name)}, line {lines[0][0]}: {what}; it names {choices(header)}")
+    faults: list[str] = []
+    table = PairTable([], {name: [] for name in header if name in NUMBERS}, _unused(header))
+    for number, words in lines[1:]:
+        if len(words) != len(header):
+            faults.append(f"line {number} has {len(words)} entries; the first line names {len(header)}")
+            continue
+        row = dict(zip(header, (word.strip() for word in words), strict=True))
+        if not row["node"]:
+            faults.append(f"line {number}: has no node")
+        table.pairs.append(tuple(row[name] for name in NODES if row[name]))
+        for name, values in table.numbers.items():
+            value = number_in(row[name])
+            if value is None:
+                faults.append(f"line {number}: {name}: {fault_of_number(row[name])}")
+            else:
+                values.append(value)
+    if not table.pairs and not faults:
+        faults.append("holds no pair of nodes behind its first line")
+    if faults:
+        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
+    return table
+
+
+def _unused(header: Sequence[str]) -> tuple[str, ...]:
+    known = (*NODES, *NUMBERS, *COORDINATES)
+    return tuple(name for name in header if name not in known)
+
+
+def read_numbers_of_pairs(path: Path, pairs: Sequence[tuple[str, ...]]) -> list[float]:
+    """A number for each pair: one on each line in their order, or a node and its number on each line.
+
+    With nodes each pair has the number of its first node, or else of its other one.
+    """
+    rows: list[list[str]] = []
+    faults: list[str] = []
+    for number, words in _lines(path):
+        words = [word for one in words for word in one.split()]
+        value = number_in(words[-1]) if words else None
+        if len(words) not in (1, 2) or (rows and len(rows[0]) != len(words)):
+            faults.append(f"line {number}: must be a number, or a node and a number, as all others")
+        elif value is None:
+            faults.append(f"line {number}: {fault_of_number(words[-1])}")
+        else:
+            rows.append(words)
+    if faults:
+        raise DataFileError(*(f"{quoted(path.name)}, {fault}" for fault in faults[:5]))
+    values = [number_in(words[-1]) or 0.0 for words in rows]
+    if not rows or len(rows[0]) == 1:
+        if len(values) != len(pairs):
+            raise DataFileError(f"{quoted(path.name)} has {len(values)} numbers for {len(pairs)} pairs")
+        return values
+    of_node = dict(zip((words[0] for words in rows), values, strict=True))
+    if len(of_node) < len(rows):
+        raise DataFileError(f"{quoted(path.name)} has two numbers for one node")
+    found = [next((node for node in pair if node in of_node), None) for pair in pairs]
+    lacking = [pair[0] for pair, node in zip(pairs, found, strict=True) if node is None]
+    if lacking:
+        raise DataFileError(f"{quoted(path.name)} has no number for the pair of node {choices(lacking)}")
+    return [of_node[node] for node in found if node is not None]
+
+
+def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """The words of each line with its number; blank lines and comments behind # are passed over."""
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise DataFileError(f"{quoted(path.name)} is no text in UTF-8; save it as that") from None
+    for number, line in enumerate(text.splitlines(), 1):
+        body = line.partition("#")[0]
+        if body.strip():
+            yield number, next(csv.reader([body]))
