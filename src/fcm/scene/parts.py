@@ -82,7 +82,8 @@ def contact_of(draft: dict[str, Any]) -> Contact:
     for key in ("tangential", "normal"):
         draft[key].flags.writeable = False
     share = draft.get("share", {})
-    numbers = {key: draft[key] * share.get(key, 1.0) for key in ("k_u", "k_v", "n_0") if key in draft}
+    shared: tuple[str, ...] = ("k_u", "k_v", "n_0")
+    numbers = {key: draft[key] * share.get(key, 1.0) for key in shared if key in draft}
     n_0 = numbers.pop("n_0") if "n_0" in numbers else -numbers["k_v"] * draft["gap"]
     numbers |= {key: draft[key] for key in ("name", "tangential", "normal", "mu")}
     return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
