@@ -14,6 +14,15 @@ NATURAL = "modal.frequency"  # key of the frequencies of all modes; with its num
 DIGITS = 15  # that every number of so many has again after it was a binary one
 
 
+def spoken(omega: float, unit: str) -> str:
+    """A frequency [rad/s] in a unit, as a message names it.
+
+    >>> spoken(2.0 * np.pi * 0.5, "Hz"), spoken(2.0, "rad/s")
+    ('0.5 Hz', '2 rad/s')
+    """
+    return f"{float(in_unit(omega, unit)):g} {unit}"
+
+
 def in_unit(omega: npt.ArrayLike, unit: str) -> FloatArray:
     """Frequencies [rad/s] in a unit.
 

@@ -98,6 +98,22 @@ def test_friction_that_pushes_one_way_has_no_steady_state():
     assert stuck.complete and set(stuck.regime.ravel()) == {"E"}
 
 
+def test_what_would_hold_a_body_is_said_by_the_keys_that_the_scene_has():
+    """Two masses on a spring, free along x: a scene of matrices has no modal.frequency."""
+    K = [[1.0, -1.0, 0.0], [-1.0, 1.0, 0.0], [0.0, 0.0, 9.0]]
+    structure = {"dofs": ["x", "far", "y"], "stiffness": K, "mass": [0.5, 0.5, 1.0], "damping": 0.02}
+    forces = [{"dof": "x", "amplitude": 1.0}, {"dof": "y", "amplitude": 3.0}]
+    data = {"structure": structure, "contact": [CONTACT], "force": forces, "frequency_unit": "Hz"}
+    response = {"frequency": [0.05, 0.2], "max_step": 0.2, "harmonics": 1}
+    found = trace(scene_from_dict(data | {"response": response}), "closed-form").curves[0]
+    assert found.reason.endswith(
+        "hold it by a contact along its normal, or by soft springs in structure.stiffness"
+    )
+    assert " Hz friction pushes" in found.reason
+    _, of_modes = curve(JENKINS, forces=(("x", 1.0), ("y", 3.0)))
+    assert of_modes.reason.endswith("or by a small modal.frequency")
+
+
 def test_a_body_that_no_contact_holds_at_rest_is_said():
     """Beyond a frequency the amplitude no longer closes the gap: the body may float anywhere in it."""
     _, found = curve(JENKINS, {"tangential": "y", "normal": "x", "n_0": -5.0})

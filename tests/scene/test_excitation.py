@@ -122,11 +122,11 @@ def test_the_base_is_swept():
     [
         ({"direction": "x"}, "base.acceleration: missing; give a number"),
         ({"acceleration": 1.0}, "base.direction: missing"),
-        ({"acceleration": 1.0, "direction": "z"}, 'no degree of freedom is named as a node and "z"'),
+        ({"acceleration": 1.0, "direction": "z"}, 'no degree of freedom is named "z"'),
         ({"acceleration": 1.0, "direction": "up"}, "base.direction: must be x, y, z or a table of weights"),
         ({"acceleration": 1.0, "direction": {"x": "1"}}, "base.direction.x: must be a number"),
         ({"acceleration": 1.0, "direction": {"x": 0.0}}, "base.direction: has only zero weights"),
-        ({"acceleration": 1.0, "direction": {"x": 1.0, "z": 1.0}}, 'is named as a node and "z"'),
+        ({"acceleration": 1.0, "direction": {"x": 1.0, "z": 1.0}}, 'or as a node and "z"'),
         ({"acceleration": 1.0, "direction": 3}, "base.direction: must be a degree of freedom or a table"),
         ({"acceleration": 1.0, "direction": "x", "phase": "x"}, "base.phase: must be a number"),
         ({"accelration": 1.0, "direction": "x"}, 'did you mean "acceleration"?'),

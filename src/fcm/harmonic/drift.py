@@ -18,7 +18,7 @@ BALANCED = 1e-9  # mean friction on a mode, relative to the amplitude of the con
 CARRYING = 1e-8  # mean normal force of a contact, relative to what it would be if the contact were glued
 REASONS = {
     "pushed": "friction pushes the structure one way on average along a rigid-body mode that nothing holds, "
-    "so there is no steady state; hold it by a contact along its normal, or by a small modal.frequency",
+    "so there is no steady state; hold it by a contact along its normal, or by {}",
     "floating": "no closed contact holds the structure along a rigid-body mode: its place is not determined",
 }
 

@@ -17,6 +17,7 @@ from fcm.motion.state import State, entered, entry, leave, set_angle
 from fcm.motion.stopped import Stopped
 from fcm.motion.system import LETTERS, System
 from fcm.scene.model import FloatArray, Phase, Scene
+from fcm.units import spoken
 
 Progress = Callable[[float, str], None]
 
@@ -127,6 +128,10 @@ def march_from(system: System, x: FloatArray, duration: float) -> tuple[Segments
     return segments, np.array(march.y)[0]
 
 
+def _at(system: System) -> str:
+    return spoken(system.omega, system.scene.frequency_unit)
+
+
 def _marched(system: System, march: March) -> Segments:
     """The segments of a march to its end."""
     while (stopped := march.go()) != Stopped.DONE:
@@ -134,18 +139,18 @@ def _marched(system: System, march: March) -> Segments:
             system.make(np.asarray(march.states)[0])
         elif stopped == Stopped.FULL and len(march.segments) > MOST_TRANSITIONS:
             raise CycleError(
-                f"more than {MOST_TRANSITIONS} transitions in one cycle at {system.omega:g} rad/s: "
+                f"more than {MOST_TRANSITIONS} transitions in one cycle at {_at(system)}: "
                 "the contacts chatter; give the modes more damping, or the contacts less stiffness"
             )
         elif stopped == Stopped.UNDECIDED:
             letters = "".join(LETTERS[code] for code in np.asarray(march.states)[0])
             raise CycleError(
-                f"the contacts' states cannot be told apart at {system.omega:g} rad/s, now {letters!r}; "
+                f"the contacts' states cannot be told apart at {_at(system)}, now {letters!r}; "
                 "change a parameter of the contacts slightly"
             )
         elif stopped == Stopped.LONG:
             raise CycleError(
-                f"a cycle at {system.omega:g} rad/s lasts {march.duration * march.rate():.1g} radians of the "
+                f"a cycle at {_at(system)} lasts {march.duration * march.rate():.1g} radians of the "
                 "fastest motion; give the contacts less stiffness, leave the highest modes out, or raise the "
                 "frequency"
             )

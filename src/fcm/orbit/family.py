@@ -23,6 +23,7 @@ from fcm.orbit.residual_friction import resting_at
 from fcm.orbit.shooting import Shot
 from fcm.orbit.way import SHORTEST, Way, between, moved, residual_of, stuck_in
 from fcm.scene.model import FloatArray, Scene
+from fcm.units import spoken
 
 MOST_TOGETHER = 3  # contacts of which all combinations of directions are followed
 WITHIN = (1e-6, 0.25)  # part of bounds, by which a motion may be beyond: of one contact, of several by lines
@@ -86,7 +87,8 @@ def family(
     x = np.concatenate((state.q, state.velocity, state.friction))
     found = converged(Shot(system, x, resting_at(system, x), periods), look=look)
     if found is None:
-        raise SimulationError(f"no periodic motion is found at {frequency:g} rad/s from this state")
+        at = spoken(frequency, scene.frequency_unit)
+        raise SimulationError(f"no periodic motion is found at {at} from this state")
     begun = found[0]
     contacts = stuck_in(begun)
     if not contacts:

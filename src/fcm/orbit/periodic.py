@@ -19,6 +19,7 @@ from fcm.motion.system import System
 from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import FloatArray, Scene
+from fcm.units import spoken
 
 TOLERANCE = 1e-11  # of the closure of the orbit, relative to its size
 MOST_ITERATIONS = 25  # of Newton's method
@@ -105,9 +106,10 @@ def periodic(scene: Scene, frequency: float, guess: State | None = None) -> Orbi
     if guess is not None:
         orbit = shoot(system, guess)
         if orbit is None:
+            at = spoken(frequency, scene.frequency_unit)
             raise SimulationError(
-                f"no periodic solution is found at {frequency:g} rad/s from this state; simulate some cycles "
-                "and start from their end, or from a solution at a frequency nearby"
+                f"no periodic solution is found at {at} from this state; "
+                "simulate some cycles and start from their end, or from a solution at a frequency nearby"
             )
         return orbit
     return approached(system)
@@ -142,9 +144,10 @@ def approached(system: System, look: Look = without_end) -> Orbit:
         # near an unstable one twice: the motion goes around it, in a multiple of its period or in none
         if orbit is not None and (orbit.stable or unstable > 1):
             return orbit
+    at = spoken(system.omega, system.scene.frequency_unit)
     raise SimulationError(
-        f"the motion from rest at {system.omega:g} rad/s has not become periodic in {sum(FREE_CYCLES)} "
-        f"cycles; {_neither(system, np.array(amplitudes))}"
+        f"the motion from rest at {at} has not become periodic "
+        f"in {sum(FREE_CYCLES)} cycles; {_neither(system, np.array(amplitudes))}"
     )
 
 

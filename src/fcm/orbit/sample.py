@@ -20,6 +20,7 @@ from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady, several
 from fcm.orbit.windows import with_windows
 from fcm.scene.model import FloatArray
+from fcm.units import spoken
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,9 @@ def _shot(problem: OrbitProblem, z: FloatArray) -> Shot:
     """The period from a point of a curve."""
     shot = problem.shot(z)
     if shot is None:
-        raise SimulationError(f"the period at {z[-1]:g} rad/s cannot be computed")
+        raise SimulationError(
+            f"the period at {spoken(z[-1], problem.scene.frequency_unit)} cannot be computed"
+        )
     return shot
 
 

@@ -7,13 +7,15 @@ import numpy as np
 from fcm.orbit.periodic import Orbit
 from fcm.orbit.shooting import Shot
 from fcm.scene.model import Scene
+from fcm.units import spoken
 
 BEYOND = 1e3  # times the frequency of the highest mode, where what a period does is near to rounding
 
 
 def not_determined(orbit: Orbit) -> str:
     """That a solution is not determined, and why."""
-    where = f"the solution at {orbit.frequency:g} rad/s to start from is not determined"
+    unit = orbit.scene.frequency_unit
+    where = f"the solution at {spoken(orbit.frequency, unit)} to start from is not determined"
     ratio = orbit.frequency / float(orbit.scene.modal.frequency.max(initial=0.0) or np.inf)
     if ratio > BEYOND:
         return (
@@ -28,8 +30,9 @@ def not_determined(orbit: Orbit) -> str:
 def rests_elsewhere(scene: Scene, orbit: Orbit, near: Shot) -> str:
     """That its contacts cannot rest where a scene starts."""
     names = " and ".join(scene.contacts[choice.contact].name for choice in near.chosen if choice.gap)
+    at = spoken(orbit.frequency, scene.frequency_unit)
     return (
-        f"of the solution found at {orbit.frequency:g} rad/s the contact {names} always sticks, on a "
+        f"of the solution found at {at} the contact {names} always sticks, on a "
         "residual friction of its own, and with that of [start] there is none near it; give [start] another "
         "friction"
     )

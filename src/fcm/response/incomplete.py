@@ -28,7 +28,8 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     for why, which in reasons.items():
         if which.any():
             omega = in_unit(points.z[which, -1], unit)
-            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {REASONS[why]}", nowhere
+            reason = REASONS[why].format(_soft(system.scene.of_matrices))
+            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {reason}", nowhere
     status = branches.status
     if status is Status.COMPLETE:
         return "", nowhere
@@ -40,6 +41,11 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     if status is Status.STALLED:
         why = _resonant(system, end) or why
     return f"stopped at {in_unit(end, unit):.8g} {unit}: {why}", nowhere
+
+
+def _soft(of_matrices: bool) -> str:
+    """What holds a rigid-body mode and hardly changes another, by the key that a scene has."""
+    return "soft springs in structure.stiffness" if of_matrices else "a small modal.frequency"
 
 
 def _resonant(system: System, omega: float) -> str:
@@ -56,10 +62,13 @@ def _resonant(system: System, omega: float) -> str:
         near = met[np.abs(met - h * omega) < RESONANT * met]
         if near.size:
             at, soft = (float(in_unit(x, unit)) for x in (near[0], near[0] / SOFT))
+            hold = f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
+            if system.scene.of_matrices:
+                spring = f"the frequencies of their modes to some {soft:.1g} {unit}"
+                hold = f"try soft springs in structure.stiffness that raise {spring}, with a damping of 0.01"
             return (
                 f"no further point could be found: harmonic {h} meets a resonance on the closed contacts, "
-                f"at {at:.6g} {unit}, that nothing damps, as rigid-body modes have no damping ratio: "
-                f"try a modal.frequency of {soft:.1g} for them, with a ratio of 0.01"
+                f"at {at:.6g} {unit}, that nothing damps, as rigid-body modes have no damping ratio: {hold}"
             )
     return ""
 

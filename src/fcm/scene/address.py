@@ -79,9 +79,17 @@ class Addresses:
                 return (*address, index)
         return None
 
+    def _of_matrices(self) -> bool:
+        dofs = self.parts["modal"]["dofs"]
+        return dofs is not None and "structure" in dofs.key
+
     def _excused(self, key: str, path: str, mistakes: Mistakes) -> bool:
         """Keys with a better explanation than that they are not there."""
-        if key.startswith(("response.", "schedule.", "start.")):
+        if key.startswith("structure.") and self._of_matrices():
+            ratios = '; the damping ratios of its modes are "modal.damping"'
+            what = f"matrices and what is read with them cannot be swept{ratios if 'damping' in key else ''}"
+            mistakes.add(path, what)
+        elif key.startswith(("response.", "schedule.", "start.")):
             mistakes.add(path, "the range, the step and the schedule cannot be swept")
         elif key.endswith((".n_0", ".gap")) and (other := _other_load(key)) in self.numbers:
             mistakes.add(path, f"the contact is given by {other.rpartition('.')[2]}; sweep {quoted(other)}")

@@ -29,7 +29,9 @@ class RingNames(Names):
     @cached_property
     def own(self) -> Names:
         """Those of the sector itself."""
-        return Names(name for name in self if not name.startswith(NEXT))
+        own = Names(name for name in self if not name.startswith(NEXT))
+        own.key = self.key
+        return own
 
     def find(self, name: str) -> str:
         """As `Names.find`, also of "next.40x".

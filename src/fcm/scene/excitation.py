@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import bare, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray, Force, Load
@@ -46,7 +46,9 @@ def read_base(top: Section, dofs: Names | None, matrices: bool) -> list[dict[str
 
 def _direction(section: Section, dofs: Names | None) -> FloatArray | None:
     """The displacement of all degrees of freedom when the base moves by 1."""
-    value = section.data.get("direction")
+    if section.missing("direction", 'x, y, z, or a table of weights such as { "40x" = 1.0 }'):
+        return None
+    value = section.data["direction"]
     if isinstance(value, str) and value in TRANSLATIONS:
         return _translation(section, value, dofs)
     if isinstance(value, Mapping) and value and set(value) <= set(TRANSLATIONS):
@@ -74,12 +76,25 @@ def _translation(section: Section, axis: str, dofs: Names | None) -> FloatArray 
     """Of a motion by 1 along one axis."""
     if dofs is None:
         return None
-    moved = [motion_of(name).endswith(axis) and not motion_of(name).endswith(f"r{axis}") for name in dofs]
+    moved = [_along(name, axis) for name in dofs]
     if not any(moved):
-        what = f"no degree of freedom is named as a node and {quoted(axis)}; give a table of weights"
+        what = (
+            f"no degree of freedom is named {quoted(axis)}, or as a node and {quoted(axis)}; give a table of "
+            f"weights, such as {{ {bare(dofs[0])} = 1.0 }}"
+        )
         section.wrong("direction", what)
         return None
     return np.array(moved, dtype=np.float64)
+
+
+def _along(name: str, axis: str) -> bool:
+    """Whether a degree of freedom is called as an axis, or as a node and that.
+
+    >>> _along("x", "x"), _along("12x", "x"), _along("12rx", "x"), _along("max", "x")
+    (True, True, False, False)
+    """
+    motion = motion_of(name)
+    return name.lower() == axis or (motion.endswith(axis) and not motion.endswith(f"r{axis}"))
 
 
 def base_force(draft: dict[str, Any], dofs: tuple[str, ...]) -> Force:

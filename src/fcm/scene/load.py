@@ -132,6 +132,7 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
         "harmonics": harmonics,
         "accuracy": accuracy,
         "schedule": schedule,
+        "of_matrices": "structure" in top.data,
         "start": start,
         "reported": reported,
         "notes": tuple(notes),

@@ -136,6 +136,7 @@ class Scene:
     ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
     optimum: Optimum | None = None
+    of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 

@@ -45,7 +45,9 @@ def modal_of_matrices(
         return None, np.zeros((len(matrices.dofs), 0)), []
     frequency = np.sqrt(found.modes.stiffness)
     for value in frequency[RULES["frequency"].faulty(frequency)[:1, 0]].tolist():
-        top.wrong("structure", f"has a mode whose frequency in rad/s {RULES['frequency'].fault(value)}")
+        in_hertz = top.data.get("frequency_unit") == "Hz"
+        value, unit = (value / (2.0 * np.pi), "Hz") if in_hertz else (value, "rad/s")
+        top.wrong("structure", f"has a mode whose frequency in {unit} {RULES['frequency'].fault(value)}")
     draft = {
         "mass": np.ones(found.modes.count),
         "frequency": frequency,

@@ -42,6 +42,8 @@ def row_names(section: Section, files: Files, labels: Sequence[str]) -> Names | 
     if names is None:
         return None
     found = RowNames(names)
+    if "file" in section.data:
+        found.key = "those of structure.file"
     missing = [one for one in found if labels and RowNames(labels).find(one) == ""]
     if missing:
         section.wrong(
