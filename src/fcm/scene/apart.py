@@ -20,7 +20,7 @@ import numpy as np
 import fcm
 from fcm.scene.archive import Arrays
 from fcm.scene.errors import quoted
-from fcm.scene.files import DataFileError, Files, megabytes
+from fcm.scene.files import DataFileError, Files, UnreadableError, megabytes, reason_of
 from fcm.scene.mat_tags import check_tags, of_struct
 
 SPARE = 500_000_000  # bytes of memory for a reader itself
@@ -45,9 +45,9 @@ def read_apart(path: Path, wanted: Collection[str], files: Files) -> Arrays:
         check=False,
     )
     if found.returncode == REFUSED:
-        raise ValueError(found.stderr.decode("utf-8", "replace").strip() or "it is damaged")
+        raise UnreadableError(found.stderr.decode("utf-8", "replace").strip() or "it is damaged")
     if found.returncode:
-        raise ValueError("it is damaged: what it says of itself does not fit together")
+        raise UnreadableError("it is damaged: what it says of itself does not fit together")
     with np.load(io.BytesIO(found.stdout), allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files}
 
@@ -69,7 +69,7 @@ def child(arguments: list[str]) -> None:
     except MemoryError:
         _refuse(f"it holds more than {megabytes(int(largest))}: raise the limit by --largest-file")
     except Exception as error:
-        _refuse(str(error).partition("\n")[0] or type(error).__name__)
+        _refuse(reason_of(error, Path(path).suffix))
 
 
 def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def _mat(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
     arrays = {name: found[name] for name in wanted if name in found}
     structs = [name for name, _, kind in all_of_it if kind == "struct"]
     if structs and not arrays:
-        raise ValueError(of_struct(structs[0]))
+        raise UnreadableError(of_struct(structs[0]))
     return arrays | {NAMES: np.array([name for name, *_ in all_of_it], dtype=str)}
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.errors import quoted
-from fcm.scene.files import DataFileError, Files
+from fcm.scene.files import DataFileError, Files, UnreadableError
 
 Arrays = dict[str, npt.NDArray[Any]]
 
@@ -45,10 +45,10 @@ def _array(stream: IO[bytes], size: int) -> npt.NDArray[Any]:
     header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
     shape, by_column, kind = header(stream)
     if kind.hasobject:
-        raise ValueError(
+        raise UnreadableError(
             "Object arrays cannot be loaded: they are pickles; write dofs as an array of strings"
         )
     if prod(shape) * kind.itemsize > size:
-        raise ValueError("its arrays are larger than the file")
+        raise UnreadableError("its arrays are larger than the file")
     values = np.frombuffer(stream.read(), dtype=kind, count=prod(shape))
     return values.reshape(shape, order="F" if by_column else "C").copy()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from errno import EACCES, EIO
 from pathlib import Path
 
 from fcm.scene.errors import quoted
@@ -21,6 +22,25 @@ class DataFileError(ValueError):
         super().__init__("; ".join(faults))
 
 
+class UnreadableError(ValueError):
+    """What is wrong with a file, without its name, in words for its owner."""
+
+
+def reason_of(error: Exception, ending: str) -> str:
+    """Why a file cannot be read; what a library says of a damaged one is for its programmers.
+
+    >>> reason_of(UnreadableError("it is cut off"), ".npz"), reason_of(ValueError("zip() argument"), ".npz")
+    ('it is cut off', 'it is damaged, or no .npz file')
+    """
+    if isinstance(error, UnreadableError | DataFileError):
+        return str(error)
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for it"
+    if isinstance(error, OSError) and error.errno in (EACCES, EIO):
+        return error.strerror or "it cannot be opened"
+    return f"it is damaged, or no {ending} file"
+
+
 @dataclass(frozen=True)
 class Files:
     """The files beside a scene."""
@@ -34,13 +54,19 @@ class Files:
         path = self.folder / name
         try:
             if not path.is_file():
-                raise DataFileError(f"{_shown(path)} is {'a folder' if path.is_dir() else 'not there'}")
+                backslash = not name.isprintable()
+                within = (
+                    ", and has a special character: write \\ twice, or the name in '...'" if backslash else ""
+                )
+                raise DataFileError(
+                    f"{_shown(path)} is {'a folder' if path.is_dir() else 'not there'}{within}"
+                )
             self.check_size(path, path.stat().st_size)
             yield path
         except DataFileError:
             raise
         except Exception as error:  # whatever a damaged file does to its reader, the file is at fault
-            reason = str(error).partition("\n")[0] or type(error).__name__
+            reason = reason_of(error, path.suffix)
             raise DataFileError(f"{_shown(path)} cannot be read: {reason[:500]}") from None
 
     def check_size(self, path: Path, size: int) -> None:

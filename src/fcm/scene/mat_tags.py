@@ -13,6 +13,8 @@ from collections.abc import Collection, Iterator
 from math import prod
 from typing import NamedTuple
 
+from fcm.scene.files import UnreadableError
+
 NUMBERS = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 9: 8, 12: 8, 13: 8}  # bytes of each by its type
 CHARACTERS = {1: 1, 2: 1, 3: 2, 4: 2, 16: 1, 17: 2, 18: 4}
 INT8, INT32, UINT32, MATRIX, COMPRESSED = 1, 5, 6, 14, 15  # types
@@ -50,7 +52,7 @@ def _elements(content: memoryview, order: str) -> Iterator[Element]:
         begin = place + (SMALL if small else TAG)
         kind, size = (kind & 0xFFFF, small) if small else (kind, size)
         if (small and size > SMALL) or begin + size > len(content):
-            raise ValueError("it is damaged: an element is longer than there is room")
+            raise UnreadableError("it is damaged: an element is longer than there is room")
         yield Element(kind, content[begin : begin + size])
         padding = 0 if kind == COMPRESSED else -size % TAG
         place = place + TAG if small else begin + size + padding
@@ -59,21 +61,21 @@ def _elements(content: memoryview, order: str) -> Iterator[Element]:
 def _check_matrix(one: Element, order: str, wanted: Collection[str] | None) -> None:
     """Check a matrix; those whose names are not wanted are never read."""
     if one.kind != MATRIX:
-        raise ValueError("it is damaged: there is an element of no type that there is")
+        raise UnreadableError("it is damaged: there is an element of no type that there is")
     if not len(one.content):
         return
     flags, size, name, *parts = (*_elements(one.content, order),)
     head = (flags.kind, len(flags.content), size.kind, len(size.content) % 4, name.kind)
     if head != (UINT32, 8, INT32, 0, INT8):
-        raise ValueError("it is damaged: a matrix does not begin with its class, size and name")
+        raise UnreadableError("it is damaged: a matrix does not begin with its class, size and name")
     if wanted is not None and bytes(name.content).decode("latin-1") not in wanted:
         return
     (word,) = struct.unpack_from(f"{order}I", flags.content)
     if word & 0xFF == STRUCT:
-        raise ValueError(of_struct(bytes(name.content).decode("latin-1")))
+        raise UnreadableError(of_struct(bytes(name.content).decode("latin-1")))
     count = prod(struct.unpack(f"{order}{len(size.content) // 4}i", size.content))
     if not _fits(word & 0xFF, bool(word >> 8 & COMPLEX), count, parts):
-        raise ValueError("it is damaged: an array is no numbers or names, or not as many as it says")
+        raise UnreadableError("it is damaged: an array is no numbers or names, or not as many as it says")
     for part in parts:
         if part.kind == MATRIX:
             _check_matrix(part, order, None)

@@ -16,7 +16,7 @@ import scipy.sparse
 from fcm.scene.apart import NAMES, read_apart
 from fcm.scene.archive import Arrays, read_npz
 from fcm.scene.errors import choices, quoted
-from fcm.scene.files import DataFileError, Files
+from fcm.scene.files import DataFileError, Files, UnreadableError
 from fcm.scene.formats.abaqus import is_abaqus, read_abaqus
 from fcm.scene.formats.calculix import read_calculix
 from fcm.scene.formats.dmig import read_dmig
@@ -92,7 +92,7 @@ def _from_parts(arrays: Arrays) -> Any:
     if form == "dia":
         return scipy.sparse.dia_array((arrays["data"], arrays["offsets"]), shape=shape)
     if form not in ("csr", "csc", "bsr"):
-        raise ValueError(f"it holds a sparse matrix of the format {quoted(form)}")
+        raise UnreadableError(f"it holds a sparse matrix of the format {quoted(form)}")
     of_format = getattr(scipy.sparse, f"{form}_array")
     matrix = of_format((arrays["data"], arrays["indices"], arrays["indptr"]), shape=shape)
     matrix.check_format(full_check=True)

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from fcm.scene.errors import choices
-from fcm.scene.files import DataFileError, Files
+from fcm.scene.files import DataFileError, Files, UnreadableError
 from fcm.scene.formats.calculix import calculix_names
 from fcm.scene.formats.harwell_boeing import ansys_names
 from fcm.scene.formats.labelled import Labelled
@@ -92,7 +92,7 @@ def _text(path: Path) -> str:
     try:
         return path.read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError("it is no text in UTF-8; save it as that") from None
+        raise UnreadableError("it is no text in UTF-8; save it as that") from None
 
 
 def names_of(text: str) -> list[str]:
@@ -106,7 +106,7 @@ def names_of(text: str) -> list[str]:
     lines = [line.partition("#")[0].replace(",", " ").split() for line in text.splitlines()]
     for number, words in enumerate(lines, 1):
         if len(words) > 2:
-            raise ValueError(
+            raise UnreadableError(
                 f"line {number} has {len(words)} words: write one name on each line, "
                 "or a node and a direction"
             )

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from math import isfinite, nan, radians
+from math import nan, radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fcm.scene.errors import Mistakes, bare, choices, kind, quoted, shown
 from fcm.scene.model import FloatArray
+from fcm.scene.number_text import fault_of_number, number_in
 from fcm.scene.rules import ANY, Rule, as_float
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Section:
         """The value as a number within the rule; nan after a mistake."""
         number = as_float(value)
         if number is None:
-            self.mistakes.add(path, f"must be a number, is {described(value)}")
+            self.mistakes.add(path, f"must be a number, is {described(value)}{_of_text(value)}")
             return nan
         fault = rule.fault(number)
         if fault:
@@ -80,14 +81,11 @@ class Section:
         value = self.data.get(key)
         if not isinstance(value, str):
             return self.number(key, ANY, default)
-        try:
-            degrees = float(value.removesuffix("deg")) if value.endswith("deg") else nan
-        except ValueError:
-            degrees = nan
-        if not isfinite(degrees):
+        degrees = number_in(value.removesuffix("deg").rstrip()) if value.endswith("deg") else None
+        if degrees is None:
             what = f"must be a number, is the string {quoted(value)}"
             self.wrong(key, f'{what}; degrees are written "45deg"')
-        return radians(degrees)
+        return nan if degrees is None else radians(degrees)
 
     def text(self, key: str, default: str | None = None) -> str:
         """A string; empty after a mistake."""
@@ -186,6 +184,20 @@ class Section:
             what = f"unknown degree of freedom {quoted(dof)}; {dofs.key} are {choices(dofs)}"
             self.wrong(key, what, dof, dofs)
         return not unknown
+
+
+def _of_text(value: object) -> str:
+    """What to write in the place of a string that is a number, or nearly one.
+
+    >>> _of_text("0.4"), _of_text("0,4"), _of_text("x")
+    ('; write 0.4', '; it has a decimal comma: write 0.4', '')
+    """
+    text = value.strip() if isinstance(value, str) else ""
+    number = number_in(text)
+    if number is not None:
+        return f"; write {shown(number)}"
+    fault = fault_of_number(text).removeprefix(quoted(text))
+    return f"; it{fault}" if ": write " in fault else ""
 
 
 def _floats(values: Sequence[object]) -> list[float]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import MARK, read_columns
 from fcm.scene.formats.labelled import Labelled, labelled_from
 
@@ -34,5 +35,5 @@ def read_abaqus(path: Path, largest: int) -> dict[str, Labelled]:
         raise MemoryError
     wrong = (whole[:, 1::2] < 1).any(axis=1)
     if wrong.any():
-        raise ValueError(f"line {line[int(wrong.argmax())]}: directions are counted from 1")
+        raise UnreadableError(f"line {line[int(wrong.argmax())]}: directions are counted from 1")
     return {"matrix": labelled_from(whole[:, 0::2], whole[:, 1::2], line, value)}

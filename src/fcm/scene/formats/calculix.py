@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import read_columns
 from fcm.scene.formats.labelled import DIRECTIONS, Labelled, symmetric_from
 
@@ -16,13 +17,13 @@ def read_calculix(path: Path, largest: int) -> dict[str, Labelled]:
     """The matrix of a file, with the names of its rows if a .dof file lies beside it."""
     whole, value, line = read_columns(path, 2)
     if not value.size:
-        raise ValueError("it holds no entries")
+        raise UnreadableError("it holds no entries")
     if whole.min() < 1:
         at = int((whole < 1).any(axis=1).argmax())
-        raise ValueError(f"line {line[at]}: rows and columns are counted from 1")
+        raise UnreadableError(f"line {line[at]}: rows and columns are counted from 1")
     rows, size = _rows(path), int(whole.max())
     if rows and size > len(rows):
-        raise ValueError(f'it has {size} rows, but "{path.stem}.dof" has {len(rows)}')
+        raise UnreadableError(f'it has {size} rows, but "{path.stem}.dof" has {len(rows)}')
     size = max(size, len(rows))
     if 8 * size > largest:
         raise MemoryError
@@ -51,6 +52,6 @@ def calculix_names(lines: list[str], file: str) -> list[str]:
             continue
         node, _, direction = word.partition(".")
         if not (node.isdecimal() and direction in ("1", "2", "3", "4", "5", "6")):
-            raise ValueError(f'"{file}", line {number}: "{word[:40]}" must be node.direction, as 40.1')
+            raise UnreadableError(f'"{file}", line {number}: "{word[:40]}" must be node.direction, as 40.1')
         found.append(f"{int(node)}{DIRECTIONS[int(direction) - 1]}")
     return found

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.errors import quoted
+from fcm.scene.files import UnreadableError
 from fcm.scene.number_text import fault_of_number, number_in
 
 MARK = b"\xef\xbb\xbf"  # of UTF-8, which some editors write at the beginning
@@ -39,7 +40,7 @@ def read_columns(path: Path, whole: int, between: str | None = None, comment: st
         found = _line_by_line(content, kind, between, comment)
     good = np.isfinite(found["real"])
     if not good.all():
-        raise ValueError(f"line {lines[int(good.argmin())]}: is no finite number")
+        raise UnreadableError(f"line {lines[int(good.argmin())]}: is no finite number")
     return Columns(found["whole"], found["real"], lines)
 
 
@@ -56,7 +57,7 @@ def _line_by_line(content: bytes, kind: np.dtype[Any], between: str | None, comm
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError:
-        raise ValueError("it is no text in UTF-8; save it as that") from None
+        raise UnreadableError("it is no text in UTF-8; save it as that") from None
     found = []
     for number, line in enumerate(text.split("\n"), 1):
         words = line.partition(comment)[0].strip()
@@ -69,11 +70,13 @@ def _row(words: Sequence[str], kind: np.dtype[Any], number: int, between: str | 
     count = kind["whole"].shape[0] + 1
     if len(words) != count:
         apart = "commas" if between == "," else "blanks"
-        raise ValueError(f"line {number} has {len(words)} entries; {count} are needed, with {apart} between")
+        raise UnreadableError(
+            f"line {number} has {len(words)} entries; {count} are needed, with {apart} between"
+        )
     places = []
     for word in words[:-1]:
         if not re.fullmatch(r"[+-]?\d{1,18}", word):
-            raise ValueError(f"line {number}: {quoted(word)} must be a whole number")
+            raise UnreadableError(f"line {number}: {quoted(word)} must be a whole number")
         places.append(int(word))
     return tuple(places), real_of(words[-1], number)
 
@@ -86,5 +89,5 @@ def real_of(word: str, line: int) -> float:
     """
     value = number_in(word)
     if value is None:
-        raise ValueError(f"line {line}: {fault_of_number(word)}")
+        raise UnreadableError(f"line {line}: {fault_of_number(word)}")
     return value

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import real_of
 from fcm.scene.formats.labelled import Labelled, labelled_from
 
@@ -38,11 +39,11 @@ def read_dmig(path: Path, largest: int) -> dict[str, Labelled]:
     try:
         text = path.read_text("utf-8-sig")
     except UnicodeDecodeError:
-        raise ValueError("it is no text in UTF-8; save it as that") from None
+        raise UnreadableError("it is no text in UTF-8; save it as that") from None
     for number, fields in _entries(text):
         _take(found, number, fields)
     if not found:
-        raise ValueError("it holds no DMIG entries; Nastran punches matrices by EXTSEOUT(DMIGPCH)")
+        raise UnreadableError("it holds no DMIG entries; Nastran punches matrices by EXTSEOUT(DMIGPCH)")
     return {name: _labelled(name, one) for name, one in found.items() if one.value}
 
 
@@ -83,13 +84,13 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
     name, body = fields[1], fields[2:]
     if (body[0] == "0") == (name in found):
         what = "two headers" if name in found else "no header before its columns"
-        raise ValueError(f"line {number}: DMIG {name} has {what}")
+        raise UnreadableError(f"line {number}: DMIG {name} has {what}")
     if name not in found:
         form, kind = (_whole(one, number) for one in (body[1], body[2]))
         if form not in (SYMMETRIC, SQUARE):
-            raise ValueError(f"line {number}: DMIG {name} is of form {form}; 6 (symmetric) or 1 is read")
+            raise UnreadableError(f"line {number}: DMIG {name} is of form {form}; 6 (symmetric) or 1 is read")
         if kind not in REAL:
-            raise ValueError(
+            raise UnreadableError(
                 f"line {number}: DMIG {name} is complex (type {kind}); damping as a loss_factor is"
             )
         found[name] = Entries(form)
@@ -101,7 +102,7 @@ def _take(found: dict[str, Entries], number: int, fields: list[str]) -> None:
         if not any(group):
             continue
         if len(group) < 3 or not group[0] or not group[2]:
-            raise ValueError(f"line {number}: DMIG {name} has a row without a point, or without a value")
+            raise UnreadableError(f"line {number}: DMIG {name} has a row without a point, or without a value")
         value = nastran_real(group[2], number)
         entries.line.append(number)
         entries.places.append((_whole(group[0], number), _whole(group[1] or "0", number), *column))
@@ -119,7 +120,7 @@ def nastran_real(word: str, line: int) -> float:
 
 def _whole(word: str, number: int) -> int:
     if not word.lstrip("+-").isdecimal():
-        raise ValueError(f'line {number}: "{word}" must be a whole number')
+        raise UnreadableError(f'line {number}: "{word}" must be a whole number')
     return int(word)
 
 
@@ -130,4 +131,4 @@ def _labelled(name: str, entries: Entries) -> Labelled:
     try:
         return labelled_from(node, direction, line, value, mirrored=entries.form == SYMMETRIC)
     except ValueError as error:
-        raise ValueError(f"DMIG {name}, {error}") from None
+        raise UnreadableError(f"DMIG {name}, {error}") from None

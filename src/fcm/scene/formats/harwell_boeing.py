@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from fcm.scene.files import UnreadableError
 from fcm.scene.formats.columns import real_of
 from fcm.scene.formats.labelled import Labelled, symmetric_from
 
@@ -33,16 +34,16 @@ def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
     """The matrix of a file; its rows have no names there."""
     lines = path.read_bytes().decode("latin-1").splitlines()
     if len(lines) < HEAD:
-        raise ValueError("it has no header of the Harwell-Boeing format")
+        raise UnreadableError("it has no header of the Harwell-Boeing format")
     cards = [_count(lines[1], i, 2) for i in range(5)]
     kind = lines[2][:3].upper()
     if kind not in ("RSA", "RUA"):
-        raise ValueError(
+        raise UnreadableError(
             f'line 3: "{lines[2][:3]}" is the kind of matrix; RSA or RUA, real and assembled, is read'
         )
     rows, columns, entries = (_count(lines[2], i, 3) for i in range(1, 4))
     if rows != columns:
-        raise ValueError(f"line 3: it has {rows} rows and {columns} columns; a square matrix is needed")
+        raise UnreadableError(f"line 3: it has {rows} rows and {columns} columns; a square matrix is needed")
     if 8 * max(rows, entries) > largest:
         raise MemoryError
     formats = [_format(lines[3][i : i + 16], 4) for i in (0, 16)] + [_format(lines[3][32:52], 4)]
@@ -54,9 +55,9 @@ def read_harwell_boeing(path: Path, largest: int) -> dict[str, Labelled]:
     pointer, index, value = _whole(parts[0]), _whole(parts[1]), parts[2]
     steps = np.diff(pointer)
     if pointer[0] != 1 or pointer[-1] != entries + 1 or (steps < 0).any():
-        raise ValueError("its pointers of columns do not rise from 1 to the number of entries")
+        raise UnreadableError("its pointers of columns do not rise from 1 to the number of entries")
     if entries and (index.min() < 1 or index.max() > rows):
-        raise ValueError(f"it has indices of rows beyond 1 to {rows}")
+        raise UnreadableError(f"it has indices of rows beyond 1 to {rows}")
     column = np.repeat(np.arange(columns), steps)
     if kind == "RSA":
         line = HEAD + (cards[4] > 0) + cards[1] + np.arange(entries) // formats[1].number + 1
@@ -70,21 +71,25 @@ def _count(line: str, field: int, number: int) -> int:
     if field == 4 and not word:  # no right-hand sides
         return 0
     if not word.isdecimal():
-        raise ValueError(f'line {number}: "{word}" in columns {14 * field + 1} on must be a whole number')
+        raise UnreadableError(
+            f'line {number}: "{word}" in columns {14 * field + 1} on must be a whole number'
+        )
     return int(word)
 
 
 def _format(word: str, number: int) -> Fields:
     found = FORMAT.fullmatch(word.strip())
     if not found:
-        raise ValueError(f'line {number}: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)')
+        raise UnreadableError(
+            f'line {number}: "{word.strip()}" is no Fortran format such as (10I8) or (4E20.13)'
+        )
     return Fields(int(found[1] or 1), int(found[3]))
 
 
 def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) -> npt.NDArray[np.float64]:
     """So many numbers in some lines of one format."""
     if cards * form.number < size or begin + cards > len(lines):
-        raise ValueError(f"it is cut off: line {begin + 1} on must hold {size} numbers")
+        raise UnreadableError(f"it is cut off: line {begin + 1} on must hold {size} numbers")
     at_once = _at_once(lines[begin : begin + cards], form, size)
     if at_once is not None:
         return at_once
@@ -94,7 +99,9 @@ def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) 
             word = line[i * form.width : (i + 1) * form.width].strip()
             found.append(real_of(word, number))
     if len(found) < size:
-        raise ValueError(f"it is cut off: line {begin + 1} on must hold {size} numbers, has {len(found)}")
+        raise UnreadableError(
+            f"it is cut off: line {begin + 1} on must hold {size} numbers, has {len(found)}"
+        )
     return np.array(found)
 
 
@@ -115,7 +122,7 @@ def _at_once(lines: list[str], form: Fields, size: int) -> npt.NDArray[np.float6
 def _whole(numbers: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
     whole = numbers.astype(np.int64)
     if (whole != numbers).any():
-        raise ValueError("a pointer or an index is no whole number")
+        raise UnreadableError("a pointer or an index is no whole number")
     return whole
 
 
@@ -130,14 +137,14 @@ def ansys_names(lines: list[str]) -> list[str]:
         words = line.split()
         if len(words) != 3 or not words[0].isdecimal() or not words[1].isdecimal():
             if found and words:
-                raise ValueError(f"line {number}: must be an equation, a node and UX to ROTZ")
+                raise UnreadableError(f"line {number}: must be an equation, a node and UX to ROTZ")
             continue
         direction = re.fullmatch(r"(U|ROT)([XYZ])", words[2].upper())
         if not direction:
-            raise ValueError(
+            raise UnreadableError(
                 f'line {number}: "{words[2]}" is no displacement UX to UZ or rotation ROTX to ROTZ'
             )
         if int(words[0]) != len(found) + 1:
-            raise ValueError(f"line {number}: equation {words[0]} comes where {len(found) + 1} should")
+            raise UnreadableError(f"line {number}: equation {words[0]} comes where {len(found) + 1} should")
         found.append(f"{int(words[1])}{'r' if direction[1] == 'ROT' else ''}{direction[2].lower()}")
     return found

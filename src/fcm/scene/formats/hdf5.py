@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
+from fcm.scene.files import UnreadableError
+
 MATLAB = ("data", "ir", "jc")
 SCIPY = ("data", "indices", "indptr")
 
@@ -25,7 +27,9 @@ def read_hdf5(path: Path, wanted: Collection[str], largest: int) -> tuple[dict[s
     try:
         import h5py
     except ModuleNotFoundError:
-        raise ValueError("it needs the package h5py: pip install 'fcm[hdf5]', or write it as .npz") from None
+        raise UnreadableError(
+            "it needs the package h5py: pip install 'fcm[hdf5]', or write it as .npz"
+        ) from None
     with h5py.File(path, "r") as file:
         matlab = bool(file.userblock_size)  # where MATLAB writes its header
         places: dict[str, Any] = {}

@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from fcm.scene.files import UnreadableError
+
 Integers = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
@@ -81,7 +83,7 @@ def symmetric_from(
         lines = sorted((int(of[one]), int(of[other])))
         twice = row[one] == row[other]
         what = "is there twice" if twice else f"is {value[one]:g} and {value[other]:g} across the diagonal"
-        raise ValueError(
+        raise UnreadableError(
             f"lines {lines[0]} and {lines[1]}: the entry of {shown[0]} and {shown[1]} {what}; "
             "give each once, for one triangle of a symmetric matrix"
         )

@@ -1,0 +1,236 @@
+"""Files with pieces lost, changed, doubled and moved: refused in words for their owner, or read as they are.
+
+Whatever is read must be in the file: each number of a text file among its words, and of a packed file the
+number that was written, as its checksums would tell of another.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse
+
+from fcm.scene import SceneError, scene_from_dict
+
+from ..program import python
+from ..scale import SCALE
+from .test_uff import NX, PERMAS, TRANSLATION, times
+
+CASES = int(40 * SCALE)
+PIECES = [
+    b"",
+    b" ",
+    b"\n",
+    b",",
+    b".",
+    b"-",
+    b"D+02",
+    b"kN",
+    b"1",
+    b"9",
+    b"nan",
+    b"\xef\xbb\xbf",
+    b"\xff",
+    b"e",
+    b"-1\n",
+]
+PYTHON = re.compile(  # as its messages begin
+    r"literal|argument|codec|unpack|NoneType|not subscriptable|index out|list index|convert string|"
+    r"out of range for|has no attribute|object|reshape|Traceback|buffer|KeyError|not supported between|"
+    r"\bdtype\b|\bstr\b|\bint\b"
+)
+K = np.array([[4.25, -1.5, 0.0], [-1.5, 3.125, -0.0625], [0.0, -0.0625, 2.75]])
+NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+|[-+]\d{3})?")
+
+
+def damaged(rng, content):
+    """A content with one to three pieces changed."""
+    for _ in range(rng.integers(1, 4)):
+        at, size = int(rng.integers(len(content) + 1)), int(rng.choice([0, 1, 1, 3, 20]))
+        piece = PIECES[rng.integers(len(PIECES))]
+        begin, end = sorted(rng.integers(len(content) + 1, size=2))
+        lines = content.split(b"\n")
+        line = int(rng.integers(len(lines)))
+        content = [
+            content[:at] + piece + content[at + size :],
+            content[:at] + content[at + max(size, 1) :],
+            content[:at] + rng.bytes(size or 1) + content[at + size :],
+            content[:at],
+            content[:begin] + content[end:] if end - begin < 200 else content[:at],
+            b"\n".join([*lines[:line], *lines[line + 1 :]]),
+            b"\n".join([*lines[: line + 1], *lines[line:]]),
+            content[:at] + content[begin:end][:60] + content[at:],
+        ][rng.integers(8)]
+    return content
+
+
+def words(content):
+    """The numbers that can be read anywhere in a text, by Python alone; of two that touch, each."""
+    found = {0.0, 1.0}
+    for line in content.split(b"\n"):
+        for part in (line, *line.split()):
+            for text in NUMBER.findall(part):
+                text = text.decode().lower().replace("d", "e")
+                text = re.sub(r"(?<=[\d.])([-+]\d{3})$", r"e\1", text) if "e" not in text else text
+                found |= {abs(float(text))}
+    return found
+
+
+def scene(folder, table):
+    force, response = [{"dof": "1x", "amplitude": 1.0}], {"frequency": [0.5, 1.5]}
+    return scene_from_dict({**table, "force": force, "response": response}, "t.toml", folder)
+
+
+def each(folder, name, content, table, seed):
+    """Each damaged content that is read, with its scene; of those that are not, what is said is looked at."""
+    rng = np.random.default_rng([seed, len(content)])
+    refused = 0
+    for _ in range(CASES):
+        changed = damaged(rng, content)
+        (folder / name).write_bytes(changed)
+        try:
+            found = scene(folder, table)
+        except SceneError as error:
+            refused += 1
+            said = str(error)
+            assert not PYTHON.search(re.sub(r'"(?:[^"\\]|\\.)*"', "", said)), (said, changed)
+            assert len(said) < 20_000 and all(len(one.splitlines()) == 1 for one in error.mistakes)
+        else:
+            yield changed, found
+    assert refused > CASES // 10
+
+
+def matrix_read(folder, name):
+    from fcm.scene.files import Files
+    from fcm.scene.matrix_file import read_matrix
+
+    return read_matrix(name, Files(folder)).matrix.toarray()
+
+
+def of_matrix(name):
+    return {"structure": {"dofs": ["1x", "1y", "1z"], "stiffness": name, "mass": [1, 2, 3], "damping": 0.1}}
+
+
+@pytest.mark.parametrize("form", ["symmetric", "general", "array"])
+def test_matrix_market(tmp_path, form):
+    matrix = K if form == "array" else scipy.sparse.coo_array(K)
+    scipy.io.mmwrite(tmp_path / "K.mtx", matrix, symmetry="general" if form == "array" else form)
+    content = (tmp_path / "K.mtx").read_bytes().replace(b"4.25", b"4.25D+00").replace(b"2.75", b"0.275E+001")
+    for changed, _ in each(tmp_path, "K.mtx", content, of_matrix("K.mtx"), 1):
+        assert set(np.abs(matrix_read(tmp_path, "K.mtx")).ravel().tolist()) <= words(changed), changed
+
+
+@pytest.mark.parametrize("name", ["55", "2414", "complex", "binary"])
+def test_universal_files(tmp_path, name):
+    values = "  1.00000E+00  0.00000E+00 -2.50000E-01  0.00000E+00  3.00000E+00  0.00000E+00"
+    text = {
+        "55": TRANSLATION.encode(), "2414": PERMAS.encode(), "binary": times() + TRANSLATION.encode(),
+        "complex": NX.format(mass="1.50000E+00", values=values).replace("3992", "   1").encode(),
+    }[name]  # fmt: skip
+    table = {"modal": {"file": "m.uff", "damping": 0.01}}
+    for changed, found in each(tmp_path, "m.uff", text, table, 2):
+        shapes, known = np.abs(found.modal.shapes).ravel(), words(changed)
+        assert set(shapes.tolist()) <= known or name == "complex", changed
+        hertz = found.modal.frequency / (2.0 * np.pi)
+        assert all(min(abs(one - k) for k in known) <= 1e-14 * one for one in hertz.tolist()), changed
+
+
+def test_archives(tmp_path):
+    """Each array has a checksum."""
+    scipy.sparse.save_npz(tmp_path / "K.npz", scipy.sparse.csr_array(K))
+    content = (tmp_path / "K.npz").read_bytes()
+    for changed, _ in each(tmp_path, "K.npz", content, of_matrix("K.npz"), 3):
+        assert (matrix_read(tmp_path, "K.npz") == K).all(), changed
+
+
+def test_names_of_rows(tmp_path):
+    """A name that is read is on a line of its own, but for the blank between a node and a direction."""
+    np.savez(tmp_path / "K.npz", K=K)
+    table = {"structure": {"file": "names.txt", "stiffness": "K.npz", "mass": [1, 2, 3], "damping": 0.1}}
+    content = b"# rows\n1x\n1 y # up\n1:3\n"
+    for changed, found in each(tmp_path, "names.txt", content, table, 4):
+        text = changed.decode("utf-8-sig")
+        lines = {re.sub(r"[\s,:]", "", line.partition("#")[0]) for line in text.splitlines()}
+        assert {name.replace(":", "") for name in found.modal.dofs} <= lines, changed
+
+
+def test_scenes(tmp_path):
+    """A scene's own file: a damaged line is named, or the scene is another."""
+    from fcm.scene import load_scene
+
+    text = '[modal]\ndofs = ["1x", "1y"]\nfrequency = [1.0, 2.5]\ndamping = 0.01\n'
+    text += "shapes = [[1.0, 0.5], [0.5, -1.0]]\n"
+    text += '[[force]]\ndof = "1x"\namplitude = 1.0\nphase = "45deg"\n[response]\nfrequency = [0.5, 1.5]\n'
+    rng = np.random.default_rng(5)
+    for _ in range(CASES):
+        (tmp_path / "s.toml").write_bytes(changed := damaged(rng, text.encode()))
+        try:
+            load_scene(tmp_path / "s.toml")
+        except SceneError as error:
+            said = re.sub(r'"(?:[^"\\]|\\.)*"|line \d+, .*?: ', "", str(error))
+            assert not PYTHON.search(said), (said, changed)
+
+
+# The readers of other packages end their process where they crash: each case has one, made by fork.
+READER = """
+import os, sys
+from contextlib import suppress
+from pathlib import Path
+import scipy.io, scipy.sparse
+from fcm.scene import apart
+with suppress(ImportError):
+    import pyyeti.nastran.op4
+
+folder, null = Path(sys.argv[1]), os.open(os.devnull, os.O_RDWR)
+for path in sorted(folder.glob("case*")):
+    process = os.fork()
+    if not process:
+        os.dup2(os.open(path.with_name(f"out-{path.name}"), os.O_CREAT | os.O_WRONLY), 1)
+        os.dup2(os.open(path.with_name(f"err-{path.name}"), os.O_CREAT | os.O_WRONLY), 2)
+        apart.child([str(path), "1000000"])
+        sys.stdout.flush()
+        os._exit(0)
+    print(path.name, os.waitstatus_to_exitcode(os.waitpid(process, 0)[1]))
+"""
+
+
+def read_apart(folder, ending, content, seed):
+    """The arrays that are read of each damaged content; what is said of the others is looked at."""
+    rng = np.random.default_rng([seed, len(content)])
+    changed = [damaged(rng, content) for _ in range(max(CASES // 4, 5))]
+    for number, one in enumerate(changed):
+        (folder / f"case{number:05d}{ending}").write_bytes(one)
+    done = python("-c", READER, folder)
+    assert done.code == 0, done.err
+    for line, one in zip(done.out.splitlines(), changed, strict=True):
+        name, status = line.split()
+        assert int(status) <= 3, (name, status)
+        if int(status) == 3:
+            said = (folder / f"err-{name}").read_text()
+            assert said and not PYTHON.search(re.sub(r'"[^"]*"', "", said)), (said, one)
+        elif int(status) == 0:
+            with np.load(folder / f"out-{name}", allow_pickle=False) as archive:
+                yield one, {key: archive[key] for key in archive.files}
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_packed_matlab_files(tmp_path):
+    """What is packed has a checksum: it is what was written, or nothing."""
+    scipy.io.savemat(tmp_path / "K.mat", {"K": K}, do_compression=True)
+    for changed, found in read_apart(tmp_path, ".mat", (tmp_path / "K.mat").read_bytes(), 6):
+        assert all((found[name] == K).all() for name in found if name == "K"), changed
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("form", ["dense", "nonbigmat"])
+def test_nastran_output4_as_text(tmp_path, form):
+    op4 = pytest.importorskip("pyyeti.nastran.op4")
+    op4.write(str(tmp_path / "K.op4"), {"K": K}, binary=False, sparse=form)
+    for changed, found in read_apart(tmp_path, ".op4", (tmp_path / "K.op4").read_bytes(), 7):
+        for name, array in found.items():
+            if name.endswith(".data") or "." not in name:
+                assert set(np.abs(array).ravel().tolist()) <= words(changed), (name, array, changed)
