@@ -43,3 +43,19 @@ class ProlongationOptions:
 
 
 PROLONGATION = ProlongationOptions()
+
+
+@dataclass(frozen=True)
+class BranchingOptions:
+    """How branches are left at branch points; lengths are in the scaled unknowns."""
+
+    fine: float = 1e-4  # of a step, to which a branch point is found
+    distances: tuple[float, ...] = (0.003, 0.01, 0.03, 0.1)  # from it at which other branches are looked for
+    astray: float = 0.9  # of such a distance: what Newton's method finds further away is no such solution
+    alike: float = 1e-5  # of a displacement: motions that differ by less are the same
+    rounds: int = 4  # branches that leave branches that leave ...
+    most: int = 64  # starts
+    driven: float = 1e-6  # of a displacement: harmonics that a motion would have more of belong to it
+
+
+BRANCHING = BranchingOptions()

@@ -2,17 +2,86 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
 from fcm.branches.isolas import crossings
+from fcm.branches.mirror import mirrors
+from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.continuation import Path, Status
+from fcm.continuation.branches import contains
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced, with_further
 
 
 def every_branch(system: System) -> Traced:
     """Trace all branches of the response of a system."""
-    return with_isolas(system, traced(system))
+    return with_branching(system, with_isolas(system, traced(system)))
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
     """With the isolated branches that curves of folds come to."""
     met = crossings(system, found.found, found.branches.paths)
     return with_further(system, found, (), met.solutions) if met.solutions else found
+
+
+def breaks_symmetry(system: System, found: Traced) -> bool:
+    """Whether a branch has branch points that take harmonics which the system lacks."""
+    whole = all_up_to(system)
+    if whole.harmonics == system.harmonics or not system.scene.contacts:
+        return False
+    return any(True for _ in branch_points(whole, system.harmonics, found.branches.paths))
+
+
+def with_branching(system: System, found: Traced, options: BranchingOptions = BRANCHING) -> Traced:
+    """With the branches that leave others at branch points, of two mirror images one."""
+    if not system.scene.contacts or all_up_to(system).harmonics != system.harmonics:
+        return found
+    known, left = 0, options.most
+    for _ in range(options.rounds):
+        paths, known = found.branches.paths[known:], len(found.branches.paths)
+        for point in branch_points(system, system.harmonics, paths):
+            if left == 0:
+                return found
+            left -= 1
+            found = _with_branches_of(system, found, point)
+        if len(found.branches.paths) == known:
+            break
+    return found
+
+
+def _with_branches_of(system: System, found: Traced, point: BranchPoint) -> Traced:
+    """With the branches through the starts at a branch point that are not known, nor images of such."""
+    for z in point.starts:
+        images = [mirror.image(z) for mirror in mirrors(system, point.z, z)]
+        paths, balance = found.branches.paths, system.afresh()
+        if any(contains(path, one, balance) for path in paths for one in (z, *images)):
+            continue
+        found = with_further(system, found, (), [z])
+        if images and len(found.branches.paths) > len(paths):
+            new, balance = found.branches.paths[-1], system.afresh()
+            if any(contains(new, one, balance) for one in images):
+                new = _half(new)
+            branches = replace(found.branches, paths=(*found.branches.paths[:-1], new))
+            found = replace(found, branches=branches, mirrored=(*found.mirrored, len(paths)))
+    return found
+
+
+def _half(path: Path) -> Path:
+    """Of a closed path that comes back through its branch points as its own image the way between these; all
+    of another one."""
+    changes = np.flatnonzero(path.orientation[:-1] * path.orientation[1:] < 0.0)
+    if path.status is not Status.CLOSED or len(changes) != 2:
+        return path
+    half = slice(int(changes[0]), int(changes[1]) + 2)
+    return replace(
+        path,
+        z=path.z[half],
+        direction=path.direction[half],
+        mark=path.mark[half],
+        orientation=path.orientation[half],
+        shift=path.shift[half],
+        status=Status.COMPLETE,
+    )

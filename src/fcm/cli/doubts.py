@@ -31,6 +31,23 @@ def branches_unsure(summary: Mapping[str, Any]) -> str:
     )
 
 
+def mirrored(summary: Mapping[str, Any]) -> str:
+    """How many branches have a mirror image that is not traced; empty if none."""
+    count = sum(curve.get("mirrored_branches", 0) for curve in summary["curves"])
+    if not count:
+        return ""
+    return f"{count} branch{'es' * (count > 1)} of unsymmetric motions: the mirror images are not traced"
+
+
+def looked_at(summary: Mapping[str, Any]) -> str:
+    """Between which levels of the forces isolated branches were looked for; empty if nowhere."""
+    found = [curve["levels_looked_at"] for curve in summary["curves"] if "levels_looked_at" in curve]
+    if not found:
+        return ""
+    low, high = found[0]
+    return f"isolated branches: the folds of the level of the forces were followed from {low:g} to {high:g}"
+
+
 def tracked_unsure(summary: Mapping[str, Any]) -> str:
     """Where branches may be missing from those that tracked curves begin on; empty if nowhere."""
     tracked = summary.get("tracked", {})

@@ -10,7 +10,9 @@ from fcm.cli import schedule, track
 from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.doubts import (
     branches_unsure,
+    looked_at,
     maybe_not_unique,
+    mirrored,
     nothing_stable,
     short_of_accuracy,
     tracked_unsure,
@@ -48,6 +50,10 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(cost_and_error(result))
     elif "tracked" in result:
         messages.info(track.cost(result))
+    if levels := looked_at(result):
+        messages.detail(levels)
+    if images := mirrored(result):
+        messages.info(images)
     if many := maybe_not_unique(result):
         messages.info(many)
     if nothing := nothing_stable(result):

@@ -25,11 +25,13 @@ from fcm.scene.model import FloatArray
 @dataclass(frozen=True)
 class Traced:
     """Branches, and what was found at the frequencies where solutions were looked for, maybe with fewer
-    harmonics; work is what that took, in seconds of `fcm.harmonic.cost`."""
+    harmonics; work is what that took, in seconds of `fcm.harmonic.cost`. mirrored: the numbers of the
+    branches whose mirror images are branches, too, and are not among them."""
 
     branches: Branches
     found: tuple[Found, ...]
     work: float = 0.0
+    mirrored: tuple[int, ...] = ()
 
 
 def traced(

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.branches.options import FOLDS
 from fcm.continuation import Mark
 from fcm.harmonic.believed import astray, disbelieved
 from fcm.harmonic.choice import Accurate, accurate, enlarged, finer, given
@@ -23,8 +24,8 @@ from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
+from fcm.response.all_branches import with_all_branches
 from fcm.response.incomplete import FLOATING, incomplete
-from fcm.response.isolated import with_all_branches
 from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
 from fcm.response.short_of import short_of
@@ -159,6 +160,8 @@ def _curve(followed: _Followed) -> Curve:
         unsure=[one.omega for one in found.traced.found if not one.complete],
         levels=[one.omega for one in found.traced.found],
         digits=bool(rounding.any()),
+        folds_between=(FOLDS.lowest, FOLDS.highest) if scene.contacts else None,
+        mirrored=len(found.traced.mirrored),
     )
 
 

@@ -36,6 +36,10 @@ def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
     missing = [] if curve.levels is None else not_looked_at(gist.unstable, curve.levels)
     if missing:
         out["no_stable_motion_not_looked_at"] = in_unit(sorted(missing), unit).tolist()
+    if curve.folds_between is not None:
+        out["levels_looked_at"] = list(curve.folds_between)
+    if curve.mirrored:
+        out["mirrored_branches"] = curve.mirrored
     if curve.loose:
         out["may_not_be_unique"] = curve.loose
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}

@@ -56,6 +56,8 @@ class Curve:
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
     unsure: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
     levels: list[float] | None = None  # [rad/s] at which the level of the forces was followed, if known
+    folds_between: tuple[float, float] | None = None  # levels of the forces, see `fcm.branches.isolas`
+    mirrored: int = 0  # branches whose mirror images are branches, too, and are not traced
     evaluations: int = 0  # of the equations, to follow it
     level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
     level_folds: list[float] = field(default_factory=list)  # levels at which that curve turns back

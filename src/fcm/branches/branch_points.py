@@ -1,0 +1,136 @@
+r"""Branch points of a traced branch, and the branches that leave it there.
+
+Along a branch closed by its own tangent t the determinant of
+
+    [ dF/d(x, omega) ]
+    [       t        ]
+
+changes its sign where a real eigenvalue passes zero without a fold: another branch crosses (Keller,
+"Numerical solution of bifurcation and nonlinear eigenvalue problems", 1977; Allgower and Georg, chapter 8).
+The singular vector there leads to it: the solutions at a distance along that, across the branch, are looked
+for by Newton's method in a bordered system. A corner of the response may change the
+sign by a jump, and is treated alike.
+
+A symmetric motion has odd harmonics alone, and breaks its symmetry by even ones: so the sign is that of the
+balance of all harmonics up to the highest, which the motion solves with none of the even ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.continuation import Between, Path
+from fcm.continuation.branches import contains
+from fcm.continuation.newton import Newton
+from fcm.harmonic.further import padded
+from fcm.harmonic.system import System
+from fcm.harmonic.whole import jacobian_of
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class BranchPoint:
+    """z (unknown + 1,), with all harmonics up to the highest; starts: solutions on either side of the branch
+    there, which lie on branches that leave it."""
+
+    z: FloatArray
+    starts: tuple[FloatArray, ...]
+
+
+def all_up_to(system: System) -> System:
+    """The system with all harmonics up to its highest."""
+    return system.with_harmonics(tuple(range(1, system.harmonics[-1] + 1)))
+
+
+def branch_points(
+    system: System,
+    harmonics: Sequence[int],
+    paths: Sequence[Path],
+    options: BranchingOptions = BRANCHING,
+) -> Iterator[BranchPoint]:
+    """Those of paths of some harmonics, in a system of all harmonics up to the highest."""
+    balance, newton = system.balance(), None
+    for path in paths:
+        whole = path
+        if tuple(harmonics) != system.harmonics:
+            newton = newton or Newton(balance)
+            solved = _solved(newton, path, harmonics, system.harmonics, options)
+            if solved is None:
+                continue
+            whole = solved
+        change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
+        for i in np.flatnonzero(change).tolist():
+            z = _located(Between(balance, whole, i), whole.orientation[i], options)
+            starts = tuple(_leaving(system, z, whole, i, options))
+            if starts:
+                yield BranchPoint(z, starts)
+
+
+def _solved(
+    newton: Newton, path: Path, fewer: Sequence[int], more: Sequence[int], options: BranchingOptions
+) -> Path | None:
+    """A path of fewer harmonics with the orientations that more give it; None if they are no solutions with
+    nothing of the others, as where these are driven."""
+    z = np.array([padded(one, fewer, more) for one in path.z])
+    direction = np.array([padded(one, fewer, more) for one in path.direction])
+    orientation = np.empty(len(z))
+    for i, (one, way) in enumerate(zip(z, direction, strict=True)):
+        newton.problem.measure(one)
+        newton.scale[:], newton.z[:] = newton.problem.scale, one
+        row = way / np.asarray(newton.scale)
+        newton.row[:] = row / np.linalg.norm(row)
+        if not newton.look():
+            return None
+        off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
+        if np.abs(off).max() > options.driven:
+            return None
+        orientation[i] = newton.orientation
+    return replace(path, z=z, direction=direction, orientation=orientation)
+
+
+def _located(between: Between, before: float, options: BranchingOptions) -> FloatArray:
+    """The place between two points where the determinant changes its sign."""
+    low, high = 0.0, 1.0
+    between.put(low)
+    z = between.z
+    while high - low > options.fine:
+        middle = 0.5 * (low + high)
+        if not between.put(middle):
+            break
+        z = between.z
+        low, high = (middle, high) if between.orientation == before else (low, middle)
+    return z
+
+
+def _leaving(
+    system: System, z: FloatArray, path: Path, i: int, options: BranchingOptions
+) -> Iterator[FloatArray]:
+    """Solutions on both sides of a branch point that follows point i of a path, off the path, at the least
+    distance at which there are any. The path's direction is that of its chord: it has no one tangent there.
+    """
+    balance = system.balance()
+    balance.measure(z)
+    balance.evaluate(z)
+    scale = np.array(balance.scale)
+    t = (path.z[i + 1] - path.z[i]) / scale
+    t /= np.linalg.norm(t)
+    matrix = np.vstack((jacobian_of(balance) * scale / scale[:-1, None], t))
+    singular = np.linalg.svd(matrix)[2][-1]
+    singular -= (singular @ t) * t
+    singular /= np.linalg.norm(singular)
+    newton = Newton(balance)
+    for distance in options.distances:
+        found = list[FloatArray]()
+        for way in (distance, -distance):
+            newton.scale[:], newton.row[:] = scale, singular
+            newton.z[:] = z + way * scale * singular
+            if newton.correct(distance) and newton.moved < options.astray * distance:
+                start = np.array(newton.z)
+                found += [] if contains(path, start, balance) else [start]
+        if found:
+            yield from found
+            return

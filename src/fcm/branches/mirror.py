@@ -1,0 +1,74 @@
+"""The mirror images of motions: of a symmetric structure the motion that breaks the symmetry has one.
+
+An image is the motion half a period later, or at once, with contacts in the place of others like them, and
+their tangential displacements reversed. Which contacts those are a symmetric motion tells, which is its own
+image; that the image of another is a solution, too, its balance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """partner (contact,): whose motion a contact has in the image; factor (contact, unknown of one contact)
+    of that motion's numbers."""
+
+    partner: npt.NDArray[np.intp]
+    factor: FloatArray
+
+    def image(self, z: FloatArray) -> FloatArray:
+        """Of a motion (unknown + 1,)."""
+        blocks = z[:-1].reshape(len(self.partner), -1)
+        return np.append(self.factor * blocks[self.partner], z[-1])
+
+
+def mirrors(
+    system: System, symmetric: FloatArray, other: FloatArray, options: BranchingOptions = BRANCHING
+) -> Iterator[Mirror]:
+    """Those by which a symmetric solution (unknown + 1,) is its own image, and the image of another one is a
+    solution, and not the same."""
+    balance = system.balance()
+    for later in (True, False):
+        mirror = _of(system, symmetric, later, options)
+        if mirror is None:
+            continue
+        image = mirror.image(other)
+        balance.measure(image)
+        scale = np.asarray(balance.scale)
+        balance.probe(image)
+        off = np.abs(np.asarray(balance.residual) / scale[:-1]).max()
+        if off < options.alike and np.linalg.norm((image - other) / scale) > options.alike:
+            yield mirror
+
+
+def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -> Mirror | None:
+    contacts = system.scene.contacts
+    laws = [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+    blocks = z[:-1].reshape(len(contacts), -1)
+    harmonics = np.repeat([0, *system.harmonics], [2, *[4] * len(system.harmonics)])
+    turned = (-1.0) ** harmonics if later else np.ones(harmonics.size)
+    tangential = np.concatenate(([True, False], np.tile([True, True, False, False], len(system.harmonics))))
+    size = np.abs(blocks).max()
+    partner, factor = np.full(len(contacts), -1), np.ones(blocks.shape)
+    for i in range(len(contacts)):
+        if partner[i] >= 0:
+            continue
+        others = [j for j in range(i + 1, len(contacts)) if partner[j] < 0 and laws[j] == laws[i]]
+        for j, sign in ((j, sign) for j in (*others, i) for sign in (-1.0, 1.0)):
+            by = turned * np.where(tangential, sign, 1.0)
+            if np.abs(blocks[i] - by * blocks[j]).max() < options.alike * size:
+                partner[i], partner[j], factor[i], factor[j] = j, i, by, by
+                break
+        else:
+            return None
+    return Mirror(partner.astype(np.intp), factor)
