@@ -71,7 +71,11 @@ def _curves(
     few: System, found: Sequence[Found], span: tuple[float, float], options: FoldOptions
 ) -> Iterator[Folds]:
     """The curves of the folds that are short of the level 1, each once."""
-    surface, known = Surface(few.afresh()), list[Folds]()
+    turns = [turn.padded(one.harmonics, few.harmonics) for one in found for turn in one.turns]
+    turns = [turn for turn in turns if turn.short and options.lowest < turn.level < options.highest]
+    if not turns:
+        return
+    surface, known = Surface(few.balance()), list[Folds]()  # of its own: others are followed meanwhile
     paid = 0
 
     def pay() -> None:
@@ -79,21 +83,14 @@ def _curves(
         new, paid = surface.evaluations - paid, surface.evaluations
         few.work.take(seconds_of(few, new, len(few.harmonics)))
 
-    for one in found:
-        for turn in one.turns:
-            turn = turn.padded(one.harmonics, few.harmonics)
-            if not turn.short or not options.lowest < turn.level < options.highest:
-                continue
-            if any(_has(curve, turn, surface, options) for curve in known):
-                continue
-            start = np.append(turn.z, turn.level)
-            try:
-                curve = folds_from(surface, start, turn.directions, span, options, pay)
-            finally:
-                surface.balance.load = 1.0
-            if curve is not None:
-                known.append(curve)
-                yield curve
+    for turn in turns:
+        if any(_has(curve, turn, surface, options) for curve in known):
+            continue
+        start = np.append(turn.z, turn.level)
+        curve = folds_from(surface, start, turn.directions, span, options, pay)
+        if curve is not None:
+            known.append(curve)
+            yield curve
 
 
 def _has(curve: Folds, turn: Turn, surface: Surface, options: FoldOptions) -> bool:
