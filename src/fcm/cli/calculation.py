@@ -33,8 +33,10 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
     if asked.mode is not None:
         return _mode(messages, scene, asked)
     if scene.optimum is not None:
-        options = {**run, **_balanced(asked), "table": _opened(asked.table)}
-        return track.optimised(messages, scene, asked.method, options)
+        table = _opened(asked.table)
+        response = track.optimised(messages, scene, asked.method, {**run, **_balanced(asked), "table": table})
+        _say_outside(messages, asked.table, table)
+        return response
     if asked.method == "exact" and (scene.has_range or asked.at):
         options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
         options["periods"] = asked.periods
@@ -101,11 +103,16 @@ def _traced(messages: Messages, scene: Scene, asked: Asked, options: dict[str, A
     shown = part(messages.progress, 0.0, share)
     response = trace(scene, method=asked.method, table=table, progress=shown, **options)
     messages.clear()
+    _say_outside(messages, asked.table, table)
+    return response
+
+
+def _say_outside(messages: Messages, path: str | None, table: Any) -> None:
+    """How often a table was asked for what it does not hold."""
     if outside := getattr(table, "outside", 0):
         messages.info(
-            f"{asked.table}: {outside} look-ups outside the part it holds were answered by the closed form"
+            f"{path}: {outside} look-ups outside the part it holds were answered by the closed form"
         )
-    return response
 
 
 def _opened(table: str | None) -> Any:

@@ -97,10 +97,12 @@ def _not_looked_at(curve: Mapping[str, Any]) -> str:
 
 def maybe_not_unique(summary: Mapping[str, Any]) -> str:
     """Where the motion may be one of many, and how to learn of the others; empty if nowhere."""
-    count = sum(curve.get("may_not_be_unique", 0) for curve in summary["curves"])
+    followed = [*summary["curves"], *summary.get("tracked", {}).get("curves", ())]
+    count = sum(curve.get("may_not_be_unique", 0) for curve in followed)
     if not count:
         return ""
-    tells = f": {how} tells how far they range" if (how := _how(summary)) else ""
+    how, of_levels = _how(summary), any("level_folds" in curve for curve in summary["curves"])
+    tells = f": {how}{', at the level 1,' if of_levels else ''} tells how far they range" if how else ""
     return (
         f"points at which a contact never slips while another changes its state, or feels it: {count}; its "
         f"residual friction may decide which of many motions that is{tells}"
@@ -108,7 +110,8 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
 
 
 def _how(summary: Mapping[str, Any]) -> str:
-    """By which option the exact motion is visited at a frequency F; empty where it is not, of a ring."""
-    if any(note.startswith("cyclic:") for note in summary.get("notes", ())):
+    """By which option the exact motion is visited at a frequency F; empty of a ring or a mode."""
+    no_forces = any("mode" in curve for curve in summary["curves"])
+    if no_forces or any(note.startswith("cyclic:") for note in summary.get("notes", ())):
         return ""
     return "--at F" if summary["method"] == "exact" else "--method exact --at F"

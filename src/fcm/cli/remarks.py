@@ -60,7 +60,7 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(nothing)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    if unsure := branches_unsure(result) or tracked_unsure(result):
+    for unsure in filter(None, (branches_unsure(result), tracked_unsure(result))):
         messages.warning(unsure)
     histories = result.get("histories", [])
     if histories:

@@ -8,9 +8,11 @@ import numpy.typing as npt
 from fcm.continuation import Status
 from fcm.harmonic.choice import Accurate
 from fcm.harmonic.drift import REASONS, undetermined
+from fcm.harmonic.points import Points
 from fcm.harmonic.record import Record
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
 from fcm.units import in_unit
 
 FLOATING = "; rigid-body modes are at rest only while closed contacts hold them"
@@ -28,8 +30,7 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     for why, which in reasons.items():
         if which.any():
             omega = in_unit(points.z[which, -1], unit)
-            reason = REASONS[why].format(_soft(system.scene.of_matrices))
-            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {reason}", nowhere
+            return f"from {omega.min():.5g} to {omega.max():.5g} {unit} {because(system, why)}", nowhere
     status = branches.status
     if status is Status.COMPLETE:
         return "", nowhere
@@ -43,9 +44,28 @@ def incomplete(found: Accurate, points: Record) -> tuple[str, npt.NDArray[np.boo
     return f"stopped at {in_unit(end, unit):.8g} {unit}: {why}", nowhere
 
 
+def because(system: System, why: str) -> str:
+    """One of REASONS in the keys of the scene."""
+    return REASONS[why].format(_soft(system.scene.of_matrices))
+
+
 def _soft(of_matrices: bool) -> str:
     """What holds a rigid-body mode and hardly changes another, by the key that a scene has."""
     return "soft springs in structure.stiffness" if of_matrices else "a small modal.frequency"
+
+
+def no_steady_states(system: System, z: FloatArray, level: FloatArray) -> dict[str, npt.NDArray[np.bool_]]:
+    """For each of REASONS whether it applies at points z (point, unknown + 1), each (point,).
+
+    level : (point,) that the forces are multiplied by. Nothing where no mode is a rigid-body one. What is at
+    rest, at the level 0, stays where it is.
+    """
+    if system.linear.natural.all():
+        return {}
+    points = Points(system.looking, len(z))
+    points.take(np.ascontiguousarray(z), np.zeros_like(z), np.ascontiguousarray(level))
+    found = undetermined(system, z, np.asarray(points.force))
+    return {why: which & (level > 0.0) for why, which in found.items()}
 
 
 def _resonant(system: System, omega: float) -> str:

@@ -124,7 +124,7 @@ def _on_line(task: Task, found: Lowest, harmonics: tuple[int, ...]) -> Found:
     if found.best is None:
         raise ResponseError(_nothing(task))
     way = _search(task, harmonics).way
-    curves = [as_curve(task.scene, *stability_along(way, one)) for one in found.curves]
+    curves = [as_curve(task.scene, way, *stability_along(way, one)) for one in found.curves]
     return _optimal(task, np.array([found.best.s]), found.best, harmonics), curves
 
 

@@ -7,12 +7,13 @@ the static loads.
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
@@ -27,6 +28,8 @@ from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
 from fcm.response.groups import lost_curve
+from fcm.response.incomplete import because, no_steady_states
+from fcm.response.loose import loose
 from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
@@ -35,7 +38,7 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Progress
 from fcm.scene.errors import counted
-from fcm.scene.model import Scene
+from fcm.scene.model import FloatArray, Scene
 from fcm.units import EXCITATION, UNIT, in_unit
 
 FAR = 1e6  # a level beyond this is a mistake of units
@@ -167,8 +170,9 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
             for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
         }
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
-        curve.complete, curve.harmonics, curve.evaluations = whole, system.harmonics, path.evaluations
-        curve.reason = "" if whole else f"stopped at level {last:.6g}: {path.status.value}"
+        curve.harmonics, curve.evaluations = system.harmonics, path.evaluations
+        curve.reason = curve.reason if whole else f"stopped at level {last:.6g}: {path.status.value}"
+        curve.complete = not curve.reason
     return curve
 
 
@@ -186,6 +190,9 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     stable = stable_at_levels(system, z, even)
     known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
     stable[~known & (stable == 1.0)] = np.nan
+    lost = no_steady_states(system, z, level)
+    for which in lost.values():
+        stable[which] = 0.0  # what creeps away, or floats, is no steady state
     loop = loops(system, z)
     words, borne = cycles(system, z, loop)
     of_points = {
@@ -206,4 +213,17 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
-    return {name: pick(values, rows) for name, values in of_points.items()} | {"level_folds": folds.tolist()}
+    of_curve = {
+        "level_folds": folds.tolist(),
+        "loose": int(loose(system.scene, words).sum()),
+        "reason": _lost(system, level, lost),
+    }
+    return {name: pick(values, rows) for name, values in of_points.items()} | of_curve
+
+
+def _lost(system: System, level: FloatArray, lost: Mapping[str, npt.NDArray[np.bool_]]) -> str:
+    """From where to where there is no steady state, and why; empty if there is one everywhere."""
+    for why, which in lost.items():
+        if which.any():
+            return f"from level {level[which].min():.5g} to {level[which].max():.5g} {because(system, why)}"
+    return ""

@@ -17,6 +17,8 @@ from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.groups import lost_curve
+from fcm.response.incomplete import because, no_steady_states
+from fcm.response.loose import loose
 from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
@@ -136,6 +138,12 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
     X, rows, unknown = 1j * X, np.arange(mode.omega.size), np.full(mode.omega.size, np.nan)
     whole, loop = path.status is Status.COMPLETE, loops(system, mode.contacts)
     words, borne = cycles(system, mode.contacts, loop)
+    lost = no_steady_states(system, mode.contacts, np.ones(mode.omega.size))
+    reason = "" if whole else _reason(mode)
+    for why, which in lost.items():
+        if which.any():
+            ends = mode.amplitude[which]
+            reason = f"from modal amplitude {ends.min():.5g} to {ends.max():.5g} {because(system, why)}"
     return replace(
         empty,
         frequency=mode.omega,
@@ -150,8 +158,9 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         table_error=unknown,
         error=np.full(amplitude.shape, np.nan),
         truncation_error=error,
-        complete=whole,
-        reason="" if whole else _reason(mode),
+        complete=not reason,
+        reason=reason,
+        loose=int(loose(scene, words).sum()),
         evaluations=path.evaluations,
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,

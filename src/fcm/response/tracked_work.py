@@ -15,7 +15,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
+from fcm.response.loose import loose
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
 from fcm.run import Interrupted, Report
@@ -27,7 +29,7 @@ from fcm.track.error import change, places
 from fcm.track.onset import KINDS as ONSETS
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.stability import stability_along
-from fcm.track.starts import Special
+from fcm.track.starts import Special, moved
 from fcm.track.tracked import Condition, Kind
 from fcm.track.varied import along
 from fcm.units import in_unit
@@ -78,7 +80,7 @@ class TrackedWork:
                 told = () if stopped else once(partial(errors, way, one))
             except KeyboardInterrupt:
                 stopped = True
-            followed.curves.append(as_curve(scene, one, stable, told))
+            followed.curves.append(as_curve(scene, way, one, stable, told))
         if not stopped:
             return followed
         followed.problems.append(STOPPED)
@@ -128,7 +130,7 @@ def errors(way: Way, one: Track) -> tuple[TrackedError, ...]:
 
 
 def as_curve(
-    scene: Scene, one: Track, stable: FloatArray | None, told: tuple[TrackedError, ...] = ()
+    scene: Scene, way: Way, one: Track, stable: FloatArray | None, told: tuple[TrackedError, ...] = ()
 ) -> TrackedCurve:
     """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
     corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
@@ -148,7 +150,18 @@ def as_curve(
         complete=one.whole,
         reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
         errors=told,
+        loose=loose_points(way, one),
     )
+
+
+def loose_points(way: Way, one: Track) -> int:
+    """At how many points of a track a contact never slips beside one that may feel it."""
+    count = 0
+    for spot in one.spots:
+        system = moved(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
+        z = np.array(spot.z[None, :-1])
+        count += int(loose(system.scene, cycles(system, z, loops(system, z))[0]).sum())
+    return count
 
 
 def named(scene: Scene, condition: Condition) -> str:

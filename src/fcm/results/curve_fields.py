@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.results.field import Field
-from fcm.results.gist import gist_of
+from fcm.results.gist import Gist, gist_of
 from fcm.results.padded import by_fold
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
@@ -29,9 +29,36 @@ def gist_fields(response: Response) -> dict[str, Field]:
         name: Field(("curve",), np.array(values, dtype=np.float64), {"long_name": meaning, "units": "1"})
         for name, (meaning, values) in of_all.items()
     }
+    out |= _doubts(response, gists)
     if not response.complete:
         reasons = np.array([curve.reason for curve in response.curves])
         out["reason"] = Field(("curve",), reasons, {"long_name": "why the curve is not complete"})
+    return out
+
+
+def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
+    """What may be missing in curves, or lacking, which the summary of a file with all points says."""
+    curves, unit, out = response.curves, response.frequency_unit, dict[str, Field]()
+    in_file = {"units": CF_UNIT[unit]}
+    if any(curve.loose for curve in curves):
+        meaning = "points at which residual friction may decide which of many motions that is"
+        loose = np.array([curve.loose for curve in curves], dtype=np.float64)
+        out["points_maybe_not_unique"] = Field(("curve",), loose, {"long_name": meaning, "units": "1"})
+    if any(curve.unsure for curve in curves):
+        meaning = "frequencies at which solutions were not looked for to the end: branches may be missing"
+        unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.unsure), unit))
+        out["branches_unsure_at"] = Field(("curve", "unsure"), unsure, {"long_name": meaning} | in_file)
+    if any(gist.unstable for gist in gists):
+        meaning = "from and to which frequency no stable motion was found"
+        most = max(len(gist.unstable) for gist in gists)
+        ends = np.full((len(gists), most, 2), np.nan)
+        for row, gist in zip(ends, gists, strict=True):
+            row[: len(gist.unstable)] = np.array(sorted(gist.unstable)).reshape(-1, 2)
+        of = ("curve", "stretch", "end")
+        out["no_stable_motion"] = Field(of, in_unit(ends, unit), {"long_name": meaning} | in_file)
+    if any(curve.short_of for curve in curves):
+        short = np.array([curve.short_of for curve in curves])
+        out["short_of_accuracy"] = Field(("curve",), short, {"long_name": "what keeps it from the accuracy"})
     return out
 
 
