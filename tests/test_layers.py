@@ -75,7 +75,8 @@ def test_continuation_knows_nothing_of_contacts():
 @pytest.mark.parametrize("package", NUMERICS)
 def test_numerics_import_numpy_and_scipy_alone(package):
     outside = {module.split(".")[0] for _, module in imported(package)} - set(sys.stdlib_module_names)
-    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"}
+    faster = {"sksparse"} if package == "structure" else set()  # where it is installed
+    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"} | faster
 
 
 def test_processes_are_started_by_one_helper():

@@ -8,9 +8,11 @@ import scipy.linalg
 import scipy.sparse
 
 from fcm.scene import scene_from_dict
+from fcm.structure.eigen import StructureError
 from fcm.structure.reduced import reduced
 
 from . import beams
+from .solids import bricks
 
 CANTILEVER, FREE = 1.8751040687**2, 4.7300407449**2  # (beta L)^2, published
 MASSES, AT, OMEGA = 30, 20, 0.25
@@ -250,3 +252,90 @@ def test_rigid_body_modes_take_no_digits_from_the_elastic_ones():
     assert shapes.T @ M @ shapes == pytest.approx(np.eye(found.kept), abs=1e-12)
     forces = K @ shapes[:, 6:] - M @ shapes[:, 6:] * stiffness[6:]
     assert np.abs(forces).max() < 1e-12 * np.abs(K).max() * np.abs(shapes).max()
+
+
+def craig_bampton(K, M, boundary, modes):
+    """The matrices on the boundary's rows and the first modes with the boundary held."""
+    inner = np.setdiff1d(np.arange(len(K)), boundary)
+    turn = np.zeros((len(K), len(boundary) + modes))
+    turn[boundary, : len(boundary)] = np.eye(len(boundary))
+    turn[inner, : len(boundary)] = -np.linalg.solve(K[np.ix_(inner, inner)], K[np.ix_(inner, boundary)])
+    if modes:
+        held = (one[np.ix_(inner, inner)] for one in (K, M))
+        turn[inner, len(boundary) :] = scipy.linalg.eigh(*held, subset_by_index=(0, modes - 1))[1]
+    return tuple((small + small.T) / 2 for small in (turn.T @ K @ turn, turn.T @ M @ turn))
+
+
+def free_body(kind, scale):
+    """A beam in a plane or a frame of bars that nothing holds; scale is that of the stiffness."""
+    if kind == "beam":
+        K, M, _ = beams.beam(40, clamped=False)
+        return scale * K.toarray(), M.toarray(), 2
+    K, M = frame(np.random.default_rng(5))
+    return scale / 1e8 * K, M, 6
+
+
+BOUNDARIES = {
+    "beam": {"one end": [0, 1], "both ends": [0, 1, 80, 81], "places": [0, 40, 80]},
+    "frame": {"one node and more": [0, 1, 2, 9, 10, 20], "three nodes": [*range(6), *range(30, 33)]},
+}
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e11])
+@pytest.mark.parametrize("modes", [0, 1, 8])
+@pytest.mark.parametrize("kind, place", [(kind, place) for kind in BOUNDARIES for place in BOUNDARIES[kind]])
+def test_rigid_bodies_of_superelements_whatever_the_units_of_their_rows(kind, place, modes, scale):
+    """Their fixed-interface modes are coupled by the mass alone, and a reduction leaves its own rounding."""
+    whole_K, whole_M, rigid = free_body(kind, scale)
+    boundary = BOUNDARIES[kind][place]
+    K, M = craig_bampton(whole_K, whole_M, boundary, modes)
+    if len(K) <= rigid:
+        return
+    first = scipy.linalg.eigh(K, M, eigvals_only=True)[rigid]
+    for unit in (np.ones(len(K)), 10.0 ** np.random.default_rng(1).uniform(-4.0, 4.0, len(K))):
+        k, m = (scipy.sparse.csc_array(one * unit * unit[:, None]) for one in (K, M))
+        found = reduced(k, m, np.eye(len(K))[:, :1] * unit[0], np.sqrt(first), None, True)
+        assert found.rigid == rigid and (found.modes.stiffness[:rigid] == 0.0).all()
+        assert np.sqrt(found.modes.stiffness[rigid] / first) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_a_superelement_answers_as_its_modes():
+    """A free bar with two ends and a fixed-interface mode, at the frequencies between its resonances."""
+    K = np.array([[6.26, -6.26, 0.0], [-6.26, 6.26, 0.0], [0.0, 0.0, 73.4]])
+    M = np.array([[0.8847, 0.1667, 0.4455], [0.1667, 0.7899, 0.4455], [0.4455, 0.4455, 1.0]])
+    structure = {"dofs": ["1x", "2x", "q1"], "stiffness": K.tolist(), "mass": M.tolist(), "damping": 0.01}
+    data = {
+        "structure": structure,
+        "force": [{"dof": "2x", "amplitude": 1.0}],
+        "response": {"frequency": [0.5, 6.0]},
+    }
+    scene = scene_from_dict(data)
+    assert scene.modal.frequency[0] == 0.0
+    assert "structure: 1 rigid-body mode, of frequency 0" in scene.notes
+    for omega in (0.5, 3.0, 6.0):
+        modes = scene.modal.shapes * scene.modal.shapes[:, [1]]
+        own = (modes / (scene.modal.frequency**2 - omega**2)[:, None]).sum(axis=0)
+        assert own == pytest.approx(np.linalg.solve(K - omega**2 * M, [0.0, 1.0, 0.0]), rel=1e-10)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_negative_stiffness_that_is_no_rounding_is_refused(sign):
+    K, M = np.diag([-sign, 4.0, 9.0]), np.eye(3)
+    if sign > 0.0:
+        with pytest.raises(StructureError, match="negative eigenvalue"):
+            reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, 2, True)
+    else:
+        assert reduced(*map(scipy.sparse.csc_array, (K, M)), np.eye(3)[:, :1], 1.0, 2, True).rigid == 0
+
+
+def test_a_loose_solid_by_lanczos():
+    """Six rigid-body modes of a bar of bricks, and its first elastic one as of all modes at once."""
+    K, M, names = bricks(8, 4, 4, clamped=False)
+    assert len(names) > 600
+    exact = scipy.linalg.eigh(K.toarray(), M.toarray(), eigvals_only=True, subset_by_index=(6, 9))
+    load = np.eye(len(names))[:, -1:]
+    for top in (0.0, float(np.sqrt(exact[0]))):
+        found = reduced(K, M, load, top, 10, True)
+        assert found.rigid == 6
+        assert found.modes.stiffness[6:10] == pytest.approx(exact, rel=1e-9)
+        assert np.abs(found.modes.shapes[:, :6].T @ (M @ found.modes.shapes[:, 6:10])).max() < 1e-9

@@ -52,6 +52,7 @@ def with_modes(
 ) -> tuple[Parts, list[str]]:
     """The parts with the modes of matrices at all rows, and what is to be said of them."""
     from fcm.scene.reduction import modal_of_matrices
+    from fcm.structure.eigen import unit_columns
 
     if parts["cyclic"]:
         return _of_ring(top, parts, matrices, output, ends, unit)
@@ -60,9 +61,9 @@ def with_modes(
     only = [dofs.place[name] for name in output]
     over_rows = distributions(parts, matrices.M)
     pushed = _columns([*_directions(parts), *over_rows.values()], len(dofs))
-    loads = np.concatenate((pushed, np.eye(len(dofs))[:, swept]), axis=1)
+    loads = np.concatenate((pushed, unit_columns(len(dofs), swept)), axis=1)
     draft, shapes, notes = modal_of_matrices(
-        top, matrices, loads, _springs(parts, loads.shape[1]), np.eye(len(dofs))[:, only], ends
+        top, matrices, loads, _springs(parts, loads.shape[1]), only, ends
     )
     if draft is None:
         return parts, notes
@@ -77,11 +78,14 @@ def check_matrices(top: Section, matrices: Matrices, cyclic: list[Part], ends: t
     from fcm.scene.ring_reduction import modal_of_ring
 
     rows = len(matrices.dofs)
-    none, ends = np.zeros((rows, 0)), (ends[0], ends[1]) if np.isfinite(ends).all() else (0.0, 0.0)
+    none: list[int] = []
+    ends = (ends[0], ends[1]) if np.isfinite(ends).all() else (0.0, 0.0)
     if not cyclic:
-        modal_of_matrices(top, matrices, none, np.zeros(0), none, ends)
+        modal_of_matrices(top, matrices, np.zeros((rows, 0)), np.zeros(0), none, ends)
     elif np.isfinite(sectors := cyclic[0]["sectors"]):
-        modal_of_ring(top, matrices, int(sectors), np.zeros((2 * rows, 0)), np.zeros(0), none, none, ends)
+        modal_of_ring(
+            top, matrices, int(sectors), np.zeros((2 * rows, 0)), np.zeros(0), np.zeros((rows, 0)), none, ends
+        )
 
 
 def _of_ring(
@@ -89,13 +93,14 @@ def _of_ring(
 ) -> tuple[Parts, list[str]]:
     """As `with_modes`, with the modes of every nodal diameter."""
     from fcm.scene.ring_reduction import mass_of_all_alike, modal_of_ring
+    from fcm.structure.eigen import unit_columns
 
     dofs, own = parts["modal"]["dofs"], parts["modal"]["dofs"].own
     swept = [dofs.place[name] for name in sorted(_swept(top, dofs))]
     over_rows = distributions(parts, mass_of_all_alike(matrices))
-    pushed = np.concatenate((_columns(_directions(parts), len(dofs)), np.eye(len(dofs))[:, swept]), axis=1)
+    pushed = np.concatenate((_columns(_directions(parts), len(dofs)), unit_columns(len(dofs), swept)), axis=1)
     distributed = _columns([*over_rows.values()], len(own))
-    only = np.eye(len(own))[:, [own.place[name] for name in output]]
+    only = [own.place[name] for name in output]
     sectors = int(parts["cyclic"][0]["sectors"])
     draft, notes = modal_of_ring(
         top, matrices, sectors, pushed, _springs(parts, pushed.shape[1]), distributed, only, ends

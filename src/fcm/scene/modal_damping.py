@@ -32,7 +32,7 @@ def damping_of(
     found: Reduced,
     loads: FloatArray,
     springs: FloatArray,
-    outputs: FloatArray,
+    outputs: list[int],
     ends: tuple[float, float],
 ) -> Damping:
     """That of the modes; the arguments are those of `reduction.modal_of_matrices`."""
@@ -56,7 +56,9 @@ def damping_of(
         dragged = drag(matrices.C, found.modes.shapes[:, :rigid])
     said = _left_out(dragged, [])
     if np.isfinite(ends).all() and (dragged or matrices.C is not None):
-        pushes, seen = (found.modes.shapes.conj().T @ some for some in (loads, np.hstack((loads, outputs))))
+        left = found.modes.shapes.conj().T
+        pushes = left @ loads
+        seen = np.hstack((pushes, left[:, outputs]))
         effects = (
             coupling_effect(modal, stiffness, pushes, seen, k, *ends, rigid) for k in (0.0 * springs, springs)
         )

@@ -12,7 +12,7 @@ from fcm.scene.model import FloatArray
 from fcm.scene.rules import RULES
 from fcm.scene.section import Section
 from fcm.scene.structure_table import Matrices
-from fcm.structure.eigen import StructureError
+from fcm.structure.eigen import StructureError, unit_columns
 from fcm.structure.reduced import Reduced, reduced
 
 MOST_OUTPUTS = 30  # degrees of freedom of results whose own flexibility is kept
@@ -24,13 +24,13 @@ def modal_of_matrices(
     matrices: Matrices,
     loads: FloatArray,
     springs: FloatArray,
-    outputs: FloatArray,
+    outputs: list[int],
     ends: tuple[float, float],
 ) -> tuple[dict[str, Any] | None, FloatArray, list[str]]:
     """Modal table (frequencies in rad/s), shapes at all rows (row, mode), and what is to be said.
 
     loads (row, load) are the directions of contacts and forces, springs (load,) the stiffness of contacts
-    along theirs, outputs those that are only reported; `ends` are the lowest and highest angular frequency
+    along theirs, outputs the rows that are only reported; `ends` are the lowest and highest angular frequency
     of the forces.
     """
     directions, others = split(loads, outputs)
@@ -60,7 +60,7 @@ def modal_of_matrices(
         found.modes.shapes,
         [
             _kept(matrices, found, damping),
-            *at_many(matrices, outputs.shape[1], found.aside, damping.lost),
+            *at_many(matrices, len(outputs), found.aside, damping.lost),
             *_warnings(found, ends),
             *damping.said,
             *of_rounding([found], damping.ratio[found.rigid :]),
@@ -68,10 +68,10 @@ def modal_of_matrices(
     )
 
 
-def split(loads: FloatArray, outputs: FloatArray) -> tuple[FloatArray, FloatArray]:
+def split(loads: FloatArray, outputs: list[int]) -> tuple[FloatArray, list[int]]:
     """Directions whose flexibility is kept, and outputs that are too many for that."""
-    few = outputs.shape[1] if outputs.shape[1] <= MOST_OUTPUTS else 0
-    return np.concatenate((loads, outputs[:, :few]), axis=1), outputs[:, few:]
+    few = len(outputs) if len(outputs) <= MOST_OUTPUTS else 0
+    return np.concatenate((loads, unit_columns(len(loads), outputs[:few])), axis=1), outputs[few:]
 
 
 def at_many(matrices: Matrices, count: int, aside: tuple[float, float], lost: float) -> list[str]:
@@ -155,10 +155,6 @@ def _warnings(found: Reduced, ends: tuple[float, float]) -> list[str]:
     said = []
     if found.rigid:
         said.append(f"structure: {counted(found.rigid, 'rigid-body mode')}, of frequency 0")
-    if found.missed:
-        said.append(
-            f"structure: the eigensolver has missed {counted(found.missed, 'mode')}: ask for another number"
-        )
     if found.beyond < ends[1]:
         said.append("structure: there are modes within the range that are not kept: raise structure.modes")
     return said

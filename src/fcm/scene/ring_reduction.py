@@ -33,14 +33,14 @@ def modal_of_ring(
     pushed: FloatArray,
     springs: FloatArray,
     distributed: FloatArray,
-    outputs: FloatArray,
+    outputs: list[int],
     ends: tuple[float, float],
 ) -> tuple[dict[str, Any] | None, list[str]]:
     """Modal table (frequencies in rad/s, shapes at all rows), and what is to be said.
 
     pushed (rows of two sectors, load) are the directions of contacts and forces, springs (load,) the
-    stiffness of contacts along theirs, distributed and outputs (row, load) loads on the sector alone and what
-    is only reported; `ends` is the range of frequencies.
+    stiffness of contacts along theirs, distributed (row, load) loads on the sector alone, outputs the
+    rows that are only reported; `ends` is the range of frequencies.
     """
     rows = len(pushed) // 2
     springs = np.append(springs, np.zeros(distributed.shape[1]))
@@ -67,7 +67,7 @@ def modal_of_ring(
     }
     first, *others = _notes(matrices, diameters, ends)
     lost = max(one.damping.lost for one in diameters)
-    return draft, [first, *at_many(matrices, outputs.shape[1], _aside(diameters), lost), *others]
+    return draft, [first, *at_many(matrices, len(outputs), _aside(diameters), lost), *others]
 
 
 def mass_of_all_alike(matrices: Matrices) -> Any:
@@ -102,7 +102,7 @@ def _modes(
     loads: Any,
     springs: FloatArray,
     number: int,
-    outputs: FloatArray,
+    outputs: list[int],
     ends: tuple[float, float],
 ) -> Diameter:
     directions, others = split(loads, outputs)
@@ -132,7 +132,6 @@ def _notes(matrices: Matrices, diameters: list[Diameter], ends: tuple[float, flo
     notes = [text]
     for what, which in (
         ("has rigid-body modes, of frequency 0", [one.found.rigid for one in diameters]),
-        ("has modes that the eigensolver missed: ask for another number", [one.missed for one in all_found]),
         (
             "has modes within the range that are not kept: raise structure.modes",
             [one.beyond < ends[1] for one in all_found],

@@ -2,9 +2,11 @@
 
 K phi = lambda M phi is solved about a shift s < 0 next to zero, as (K - s M)^-1 M phi = phi / (lambda - s):
 K - s M is positive definite with rigid-body modes too, M may have rows of zeros, and the lowest modes are the
-most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole. Beside rigid-body modes,
--1 / s, the elastic ones, 1 / (lambda - s), lose the digits by which s is nearer to zero than their lambda:
-then all are solved for again about -lambda of the first elastic one.
+most accurate ones. Large matrices by Lanczos (scipy's `eigsh`), small ones whole. Lanczos may pass by one of
+several equal frequencies: what it has found is taken out, and it is looked whether a lower mode is left.
+
+One factorisation serves for all of it, and for static displacements: those by K - s M are corrected until
+nothing of the shift is left in them.
 
 Of the elastic energy of a low mode little is left: a beam of n elements sums n^4 times as much. So it is
 summed with more digits than the matrices have, where the machine has a longer number; what remains is the
@@ -13,7 +15,7 @@ rounding of the shapes, of second order.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,19 +23,34 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 import scipy.sparse
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fcm.structure.digits import digits_of
+from fcm.structure.factor import NotPositiveError, Solve, solver
 
 FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
 
-DENSE = 600  # rows up to which all modes are computed at once
-SHIFT = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
-LAST_DIGITS = 10.0  # units of the last digit of the entries that a shift is at least, if they have few digits
-NO_MASS = 1e-13  # relative: below it, an eigenvalue of the inverse problem is no mode, but a row without mass
-NEAR = 1e-9  # relative: squares of frequencies so near to each other are one, beside rounding
-NEGATIVE = 1e-9  # of the largest mass: less negative than that is rounding
+
+@dataclass(frozen=True)
+class EigenOptions:
+    """Tolerances of the modes."""
+
+    dense: int = 600  # rows up to which all modes are computed at once
+    shift: float = 1e-9  # of the largest ratio of stiffness to mass on the diagonals
+    least_shift: float = 1e-11  # the same, where a frequency of interest says what a small shift is
+    most_shift: float = 1e-4  # the same, where rounding has made rigid-body modes more negative than that
+    shift_of_top: float = 1e-3  # of the square of that frequency
+    last_digits: float = 10.0  # units of the last digit of entries that a shift is at least, if they have few
+    no_mass: float = 1e-13  # relative: such an eigenvalue of the inverse problem is a row without mass
+    negative: float = 1e-9  # of a mass whose diagonal is 1: an eigenvalue less negative is rounding
+    least: float = 1e-6  # relative to the greatest: how closely the least eigenvalue of a mass is looked for
+    look: float = 1e-3  # relative: how closely it is looked for a mode that was passed by
+    same: float = 1e-6  # relative: so near to the highest, a mode that is left is not below it
+    most_corrections: int = 12  # of static displacements; a shift that needs more is replaced
+
+
+OPTIONS = EigenOptions()
 
 
 class StructureError(ValueError):
@@ -59,93 +76,166 @@ class System:
     K: Matrix  # (row, row)
     M: Matrix
     shift: float  # s, negative
-    solve: Callable[[FloatArray], FloatArray]  # loads (row, load) to displacements
+    solve: Solve  # loads (row, load) to displacements
 
     @property
     def rows(self) -> int:
         return int(self.K.shape[0])
 
+    def static(self, loads: FloatArray, beyond: float, near: float) -> FloatArray:
+        """Displacements under loads that push no mode below `beyond`, a square of a frequency, by K alone.
 
-def system_of(K: Matrix, M: Matrix) -> System:
-    """Factorise K - s M; StructureError where the matrices are no stiffness and mass."""
+        Each correction leaves at most -s / (beyond - s) of what the last one has left, down to `near`.
+        """
+        found = self.solve(loads)
+        for _ in range(self.corrections(beyond, near)):
+            found = found + self.solve(loads - self.K @ found)
+        return found
+
+    def corrections(self, beyond: float, near: float) -> int:
+        """How many corrections that takes."""
+        left = -self.shift / (beyond - self.shift)
+        return 0 if left <= near else int(np.ceil(np.log(near) / np.log(left))) - 1
+
+
+def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
+    """Factorise K - s M; StructureError where the matrices are no stiffness and mass.
+
+    top is the highest angular frequency of interest, 0 where there is none.
+    """
     stiff, heavy = K.diagonal().real, M.diagonal().real
     if not (heavy > 0.0).any():
         raise StructureError("the mass has no entry greater than 0 on its diagonal")
     with np.errstate(over="ignore"):
-        shift = -_part(K) * float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+        ratio = float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+    shift = -_size_of_shift(K, ratio, top)
     if shift == 0.0:
         raise StructureError("the stiffness has no entry on its diagonal")
     if not np.isfinite(shift):
         raise StructureError("the mass is too small beside the stiffness to calculate with")
-    ground = scipy.sparse.diags_array(np.full(heavy.size, NEGATIVE * heavy.max()))
-    both = (("mass", M + ground), ("stiffness", K - shift * M))
-    if faults := [fault for what, matrix in both if (fault := _fault(what, matrix))]:
-        raise StructureError("; ".join(faults))
-    return System(
-        K, M, shift, _factor(K - shift * M, "the stiffness is singular where there is no mass").solve
-    )
-
-
-def _part(K: Matrix) -> float:
-    """How much of the largest ratio the shift is: more than rounding of the entries may take away."""
-    digits = digits_of(K)
-    return SHIFT if digits is None else max(SHIFT, LAST_DIGITS * 10.0**-digits)
-
-
-def _fault(what: str, matrix: Matrix) -> str:
-    """Why a matrix is not that of a structure; empty where it may be."""
+    faults = _faults_of_mass(M)
     try:
-        count = _negative(_factor(matrix, f"the {what} is singular"))
-    except StructureError as error:
-        return str(error)
-    found = "1 negative eigenvalue" if count == 1 else f"{count} negative eigenvalues"
-    return f"the {what} has {found}, that of a structure has none" if count else ""
+        try:
+            solve = solver(K - shift * M)
+        except NotPositiveError:  # what a reduction has left of rigid-body modes may be more negative
+            if shift <= (shift := -OPTIONS.most_shift * ratio):
+                raise
+            solve = solver(K - shift * M)
+    except NotPositiveError as error:
+        faults.append(_said("stiffness", error.negative))
+    if faults:
+        raise StructureError("; ".join(faults))
+    return System(K, M, shift, solve)
 
 
-def nearer(system: System, shift: float) -> System:
-    """The same with a shift that is no farther from zero than this one, which is negative."""
-    return system if shift <= system.shift else shifted(system, shift)
+def _size_of_shift(K: Matrix, ratio: float, top: float) -> float:
+    """More than rounding of the entries may take away, and little beside what is of interest."""
+    digits = digits_of(K)
+    rounding = 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits
+    if not top or K.shape[0] <= OPTIONS.dense:
+        return max(OPTIONS.shift, rounding) * ratio
+    return max(max(OPTIONS.least_shift, rounding) * ratio, min(OPTIONS.shift_of_top * top**2, ratio))
+
+
+def _faults_of_mass(M: Matrix) -> list[str]:
+    """Why a mass is not that of a structure; empty where it may be.
+
+    Its diagonal is made 1, so that the unit of a row does not matter. Of large matrices the least eigenvalue
+    alone is looked for, by Lanczos, which never tells it lower than it is.
+    """
+    heavy = M.diagonal().real
+    unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(heavy > 0.0, heavy, heavy.max())))
+    scaled = scipy.sparse.csc_array(unit @ M @ unit)
+    digits = digits_of(M)
+    least = max(OPTIONS.negative, 0.0 if digits is None else OPTIONS.last_digits * 10.0**-digits)
+    rows = heavy.size
+    if rows <= OPTIONS.dense:
+        count = int((np.linalg.eigvalsh(scaled.toarray()) < -least).sum())
+        return [_said("mass", count)] if count else []
+    above = 2.0 * float(abs(scaled).sum(axis=0).max())  # no eigenvalue is half as great
+    turned = LinearOperator(
+        scaled.shape, matvec=lambda x: above * np.ravel(x) - scaled @ np.ravel(x), dtype=scaled.dtype
+    )
+    value = eigsh(turned, 1, which="LA", v0=_start(rows), tol=OPTIONS.least, return_eigenvectors=False)
+    return [_said("mass", None)] if above - value[0] < -least else []
+
+
+def _said(what: str, negative: int | None) -> str:
+    if negative == 0:
+        return f"the {what} is singular{' where there is no mass' if what == 'stiffness' else ''}"
+    found = f"{negative} negative eigenvalues" if negative and negative > 1 else "1 negative eigenvalue"
+    found = "a negative eigenvalue" if negative is None else found
+    return f"the {what} has {found}, that of a structure has none"
+
+
+def _start(rows: int) -> FloatArray:
+    """The same vector every time, of no pattern."""
+    return np.random.default_rng(0).standard_normal(rows)
 
 
 def shifted(system: System, shift: float) -> System:
-    """The same with another negative shift."""
-    return replace(system, shift=shift, solve=_factor(system.K - shift * system.M, "no matter").solve)
+    """The same with another negative shift, by another factorisation.
 
-
-def _factor(matrix: Matrix, singular: str) -> Any:
-    """LU factors without pivoting off the diagonal: the signs of the pivots are those of the eigenvalues."""
+    Nearer to zero it need not be definite: digits that were not written make rigid-body modes negative.
+    """
     try:
-        return splu(
-            scipy.sparse.csc_array(matrix),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
-    except RuntimeError:
-        raise StructureError(singular) from None
-
-
-def _negative(factor: Any) -> int | None:
-    """How many eigenvalues are negative (Sylvester's law of inertia); None if rows were exchanged."""
-    exchanged = (factor.perm_r != factor.perm_c).any()
-    return None if exchanged else int((factor.U.diagonal().real < 0.0).sum())
+        return replace(system, shift=shift, solve=solver(system.K - shift * system.M, definite=False))
+    except NotPositiveError as error:
+        raise StructureError(_said("stiffness", error.negative)) from None
 
 
 def modes_of(system: System, count: int) -> Modes:
     """The lowest modes of a structure; fewer where fewer rows have a mass."""
     rows = system.rows
-    if rows <= DENSE or count > rows // 3:
+    if rows <= OPTIONS.dense or count > rows // 3:
         shapes = _all(system)
     else:
-        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=system.K.dtype)
-        start = np.random.default_rng(0).standard_normal(rows)  # the same answer every time
-        _, shapes = eigsh(system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start)
-        if np.iscomplexobj(shapes):  # those of close frequencies are not orthogonal to each other
-            shapes = _apart(system, shapes)
+        shapes = _complete(system, _lanczos(system, count), count)
+    found = of_shapes(system, shapes)
+    return Modes(found.stiffness[:count], found.shapes[:, :count])
+
+
+def of_shapes(system: System, shapes: FloatArray) -> Modes:
+    """Modes with these shapes, in any order and of any mass."""
     shapes = shapes / np.sqrt(energy_of(system.M, shapes))
     stiffness = elastic_energy(system.K, shapes)
-    order = np.argsort(stiffness)[:count]
+    order = np.argsort(stiffness)
     return Modes(stiffness[order], shapes[:, order])
+
+
+def _lanczos(system: System, count: int, beside: FloatArray | None = None, near: float = 0.0) -> FloatArray:
+    """The shapes of the lowest modes; of those that are orthogonal to some shapes of mass 1."""
+    rows, kind = system.rows, system.K.dtype
+    start = _start(rows)
+    if beside is None:
+        inverse = LinearOperator((rows, rows), matvec=system.solve, dtype=kind)
+    else:
+        heavy, left = system.M @ beside, beside.conj().T
+        start = start - beside @ (heavy.conj().T @ start)
+
+        def solve(loads: FloatArray) -> FloatArray:
+            loads = np.ravel(loads)
+            answer = system.solve(loads - heavy @ (left @ loads))
+            pure: FloatArray = answer - beside @ (heavy.conj().T @ answer)
+            return pure
+
+        inverse = LinearOperator((rows, rows), matvec=solve, dtype=kind)
+    found: FloatArray = eigsh(
+        system.K, count, system.M, sigma=system.shift, OPinv=inverse, v0=start, tol=near
+    )[1]
+    return found
+
+
+def _complete(system: System, shapes: FloatArray, count: int) -> FloatArray:
+    """The shapes with those of lower modes that Lanczos has passed by, as of several equal frequencies."""
+    while True:
+        shapes = _apart(system, shapes)  # of mass 1, and orthogonal where frequencies are close
+        highest = np.sort(elastic_energy(system.K, shapes))[count - 1]
+        further = of_shapes(system, _lanczos(system, 1, shapes, OPTIONS.look))
+        # it is told higher than it is, never lower
+        if further.stiffness[0] >= highest - OPTIONS.same * abs(highest):
+            return shapes
+        shapes = np.concatenate((shapes, _lanczos(system, 1, shapes)), axis=1)
 
 
 def _all(system: System) -> FloatArray:
@@ -153,7 +243,7 @@ def _all(system: System) -> FloatArray:
     mass = system.M.toarray()
     shifted = system.K.toarray() - system.shift * mass
     value, shapes = scipy.linalg.eigh(mass, shifted)
-    found: FloatArray = shapes[:, value > NO_MASS * value.max()]
+    found: FloatArray = shapes[:, value > OPTIONS.no_mass * value.max()]
     return found
 
 
@@ -161,6 +251,30 @@ def _apart(system: System, shapes: FloatArray) -> FloatArray:
     """The modes within the space of some shapes."""
     left = shapes.conj().T
     found: FloatArray = shapes @ scipy.linalg.eigh(left @ (system.K @ shapes), left @ (system.M @ shapes))[1]
+    return found
+
+
+def polished(system: System, shapes: FloatArray) -> FloatArray:
+    """Shapes of modes near zero frequency after two more inverse iterations, of mass 1.
+
+    That takes other modes out of them, each by its own stiffness beside the shift: also those that the mass
+    couples to them and the stiffness does not.
+    """
+    for _ in range(2):
+        shapes = system.solve(system.M @ shapes)
+        shapes = shapes / np.sqrt(energy_of(system.M, shapes))
+        shapes = _apart(system, shapes)
+    return shapes
+
+
+def unit_columns(rows: int, places: Sequence[int]) -> FloatArray:
+    """A column of each place, with 1 there: (row, place).
+
+    >>> unit_columns(3, [2]).tolist()
+    [[0.0], [0.0], [1.0]]
+    """
+    found = np.zeros((rows, len(places)))
+    found[list(places), np.arange(len(places))] = 1.0
     return found
 
 
@@ -180,23 +294,3 @@ def elastic_energy(K: Matrix, shapes: FloatArray) -> FloatArray:
         crossed = (shape[upper.row].conj() * beside * shape[upper.col]).sum()
         found[mode] = float(((diagonal * shape.conj() * shape).sum() + 2.0 * crossed).real)
     return found
-
-
-def missed(system: System, modes: Modes) -> int | None:
-    """How many modes below the highest of those found are not among them; None where it cannot be told.
-
-    By Sylvester's law of inertia: K - a M has as many negative pivots as there are modes below a.
-    """
-    if modes.count < 2:
-        return None
-    gaps = np.diff(modes.stiffness)
-    at = int(np.argmax(gaps[-min(8, gaps.size) :])) + max(0, gaps.size - 8)
-    below, above = modes.stiffness[at : at + 2]
-    if above - below <= NEAR * above:
-        return None  # all of them are one frequency: none is between
-    between = float(below + above) / 2.0
-    try:
-        count = _negative(_factor(system.K - between * system.M, "no matter"))
-    except StructureError:
-        return None
-    return None if count is None else count - (at + 1)

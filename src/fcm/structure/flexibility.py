@@ -29,17 +29,18 @@ at w_far, and answers at w by (w / w_far)^2 too much.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
 
-from fcm.structure.eigen import FloatArray, Modes, System, energy_of, nearer
+from fcm.structure.eigen import OPTIONS, FloatArray, Modes, System, energy_of, shifted, unit_columns
 
 ENOUGH = 1e-6  # relative error of the receptance: no more blocks are taken
 MOST_BLOCKS = 4  # of vectors, each by a further solution with the stiffness
 INDEPENDENT = 1e-10  # relative energy below which a displacement is a combination of the others
-NEAR = 1e-6  # of lambda_h: so near to zero the displacements are static ones
+NEAR = 1e-6  # relative: displacements as near to the static ones are static
 TOGETHER = 200  # displacements, for which as many numbers as rows are held at a time
 FAR = 1e3  # times the frequencies of interest and those kept: where nothing that has no mass is noticed
 
@@ -58,7 +59,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
 
     beyond is the square of the angular frequency of the first mode left out, a lower limit of all of them.
     """
-    system = nearer(system, -NEAR * beyond)
+    system = _near(system, beyond)
     basis = np.zeros((system.rows, 0))
     outer = _without(system, kept, loads)
     found = Flexibility(Modes(np.zeros(0), basis), np.inf, np.inf)
@@ -67,7 +68,7 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
     highest = max(omega**2, float(kept.stiffness.max(initial=0.0)))
     far = FAR**2 * (highest or 1.0)
     least = np.maximum(INDEPENDENT * _static(system, kept, loads, rest, np.inf), INDEPENDENT**2 * static)
-    newest = _of_energy_1(system, _orthogonal(system, kept, system.solve(outer)), least)
+    newest = _of_energy_1(system, _orthogonal(system, kept, system.static(outer, beyond, NEAR)), least)
     for blocks in range(1, MOST_BLOCKS + 1):
         basis = np.concatenate((basis, newest), axis=1)
         modes = _galerkin(system, basis, far)
@@ -78,9 +79,19 @@ def flexibility(system: System, kept: Modes, loads: FloatArray, omega: float, be
         found = Flexibility(modes, bound, damping)
         if found.bound <= ENOUGH or modes.count < basis.shape[1]:
             break
-        further = _orthogonal(system, kept, system.solve(system.M @ newest))
+        further = _orthogonal(system, kept, system.static(system.M @ newest, beyond, NEAR))
         newest = _of_energy_1(system, further, (INDEPENDENT / highest) ** 2 if highest else 0.0)
     return found
+
+
+def _near(system: System, beyond: float) -> System:
+    """The same, or with another shift where static displacements would take too many corrections.
+
+    Of a small structure a shift costs nothing, and corrections the digits that are lost in K u.
+    """
+    number = system.corrections(beyond, NEAR)
+    again = number > (0 if system.rows <= OPTIONS.dense else OPTIONS.most_corrections)
+    return shifted(system, -NEAR * beyond) if again else system
 
 
 def _off(
@@ -108,11 +119,11 @@ def bound_aside(
     kept: Modes,
     found: Flexibility,
     loads: FloatArray,
-    others: FloatArray,
+    others: Sequence[int],
     omega: float,
     beyond: float,
 ) -> tuple[float, float]:
-    """How far the displacement along others, under the loads, is off, and the part of it by damping.
+    """How far the displacement of other rows, under the loads, is off, and the part of it by damping.
 
     Of the two static receptances the geometric mean; the second is to be multiplied by the loss factor. Their
     own flexibility is not among the modes: Galerkin's solution errs at them by more, and the part m_3 of what
@@ -120,10 +131,10 @@ def bound_aside(
     """
     if omega**2 >= beyond:
         return np.inf, np.inf
-    system = nearer(system, -NEAR * beyond)
+    system = _near(system, beyond)
     own, share = 0.0, 0.0
-    for first in range(0, others.shape[1], TOGETHER):
-        some = others[:, first : first + TOGETHER]
+    for first in range(0, len(others), TOGETHER):
+        some = unit_columns(system.rows, others[first : first + TOGETHER])
         rest = _rest(system, kept, some)
         static = _static(system, kept, some, rest, omega)
         own = max(own, _off(system, kept, found.modes, some, omega, beyond, static))

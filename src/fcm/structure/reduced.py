@@ -2,21 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.structure.digits import digits_of
-from fcm.structure.eigen import FloatArray, Matrix, Modes, missed, modes_of, shifted, system_of
+from fcm.structure.eigen import (
+    OPTIONS,
+    FloatArray,
+    Matrix,
+    Modes,
+    StructureError,
+    System,
+    modes_of,
+    of_shapes,
+    polished,
+    shifted,
+    system_of,
+    unit_columns,
+)
 from fcm.structure.flexibility import bound_aside, flexibility
-from fcm.structure.rigid_body import rigid_by_energy, unclear_below
+from fcm.structure.rigid_body import may_be_rigid, rigid_by_energy, unclear_below
 from fcm.structure.rounding import of_frequencies, of_receptances
 
 FEWEST = 10  # modes that are kept at least, where none are asked for
 ABOVE = 3.0  # times the highest frequency of interest: modes up to there are kept
 STIFFEST = 50  # of other displacements: rounding is greatest beside what moves little
+MOST_TOLD = 10_000_000  # other rows times rows: each takes a solution, and more are not told of
 WHOLE = 30  # rows up to which all modes are kept
+MOST_LOST = 1e5  # times the shift: a first elastic mode that is so much farther has lost five digits
 
 
 @dataclass(frozen=True)
@@ -28,7 +43,6 @@ class Reduced:
     rigid: int
     beyond: float  # [rad/s] first frequency left out; inf if there is none
     bound: float  # of the receptances among the loads, relative to their static ones
-    missed: int | None  # modes that the eigensolver has missed; None where it cannot be told
     damping: float = 0.0  # bound of the error of a resonance's damping, where all modes have one ratio
     rounding: float = 0.0  # how far the frequency of a mode that is kept may be off, relative
     aside: tuple[float, float] = (0.0, 0.0)  # see `flexibility.bound_aside`, with rounding
@@ -43,29 +57,28 @@ def reduced(
     top: float,
     count: int | None,
     rest: bool,
-    others: FloatArray | None = None,
+    others: Sequence[int] = (),
 ) -> Reduced:
     """Modes of a structure for loads (row, load) up to the angular frequency top.
 
     count is how many modes are kept, None for all up to some times the top; rest is whether the flexibility
-    of the others is kept as well, under the loads; along others (row, displacement) it is told how far what
-    that leaves out is off.
+    of the others is kept as well, under the loads; at other rows it is told how far what that
+    leaves out is off.
     """
-    system = system_of(K, M)
-    found = _enough(lambda n: modes_of(system, n), system.rows, top, count)
-    rigid = rigid_by_energy(K, found)
+    system = system_of(K, M, top)
+    found = _cleared(system, _enough(lambda n: modes_of(system, n), system.rows, top, count))
+    rigid = rigid_by_energy(K, M, found)
     if rigid == found.count < system.rows:  # all of them are kept
         return reduced(K, M, loads, top, min(2 * rigid + 1, system.rows), rest, others)
-    if 0 < rigid < found.count and found.stiffness[rigid] > -system.shift:
-        found = modes_of(shifted(system, -float(found.stiffness[rigid])), found.count)
+    system, found = _elastic_apart(system, found, rigid)
+    if rigid < found.count and found.stiffness[rigid] < 0.0:
+        raise StructureError("the stiffness has a negative eigenvalue, that of a structure has none")
     wanted = min(found.count, max(rigid, count or _within(found, top, system.rows)))
     kept = Modes(found.stiffness[:wanted], found.shapes[:, :wanted])
     kept.stiffness[:rigid] = 0.0
-    lost, off = missed(system, found), float(of_frequencies(K, kept).max(initial=0.0))
+    off = float(of_frequencies(K, kept).max(initial=0.0))
     unclear = unclear_below(K, found, rigid)
-    plain = Reduced(
-        kept, wanted, rigid, np.inf, 0.0, lost, rounding=off, digits=digits_of(K), unclear=unclear
-    )
+    plain = Reduced(kept, wanted, rigid, np.inf, 0.0, rounding=off, digits=digits_of(K), unclear=unclear)
     if found.count == wanted and (wanted == system.rows or not (rest and loads.shape[1])):
         return plain
     beyond = float(found.stiffness[wanted]) if wanted < found.count else np.inf  # of rows without mass
@@ -75,10 +88,38 @@ def reduced(
     more = flexibility(system, kept, loads, top, beyond)
     both = _together(kept, more.modes)
     bound, aside = more.bound + of_receptances(K, M, both, loads, top), (0.0, 0.0)
-    if others is not None and others.shape[1]:
+    if len(others) * system.rows > MOST_TOLD:
+        aside = np.inf, np.inf
+    elif others:
         own, damped = bound_aside(system, kept, more, loads, others, top, beyond)
         aside = own + of_receptances(K, M, both, _stiffest(both, others), top), damped
     return replace(plain, modes=both, bound=bound, damping=more.damping, aside=aside)
+
+
+def _cleared(system: System, found: Modes) -> Modes:
+    """The modes, of which those that may be rigid-body modes have nothing of others in them."""
+    count = may_be_rigid(system.K, system.M, found)
+    if not count:
+        return found
+    first = of_shapes(system, polished(system, found.shapes[:, :count]))
+    return _together(first, Modes(found.stiffness[count:], found.shapes[:, count:]))
+
+
+def _elastic_apart(system: System, found: Modes, rigid: int) -> tuple[System, Modes]:
+    """Elastic modes orthogonal to the first, rigid ones.
+
+    Beside rigid-body modes, -1 / s, they lose the digits by which s is nearer to zero than their lambda: if
+    these are many, all are solved for again about -lambda of the first.
+    """
+    if not 0 < rigid < found.count:
+        return system, found
+    first, own = float(found.stiffness[rigid]), found.shapes[:, :rigid]
+    if first > MOST_LOST * -system.shift or system.rows <= OPTIONS.dense or first < -system.shift:
+        system = shifted(system, -first)
+        found = modes_of(system, found.count)
+    rest = found.shapes[:, rigid:]
+    elastic = of_shapes(system, rest - own @ (own.conj().T @ (system.M @ rest)))
+    return system, _together(Modes(np.zeros(rigid), own), elastic)
 
 
 def _together(kept: Modes, more: Modes) -> Modes:
@@ -88,13 +129,12 @@ def _together(kept: Modes, more: Modes) -> Modes:
     )
 
 
-def _stiffest(modes: Modes, others: FloatArray) -> FloatArray:
+def _stiffest(modes: Modes, others: Sequence[int]) -> FloatArray:
     """Those that move least under a load along themselves."""
     elastic = modes.stiffness > 0.0
-    seen = np.abs(modes.shapes[:, elastic].conj().T @ others) ** 2
+    seen = np.abs(modes.shapes[list(others)][:, elastic].T) ** 2
     order = np.argsort((seen / modes.stiffness[elastic, None]).sum(axis=0))
-    some: FloatArray = others[:, order[:STIFFEST]]
-    return some
+    return unit_columns(len(modes.shapes), [others[i] for i in order[:STIFFEST].tolist()])
 
 
 def _within(modes: Modes, top: float, rows: int) -> int:

@@ -13,11 +13,19 @@ if TYPE_CHECKING:
 
 FAR_BELOW = 1e-3  # of the next frequency: so low are rigid-body modes that come out of an eigensolver
 MOST = 6  # rigid-body modes of one body
-CANCELLED = 4e-16  # share of the elastic energy's terms that is left of their sum: rounding of its entries
-NEARLY = {1e-13: 0.03, 1e-6: 1e-4}  # the same, of a matrix written with fewer digits: of the next frequency
+CANCELLED, FAR = (
+    4e-16,
+    0.1,
+)  # share of the elastic energy's terms that is left: rounding; of the next frequency
+LOW, LITTLE = 1e-8, 1e-4  # of the largest ratio of stiffness to mass on the diagonals; of the next frequency
+ALONE, LOWER = (
+    0.99,
+    1e-11,
+)  # share of its terms that a row has which the stiffness couples to no other; its LOW
+AS_NEGATIVE = 10.0  # times the most negative stiffness: what is no greater is as little known
+NEARLY, STEEP, NEAREST = (1e-6, 1e-4), 0.36, 0.03  # share of terms, of the next frequency; exponent; the most
 DEVIATIONS, BELOW = 4.0, 0.3  # of the energy by the digits of the entries; of the next frequency
 WORTH_SAYING = 0.03  # of the first elastic frequency: so near to it a soft mode may be taken for a rigid one
-AT_REST = 1e-3  # the share of the elastic forces of a row: a soft mode of stiff parts has some of its own
 
 
 def rigid_by_gap(frequency: FloatArray, below: float = FAR_BELOW, most: int = MOST) -> int:
@@ -47,20 +55,75 @@ def most_rigid(K: Matrix) -> int:
     return int(np.minimum(np.bincount(body), MOST).sum())
 
 
-def rigid_by_energy(K: Matrix, modes: Modes) -> int:
-    """How many of the lowest modes have no elastic energy, beyond the rounding of its sum."""
-    forces = abs(K) @ np.abs(modes.shapes)
-    terms = np.einsum("ij,ij->j", np.abs(modes.shapes), forces)
-    left = modes.stiffness / np.where(terms > 0.0, terms, 1.0)
-    of_rows = np.divide(np.abs(K @ modes.shapes), forces, out=np.zeros_like(forces), where=forces > 0.0)
-    none = left <= CANCELLED
-    frequency = np.sqrt(np.maximum(modes.stiffness, 0.0))
-    negative, number = int((modes.stiffness <= 0.0).sum()), np.arange(left.size)
-    many = most_rigid(K)
-    for share, below in NEARLY.items():
-        none |= (left <= share) & (number < negative + rigid_by_gap(frequency, below, many))
-    none |= number < _uncertain(K, modes, frequency, many)
-    return int((none & (of_rows.max(axis=0, initial=0.0) <= AT_REST)).sum())
+def rigid_by_energy(K: Matrix, M: Matrix, modes: Modes) -> int:
+    """How many of the lowest modes have no stiffness, beyond the rounding of matrices.
+
+    No unit of a row changes what is compared, each time with a gap to the next frequency that is the wider,
+    the less is known of the rounding:
+
+    - the share that is left of the sum of terms of the elastic energy, phi^T K phi / |phi|^T |K| |phi|;
+    - the most negative stiffness. No structure has one, so it is the error that a reduction has left;
+    - phi^T K phi / phi^T M phi beside the largest ratio of the diagonals. A reduction to few rows leaves of a
+      free body rounding alone, which is all of their stiffness then;
+    - the last digits that the entries were written with.
+    """
+    share = _share(K, modes)
+    size, many = np.abs(modes.stiffness), most_rigid(K)
+    frequency, unknown, low = np.sqrt(size), _unknown(modes), _low(K, M, share)
+    uncertain = _uncertain(K, modes, frequency, many)
+    for count in range(size.size, 0, -1):
+        left, highest = share[:count].max(), size[:count].max()
+        if count == size.size:
+            if left <= CANCELLED:
+                return count
+            continue  # nothing tells how soft they are
+        gap = float(np.sqrt(highest)) / max(float(frequency[count]), 1e-300)
+        if (
+            (left <= CANCELLED and gap <= FAR)
+            or (highest <= unknown and gap <= FAR)
+            or ((size <= low)[:count].all() and gap <= LITTLE)
+            or (count <= many and left <= NEARLY[0] and gap <= _nearest(left))
+        ):
+            return max(count, uncertain)
+    return uncertain
+
+
+def may_be_rigid(K: Matrix, M: Matrix, modes: Modes) -> int:
+    """How many of the lowest modes may be rigid-body modes: before a gap, with little elastic energy."""
+    size = np.abs(modes.stiffness)
+    share = _share(K, modes)
+    little = (share <= NEARLY[0]) | (size <= np.maximum(_unknown(modes), _low(K, M, share)))
+    frequency = np.sqrt(size)
+    gap = np.append(frequency[:-1] <= BELOW * frequency[1:], True) if frequency.size else little
+    count = little.size if little.all() else int(little.argmin())
+    found = np.flatnonzero(gap[:count])
+    return int(found[-1]) + 1 if found.size else 0
+
+
+def _nearest(left: float) -> float:
+    """How near the next frequency may be where so much is left of the terms, up to the first of NEARLY."""
+    return min(NEAREST, NEARLY[1] * float((NEARLY[0] / max(left, 1e-300)) ** STEEP))
+
+
+def _share(K: Matrix, modes: Modes) -> FloatArray:
+    """What is left of the sum of the terms of each mode's elastic energy, relative to their sizes."""
+    size = np.abs(modes.shapes)
+    terms = np.einsum("ij,ij->j", size, abs(K) @ size)
+    share: FloatArray = np.abs(modes.stiffness) / np.where(terms > 0.0, terms, 1.0)
+    return share
+
+
+def _unknown(modes: Modes) -> float:
+    """The stiffness up to which negative ones say that nothing is known; 0 where there are none."""
+    return AS_NEGATIVE * max(0.0, -float(modes.stiffness.min(initial=0.0)))
+
+
+def _low(K: Matrix, M: Matrix, share: FloatArray) -> FloatArray:
+    """Stiffness of each mode that is rounding beside the stiffest row of the matrices."""
+    stiff, heavy = K.diagonal().real, M.diagonal().real
+    largest = float((np.abs(stiff[heavy > 0.0]) / heavy[heavy > 0.0]).max())
+    low: FloatArray = np.where(share < ALONE, LOW, LOWER) * largest
+    return low
 
 
 def _uncertain(K: Matrix, modes: Modes, frequency: FloatArray, most: int) -> int:

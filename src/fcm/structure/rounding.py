@@ -51,7 +51,9 @@ def of_receptances(K: Matrix, M: Matrix, modes: Modes, loads: FloatArray, omega:
 
 
 def _between(modes: Modes, omega: float) -> FloatArray:
-    """Frequencies up to omega that are far from those of all modes, the last of them omega."""
+    """Frequencies up to omega that are far from those of all modes, the last of them omega; none up to 0."""
+    if not omega:
+        return np.zeros(0)
     ends = np.append(np.sqrt(modes.stiffness[modes.stiffness < omega**2]), omega)
     places = np.append(0.5 * (ends[1:] + ends[:-1]), omega)
     off = np.abs(1.0 - modes.stiffness / places[:, None] ** 2).min(axis=1)

@@ -1,0 +1,98 @@
+"""Factors of sparse symmetric or Hermitian matrices that are positive definite.
+
+CHOLMOD (the package scikit-sparse) where it is installed and the matrix is large, else SuperLU with a
+symmetric ordering. Both give the same solutions to rounding; tests/benchmarks/solid.py measures them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from scipy.sparse.linalg import splu
+
+FloatArray = npt.NDArray[np.float64]
+Matrix = Any  # scipy sparse array or matrix
+Solve = Callable[[FloatArray], FloatArray]  # loads (row,) or (row, load) to displacements
+
+
+@dataclass(frozen=True)
+class FactorOptions:
+    """How matrices are factorised."""
+
+    package: str = ""  # "CHOLMOD" or "SuperLU"; the first of them that is installed where it is empty
+    small: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
+
+
+class NotPositiveError(ValueError):
+    """A matrix that is not positive definite, with the number of its negative eigenvalues.
+
+    The number is None where it cannot be told, and 0 of a singular matrix.
+    """
+
+    def __init__(self, negative: int | None) -> None:
+        self.negative = negative
+        super().__init__("the matrix is not positive definite")
+
+
+def has_cholmod() -> bool:
+    """Whether the package scikit-sparse is installed."""
+    return find_spec("sksparse") is not None
+
+
+def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None = None) -> Solve:
+    """Factorise a positive definite matrix once, for any number of solutions; else NotPositiveError.
+
+    Where it need not be definite, only a singular one is refused.
+
+    >>> solver(scipy.sparse.csc_array([[2.0, 1.0], [1.0, 2.0]]))(np.array([3.0, 3.0]))
+    array([1., 1.])
+    """
+    options = options or FactorOptions()
+    matrix = scipy.sparse.csc_array(matrix)
+    wanted = options.package == "CHOLMOD" or (not options.package and has_cholmod())
+    if wanted and matrix.shape[0] > options.small:
+        solve = _cholmod(matrix)
+        if solve is not None:
+            return solve
+    return _superlu(matrix, definite)
+
+
+def _cholmod(matrix: Matrix) -> Solve | None:
+    """By CHOLMOD; None where the matrix is not positive definite, which SuperLU tells more of."""
+    from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+
+    try:
+        factor = cholesky(scipy.sparse.csc_matrix(matrix), mode="supernodal")  # others take any sign
+    except CholmodNotPositiveDefiniteError:
+        return None
+    return lambda loads: np.asarray(factor(np.asarray(loads)))
+
+
+def _superlu(matrix: Matrix, definite: bool) -> Solve:
+    """By SuperLU without pivoting off the diagonal: the signs of its pivots are those of the eigenvalues.
+
+    That is Sylvester's law of inertia, where no rows were exchanged.
+    """
+    try:
+        factor = splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+    except RuntimeError:
+        raise NotPositiveError(0) from None
+    if definite and (factor.perm_r != factor.perm_c).any():
+        raise NotPositiveError(None)
+    if definite and (negative := _negative(factor)):
+        raise NotPositiveError(negative)
+    solve: Solve = factor.solve
+    return solve
+
+
+def _negative(factor: Any) -> int:
+    """Pivots below zero."""
+    return int((factor.U.diagonal().real < 0.0).sum())

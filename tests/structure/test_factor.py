@@ -1,0 +1,77 @@
+"""Both packages that factorise matrices, beside dense solutions."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from fcm.scene import scene_from_dict
+from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, solver
+
+from .solids import bricks
+
+PACKAGES = [
+    "SuperLU",
+    pytest.param("CHOLMOD", marks=pytest.mark.skipif(not has_cholmod(), reason="needs scikit-sparse")),
+]
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("turned", [False, True])  # Hermitian
+def test_solutions(package, turned):
+    K = bricks(3, 2, 2)[0]
+    if turned:
+        phase = scipy.sparse.diags_array(np.exp(1j * np.arange(K.shape[0])))
+        K = phase @ K @ phase.conj()
+    loads = np.random.default_rng(0).standard_normal((K.shape[0], 3))
+    solve = solver(K, options=FactorOptions(package=package, small=0))
+    exact = np.linalg.solve(K.toarray(), loads)
+    assert solve(loads.astype(K.dtype)) == pytest.approx(exact, rel=1e-9, abs=1e-9 * np.abs(exact).max())
+    assert solve(loads[:, 0].astype(K.dtype)) == pytest.approx(
+        exact[:, 0], rel=1e-9, abs=1e-9 * np.abs(exact).max()
+    )
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_negative_eigenvalues_are_counted(package):
+    K = bricks(2, 2, 2)[0]
+    value = np.linalg.eigvalsh(K.toarray())
+    turned = K - 0.5 * (value[2] + value[3]) * scipy.sparse.eye_array(K.shape[0])
+    with pytest.raises(NotPositiveError) as refused:
+        solver(turned, options=FactorOptions(package=package, small=0))
+    assert refused.value.negative == 3
+
+
+def test_nothing_is_dense_in_the_number_of_rows(tmp_path):
+    """A square of thirty thousand numbers would be 7 GB."""
+    rows = 30_000
+    K = scipy.sparse.diags_array(
+        [np.full(rows - 1, -1.0), np.full(rows, 2.0), np.full(rows - 1, -1.0)], offsets=(-1, 0, 1)
+    )
+    scipy.sparse.save_npz(tmp_path / "K.npz", K.tocsc())
+    names = [f"{i}x" for i in range(1, rows + 1)]
+    contact = {
+        "name": "c",
+        "tangential": "30000x",
+        "normal": "1x",
+        "mu": 0.3,
+        "k_u": 1.0,
+        "k_v": 1.0,
+        "n_0": 1.0,
+    }
+    data = {
+        "structure": {"dofs": names, "stiffness": "K.npz", "mass": [1.0] * rows, "damping": 0.01, "modes": 3},
+        "contact": [contact | {"n_0": 1.0}],
+        "force": [{"dof": "30000x", "amplitude": 1.0}],
+        "response": {"frequency": [1e-5, 1e-4]},
+        "sweep": {"contact.c.tangential.7x": [0.0, 1.0]},
+    }
+    tracemalloc.start()
+    scene = scene_from_dict(data, "long.toml", tmp_path)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert scene.modal.frequency[0] == pytest.approx(2 * np.sin(0.5 * np.pi / (rows + 1)), rel=1e-6)
+    assert most < 300e6
