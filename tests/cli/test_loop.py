@@ -220,6 +220,42 @@ def test_what_the_file_has_not_is_said(fcm, folded, args, said):
     assert done.code == 2 and said in done.err and done.out == ""
 
 
+def test_of_many_contacts_those_that_take_most_energy_are_named(fcm, folded, tmp_path):
+    """A hundred made of the one: the energy of each is another part of its own."""
+    share = np.random.default_rng(3).permutation(100) + 1.0
+    with netCDF4.Dataset(folded) as one, netCDF4.Dataset(tmp_path / "many.nc", "w") as many:
+        many.setncatts({key: one.getncattr(key) for key in one.ncattrs()})
+        for name, dimension in one.dimensions.items():
+            many.createDimension(name, 100 if name == "contact" else len(dimension))
+        for name, own in one.variables.items():
+            made = many.createVariable(name, own.dtype, own.dimensions)
+            made.setncatts({key: own.getncattr(key) for key in own.ncattrs() if key != "_FillValue"})
+            values = own[:]
+            if "contact" in own.dimensions:
+                values = np.repeat(values, 100, axis=own.dimensions.index("contact"))
+            if name == "contact":
+                values = np.array([f"pair {i}" for i in range(100)], dtype=object)
+            made[:] = values * share if name == "dissipated_energy" else values
+    done = fcm("plot", "loop", "many.nc", "--curve", 0)
+    most = ", ".join(f"pair {i}" for i in np.argsort(-share)[:10])
+    assert done.code == 2
+    assert done.err.endswith(
+        "has several contacts; say which by --contact: of 100 those that take most energy in a cycle: "
+        f"{most}\n"
+    )
+
+
+def test_letters_that_the_fonts_lack_are_said_once(fcm, folded, tmp_path):
+    (tmp_path / "named.nc").write_bytes(folded.read_bytes())
+    with netCDF4.Dataset(tmp_path / "named.nc", "a") as data:
+        data["contact"][0] = "叶片"
+    done = fcm("plot", "loop", "named.nc", "--curve", 0)
+    assert done.code == 0 and (tmp_path / "named-loop.png").exists()
+    assert [line for line in done.err.splitlines() if "warning" in line] == [
+        'fcm: warning: named-loop.png: the fonts lack "叶", "片", which are boxes in the picture'
+    ]
+
+
 def test_a_file_without_loops(fcm, folded, tmp_path):
     (tmp_path / "b.nc").write_bytes(folded.read_bytes())
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:

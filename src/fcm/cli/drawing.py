@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.files import check_output, output_option
+from fcm.cli.messages import Messages
 from fcm.files import replacing
+from fcm.scene.errors import choices
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,8 +70,12 @@ def shorten(name: str, most: int) -> str:
 
 
 def save_picture(figure: Figure, output: Path) -> None:
-    """Write the picture; the file appears only when it is whole."""
-    from fcm.plot.style import save
+    """Write the picture; the file appears only when it is whole. Characters that no font has are said."""
+    from fcm.plot.style import lacking, save
 
+    if letters := lacking(figure):
+        context = click.get_current_context(silent=True)
+        messages = (context and context.find_object(Messages)) or Messages()
+        messages.warning(f"{output}: the fonts lack {choices(letters)}, which are boxes in the picture")
     with replacing(output) as partial:
         save(figure, partial)

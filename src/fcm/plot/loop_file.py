@@ -12,6 +12,8 @@ import numpy.typing as npt
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, read_response
 
+MOST_NAMES = 10  # contacts that a message lists
+_ENERGY = "dissipated_energy"
 _PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
 
 
@@ -46,6 +48,7 @@ class LoopFile:
     frequency: FloatArray  # (curve, point) in the file's unit
     stable: FloatArray  # (curve, point) 1, 0 or NaN
     loop: FloatArray  # (5, curve, point, contact)
+    energy: FloatArray  # (contact,) that friction takes in a cycle at most; 0 where the file does not say it
     harmonics: tuple[int, ...]
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
@@ -66,6 +69,7 @@ def read_loops(path: Path) -> LoopFile:
         stable = floats(data["stable"]) if "stable" in data.variables else np.full(frequency.shape, np.nan)
         parts = [floats(data[name]) for name in _PARTS]
         length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
+        energy = floats(data[_ENERGY]) if _ENERGY in data.variables else np.zeros((0, len(contacts)))
         orders = data["harmonic"][:].tolist() if "harmonic" in data.variables else [1]
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
     shape = (*frequency.shape, len(contacts))
@@ -76,6 +80,7 @@ def read_loops(path: Path) -> LoopFile:
         states = np.full(shape, "", dtype="<U1")
     return LoopFile(
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
+        _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
     )  # fmt: skip
 
@@ -147,8 +152,25 @@ def _row(file: LoopFile, curve: int | None) -> int:
     return row
 
 
+def _greatest(energy: FloatArray, contacts: int) -> FloatArray:
+    """Of each contact over all points; 0 where it is nowhere known."""
+    each = energy.reshape(-1, contacts)
+    found: FloatArray = np.nanmax(np.where(np.isfinite(each), each, 0.0), axis=0, initial=0.0)
+    return found
+
+
+def _names(file: LoopFile) -> str:
+    """The contacts, of many those that take most energy, first the one that takes most."""
+    if len(file.contacts) <= MOST_NAMES:
+        return ", ".join(file.contacts)
+    first = np.argsort(-file.energy, kind="stable")[:MOST_NAMES]
+    most = "that take most energy in a cycle" if file.energy.any() else "first in the file"
+    names = ", ".join(file.contacts[i] for i in first.tolist())
+    return f"of {len(file.contacts)} those {most}: {names}"
+
+
 def _column(file: LoopFile, contact: str | None) -> int:
-    names = ", ".join(file.contacts)
+    names = _names(file)
     if not file.contacts:
         raise PlotError(f"{file.path}: its scene has no contact, and so no loop")
     if contact is None and len(file.contacts) > 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -56,10 +57,11 @@ _UNDATED = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """The look, whatever matplotlib's own configuration says."""
+    """The look, whatever matplotlib's own configuration says; characters that no font has are boxes."""
     import matplotlib
 
-    with matplotlib.rc_context():
+    with matplotlib.rc_context(), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")  # see `lacking`
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
         yield
@@ -104,6 +106,17 @@ def plain_ticks(axis: Axis, widest: float) -> None:
 def has_decades(heights: Sequence[float]) -> bool:
     """Whether they differ so much that on a linear axis the lowest would lie on its foot."""
     return bool(max(heights) > _DECADE * min(heights) > 0.0)
+
+
+def lacking(figure: Figure) -> str:
+    """The characters of a figure's texts that none of the fonts has, each once."""
+    from matplotlib.font_manager import FontProperties, findfont, get_font
+    from matplotlib.text import Text
+
+    texts = [one.get_text() for one in figure.findobj(Text)]
+    fonts = [get_font(findfont(FontProperties(family=[name]))) for name in STYLE["font.family"]]
+    found = sorted({letter for text in texts for letter in text if letter.isprintable()})
+    return "".join(one for one in found if not any(font.get_char_index(ord(one)) for font in fonts))
 
 
 def save(figure: Figure, path: Path, dpi: int = DPI) -> None:
