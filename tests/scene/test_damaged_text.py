@@ -18,6 +18,7 @@ from fcm.scene import SceneError, scene_from_dict
 
 from ..program import python
 from ..scale import SCALE
+from .test_matrix_formats import ABAQUS_K, BOEING, PUNCH, ROWS
 from .test_uff import NX, PERMAS, TRANSLATION, times
 
 CASES = int(40 * SCALE)
@@ -111,8 +112,9 @@ def matrix_read(folder, name):
     return read_matrix(name, Files(folder)).matrix.toarray()
 
 
-def of_matrix(name):
-    return {"structure": {"dofs": ["1x", "1y", "1z"], "stiffness": name, "mass": [1, 2, 3], "damping": 0.1}}
+def of_matrix(name, rows=("1x", "1y", "1z")):
+    mass = [1.0] * len(rows)
+    return {"structure": {"dofs": list(rows), "stiffness": name, "mass": mass, "damping": 0.1}}
 
 
 @pytest.mark.parametrize("form", ["symmetric", "general", "array"])
@@ -137,6 +139,45 @@ def test_universal_files(tmp_path, name):
         assert set(shapes.tolist()) <= known or name == "complex", changed
         hertz = found.modal.frequency / (2.0 * np.pi)
         assert all(min(abs(one - k) for k in known) <= 1e-14 * one for one in hertz.tolist()), changed
+
+
+@pytest.mark.parametrize(
+    "name, text",
+    [
+        ("K.sti", "1 1 1.5D+00\n2 1 -2.5e-1\n2 2 3.25\n3 3 4.5\n"),
+        ("K.mtx", ABAQUS_K),
+        ("K.hb", BOEING),
+        ("K.pch", PUNCH.replace("MAAX", "LAAX")),
+    ],
+)
+def test_matrices_of_other_programs(tmp_path, name, text):
+    given = f"{name}:KAAX" if name == "K.pch" else name
+    rows = ("1x", "1y", "1z") if name == "K.sti" else ROWS
+    count = 0
+    for changed, _ in each(tmp_path, name, text.encode(), of_matrix(given, rows), 8):
+        count += 1
+        read = set(np.abs(matrix_read(tmp_path, given)).ravel().tolist())
+        assert read <= words(changed) or name == "K.pch", changed  # whose numbers touch, in their columns
+    assert count
+
+
+def test_tables_of_pairs(tmp_path):
+    """A preload of each pair in a table with commas."""
+    names = ["1x", "1y", "2x", "2y"]
+    structure = {"dofs": names, "stiffness": [4.0, 5.0, 6.0, 7.0], "mass": [1.0] * 4, "damping": 0.1}
+    contact = {
+        "name": "c",
+        "nodes": "pairs.csv",
+        "tangential": "x",
+        "normal": "y",
+        "mu": 0.3,
+        "k_u": 1,
+        "k_v": 1,
+    }
+    content = b"node,other,n_0\n1,2,12.5\n1,,3.25D+00 # alone\n2,,7\n"
+    table = {"structure": structure, "contact": [contact]}
+    for changed, found in each(tmp_path, "pairs.csv", content, table, 9):
+        assert {abs(one.n_0) for one in found.contacts} <= words(changed), changed
 
 
 def test_archives(tmp_path):

@@ -29,8 +29,8 @@ from fcm.scene.linear import (
 )
 from fcm.scene.modal import UNITS
 from fcm.scene.model import Scene
-from fcm.scene.optimum import read_optimum
 from fcm.scene.node_pairs import notes_of_shares
+from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (
     contact_of,
     read_contacts,

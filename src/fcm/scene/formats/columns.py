@@ -33,6 +33,8 @@ def read_columns(path: Path, whole: int, between: str | None = None, comment: st
     """
     content = path.read_bytes().removeprefix(MARK)
     lines = _numbers_of_lines(content, comment.encode())
+    if not lines.size:
+        raise UnreadableError("it is empty")
     kind = np.dtype([("whole", np.int64, (whole,)), ("real", np.float64)])
     try:
         found = np.loadtxt(io.BytesIO(content), kind, delimiter=between, comments=comment, ndmin=1)
