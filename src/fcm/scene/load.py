@@ -42,6 +42,7 @@ from fcm.scene.parts import (
 )
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
+from fcm.scene.shared_normal import note_of_shared_normals
 from fcm.scene.start_note import note_of_start
 from fcm.scene.sweep import combinations, read_sweep
 from fcm.scene.toml import read_toml
@@ -156,7 +157,15 @@ def _made(name: str, fields: dict[str, Any]) -> Scene:
     )
     curves = tuple(draft.curve(scene, values) for values in combinations(draft.swept))
     scene = replace(scene, curves=curves)
-    return replace(scene, notes=(*scene.notes, *note_of_stability(scene), *note_of_start(scene)))
+    return replace(
+        scene,
+        notes=(
+            *scene.notes,
+            *note_of_stability(scene),
+            *note_of_start(scene),
+            *note_of_shared_normals(scene),
+        ),
+    )
 
 
 def _parts(
