@@ -74,6 +74,13 @@ def refused(folder, **structure):
     return str(caught.value)
 
 
+def test_a_format_that_is_narrower_than_the_numbers(tmp_path):
+    """The rest of each line would be left out, and 1.1e5 read as 1.1."""
+    (tmp_path / "K.hb").write_text(BOEING.replace("2E14.7", "2E4.7"))
+    said = refused(tmp_path, dofs=list(ROWS), stiffness="K.hb")
+    assert "line 7 is longer than the numbers of its format, 2 of 4 characters" in said
+
+
 def write(folder, **texts):
     for name, text in texts.items():
         (folder / name.replace("__", ".")).write_text(text)

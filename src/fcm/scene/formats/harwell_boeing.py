@@ -90,6 +90,10 @@ def _numbers(lines: list[str], begin: int, cards: int, form: Fields, size: int) 
     """So many numbers in some lines of one format."""
     if cards * form.number < size or begin + cards > len(lines):
         raise UnreadableError(f"it is cut off: line {begin + 1} on must hold {size} numbers")
+    for number, line in enumerate(lines[begin : begin + cards], begin + 1):
+        if line[form.number * form.width :].strip():
+            right = f"{form.number} of {form.width} characters"
+            raise UnreadableError(f"line {number} is longer than the numbers of its format, {right}")
     at_once = _at_once(lines[begin : begin + cards], form, size)
     if at_once is not None:
         return at_once
