@@ -139,3 +139,13 @@ def test_all_mistakes_of_draws_at_once(data, mistakes):
         "correlation": {"keys": [N_0, K_U], "matrix": [[1, 2], [2, 1]]},
     }
     assert "3 mistakes" in mistakes(data)
+
+
+def test_draws_that_would_take_days_are_told_before_they_are_made(data, mistakes, monkeypatch):
+    """A clock by which each takes 0.3 s; few of them are drawn all the same."""
+    clock = iter(np.arange(100) * 8 * 0.3)
+    monkeypatch.setattr("fcm.scene.draws.perf_counter", lambda: float(next(clock)))
+    slow = {"distribution": "expon", "count": 1_000_000}
+    said = "".join(mistakes(data | {"sweep": {N_0: slow}}))
+    assert "1000000 draws of this distribution take about 83 hours, 0.3 s each: give 2000 at most" in said
+    assert drawn(data, **{N_0: slow | {"count": 1000}})[0].size == 1000

@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse
 
 from fcm.scene import scene_from_dict
+from fcm.structure.eigen import StructureError, system_of
 from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, solver
 
 from .solids import bricks
@@ -75,3 +76,13 @@ def test_nothing_is_dense_in_the_number_of_rows(tmp_path):
     tracemalloc.stop()
     assert scene.modal.frequency[0] == pytest.approx(2 * np.sin(0.5 * np.pi / (rows + 1)), rel=1e-6)
     assert most < 300e6
+
+
+def test_factors_that_the_memory_does_not_hold_are_said(monkeypatch):
+    def refuse(*_args, **_more):
+        raise MemoryError
+
+    monkeypatch.setattr("fcm.structure.factor.splu", refuse)
+    K, M, _ = bricks(2, 2, 2)
+    with pytest.raises(StructureError, match=r"factors of its 54 rows and .* take more memory than there is"):
+        system_of(K, M)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from time import perf_counter
 from typing import Any
 from zlib import crc32
 
@@ -23,6 +24,8 @@ from fcm.scene.section import Section
 
 FORMS = ("normal", "uniform", "distribution")
 ROUNDING = 1e-12  # of a correlation matrix: an eigenvalue that is less below zero is one of zero
+
+SAMPLE, MOST_SECONDS = 8, 600.0  # draws that are timed; longest time of all draws of a number
 
 Quantile = Callable[[FloatArray], FloatArray]  # of probabilities
 
@@ -64,12 +67,29 @@ class Draws:
         share: FloatArray = ndtr(scores)
         return low + (high - low) * share if self.form == "uniform" else self._quantiles(share)
 
+    def seconds(self) -> float:
+        """About how long all draws take, from a few of them; 0 of those that take no time."""
+        if self.quantile is None or self.count <= SAMPLE:
+            return 0.0
+        begin = perf_counter()
+        self._quantiles(np.linspace(0.05, 0.95, SAMPLE))
+        return (perf_counter() - begin) * self.count / SAMPLE
+
     def _quantiles(self, probability: FloatArray) -> FloatArray:
         assert self.quantile is not None
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # what is not finite is said of the number itself
             found: FloatArray = np.asarray(self.quantile(probability), dtype=np.float64)
         return found
+
+
+def _duration(seconds: float) -> str:
+    """In the largest unit that it has one of.
+
+    >>> _duration(900.0), _duration(3e5)
+    ('15 minutes', '83 hours')
+    """
+    return f"{seconds / 60:.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600:.0f} hours"
 
 
 def read_draws(table: Section, form: str, key: str, integer: Callable[..., int | None]) -> Draws | None:
@@ -84,7 +104,15 @@ def read_draws(table: Section, form: str, key: str, integer: Callable[..., int |
     count, seed = integer(table, "count", 1), integer(table, "seed", 0, default=0)
     if table.mistakes.count > before or count is None or seed is None:
         return None
-    return Draws(key, form, pair, quantile, count, seed)
+    found = Draws(key, form, pair, quantile, count, seed)
+    if (seconds := found.seconds()) > MOST_SECONDS:
+        table.wrong(
+            "count",
+            f"{count} draws of this distribution take about {_duration(seconds)}, {seconds / count:.2g} s "
+            f"each: give {int(count * MOST_SECONDS / seconds)} at most, or another distribution",
+        )
+        return None
+    return found
 
 
 def _pair(table: Section, form: str) -> tuple[float, float]:

@@ -26,7 +26,7 @@ import scipy.sparse
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fcm.structure.digits import digits_of
-from fcm.structure.factor import NotPositiveError, Solve, solver
+from fcm.structure.factor import NotPositiveError, Solve, TooLargeError, solver
 
 FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
@@ -123,6 +123,8 @@ def system_of(K: Matrix, M: Matrix, top: float = 0.0) -> System:
             solve = solver(K - shift * M)
     except NotPositiveError as error:
         faults.append(_said("stiffness", error.negative))
+    except TooLargeError as error:
+        faults.append(str(error))
     if faults:
         raise StructureError("; ".join(faults))
     return System(K, M, shift, solve)

@@ -40,6 +40,16 @@ class NotPositiveError(ValueError):
         super().__init__("the matrix is not positive definite")
 
 
+class TooLargeError(ValueError):
+    """A matrix whose factors the memory does not hold."""
+
+    def __init__(self, rows: int, entries: int) -> None:
+        super().__init__(
+            f"the factors of its {rows} rows and {entries} entries take more memory than there is: reduce "
+            "the structure, as by Craig and Bampton, or install scikit-sparse, whose factors are smaller"
+        )
+
+
 def has_cholmod() -> bool:
     """Whether the package scikit-sparse is installed."""
     return find_spec("sksparse") is not None
@@ -85,6 +95,8 @@ def _superlu(matrix: Matrix, definite: bool) -> Solve:
         )
     except RuntimeError:
         raise NotPositiveError(0) from None
+    except MemoryError:
+        raise TooLargeError(matrix.shape[0], matrix.nnz) from None
     if definite and (factor.perm_r != factor.perm_c).any():
         raise NotPositiveError(None)
     if definite and (negative := _negative(factor)):
