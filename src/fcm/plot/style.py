@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -62,6 +63,7 @@ def house_style() -> Iterator[None]:
 
     with matplotlib.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")  # see `lacking`
+        logging.getLogger("matplotlib.mathtext").setLevel(logging.ERROR)  # which says the same of formulae
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(STYLE)
         yield
