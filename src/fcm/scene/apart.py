@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -27,6 +28,9 @@ SPARE = 500_000_000  # bytes of memory for a reader itself
 COPIES = 3  # of the arrays, while they are read, converted and written
 REFUSED = 3  # exit code of the child when it says why
 NAMES = ".names"  # under which the names of all variables of a .mat file are given
+
+OP4_BESIDE = 6  # characters of a number beside its decimals, as in "1.E+00"
+_OP4_FORMAT = re.compile(rb"^.{32,40}1P,?\d{1,3}E(\d{1,4})(?:\.(\d{1,4}))?", re.MULTILINE)  # of a text file
 
 _CODE = "import sys; from fcm.scene.apart import child; child(sys.argv[1:])"
 
@@ -106,6 +110,9 @@ def _op4(path: Path, wanted: Collection[str], largest: int) -> dict[str, Any]:
         ) from None
     except Exception as error:  # of an old release, for one, with a numpy that has not what it uses
         raise _unusable(path, error) from None
+    for match in _OP4_FORMAT.finditer(path.read_bytes()):
+        if not match[2] or int(match[1]) < int(match[2]) + OP4_BESIDE:
+            raise UnreadableError("it is damaged: a format of numbers is narrower than they are")
     found: dict[str, Any] = op4.load(str(path), into="dct", justmatrix=True, sparse=None)
     return found
 
