@@ -12,7 +12,7 @@ from fcm.scene.section import Section
 
 LONGEST_NAME = 100  # bytes: "contact.NAME.tangential.NAME" is the name of a variable of a file, 256 at most
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")  # Nastran's 1 to 6
-_AT_NODE = re.compile(r"(\d+)[: ]?(r?[xyz]|[1-6])", re.IGNORECASE)
+_AT_NODE = re.compile(r"(\d+)[:. ]?(r?[xyz]|[1-6])", re.IGNORECASE)
 
 
 class Names(tuple[str, ...]):
@@ -54,8 +54,8 @@ def motion_of(name: str) -> str:
 def at_node(name: str) -> str:
     """A node and a direction in the one way that they are compared; empty if it is none.
 
-    >>> at_node("40:1"), at_node("40X"), at_node("7ry"), at_node("tip")
-    ('40x', '40x', '7ry', '')
+    >>> at_node("40:1"), at_node("40X"), at_node("40.1"), at_node("7ry"), at_node("tip")
+    ('40x', '40x', '40x', '7ry', '')
     """
     match = _AT_NODE.fullmatch(name)
     if not match:
