@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -51,8 +50,12 @@ class TooLargeError(ValueError):
 
 
 def has_cholmod() -> bool:
-    """Whether the package scikit-sparse is installed."""
-    return find_spec("sksparse") is not None
+    """Whether scikit-sparse is installed, in a release that has what is used here."""
+    try:
+        from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+    except ImportError:
+        return False
+    return callable(cholesky) and issubclass(CholmodNotPositiveDefiniteError, Exception)
 
 
 def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None = None) -> Solve:
@@ -65,8 +68,8 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
     """
     options = options or FactorOptions()
     matrix = scipy.sparse.csc_array(matrix)
-    wanted = options.package == "CHOLMOD" or (not options.package and has_cholmod())
-    if wanted and matrix.shape[0] > options.small:
+    large = matrix.shape[0] > options.small
+    if large and (options.package == "CHOLMOD" or (not options.package and has_cholmod())):
         solve = _cholmod(matrix)
         if solve is not None:
             return solve
