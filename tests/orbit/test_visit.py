@@ -156,3 +156,13 @@ def test_a_frequency_at_which_the_motion_is_not_determined_does_not_take_the_oth
     resonant = one_mode(damping=0.0, mu=0.0, k_v=0.0)
     (curve,) = trace_exact(resonant, [1.0, 1.3]).curves
     assert not curve.complete and 1.3 in curve.frequency and 1.0 not in curve.frequency
+
+
+def test_a_long_motion_at_one_frequency_shows_that_it_goes_on():
+    """At 1.235 the motion is simulated for many cycles: the text says at which step of them it is."""
+    said = []
+    trace_exact(yang(), [1.235], progress=lambda share, text: said.append((share, text)))
+    steps = [text for share, text in said if "up, 1.235 rad/s, step" in text]
+    assert len(steps) > 10 and len(set(steps)) == len(steps)
+    shares = [share for share, _ in said]
+    assert shares == sorted(shares)

@@ -64,7 +64,7 @@ class ExactWork:
         if self.at is not None:
             return _visited(scene, self.at, report, self.limit)
         stiff, limit = _too_stiff(scene, self.limit)
-        clock = Clock(limit)
+        clock = Clock(limit, report)
         try:
             return self._in_time(scene, report, clock, stiff)
         except TimeOver as stop:  # before the first point was looked for
@@ -210,7 +210,7 @@ def _too_stiff(scene: Scene, limit: float | None) -> tuple[str, float | None]:
 def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float | None) -> Curve:
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
-    look = Clock(limit).look
+    look = Clock(limit, report).look
     visitor, others, reason = Visitor(around, look), list[Sample](), ""
     try:
         visitor.run(at, report)

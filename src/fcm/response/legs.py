@@ -54,10 +54,13 @@ class TimeOver(Exception):  # noqa: N818
 
 
 class Clock:
-    """Of the processor time that a curve may take [s], from the beginning; without end if that is None."""
+    """Of the processor time that a curve may take [s], from the beginning; without end if that is None.
 
-    def __init__(self, limit: float | None) -> None:
-        self.limit, self._ask = limit, 0.0
+    Each look is reported as a step.
+    """
+
+    def __init__(self, limit: float | None, report: Report) -> None:
+        self.limit, self.report, self._ask = limit, report, 0.0
         self._end = None if limit is None else time.process_time() + limit
 
     def share(self, part: float) -> float:
@@ -71,6 +74,7 @@ class Clock:
 
     def look(self) -> None:
         """Raise `TimeOver` when it is."""
+        self.report.again()
         if self._end is not None and time.monotonic() > self._ask:
             if self.over:
                 raise TimeOver

@@ -82,6 +82,7 @@ class Visitor:
         done = self._go_on(report.saved, visits)
         for number, (sweep, omega) in enumerate(visits[done:], done):
             jumps = len(self.jumps)
+            report.begins(f"{sweep}, {shown(self.scene, omega)}")
             self._go(omega, sweep)
             self._note(sweep)
             known = tuple(self.restless), tuple(self.refused.items())

@@ -15,7 +15,7 @@ class Bar:
 
     def __init__(self, sizes: Sequence[int], finished: Iterable[int], progress: Progress | None) -> None:
         self.sizes, self.shares, self.progress = sizes, [0.0] * len(sizes), progress
-        self.total, self.done = sum(sizes), 0.0
+        self.total, self.done, self.text = sum(sizes), 0.0, ""
         self._lock = threading.Lock()
         for number in finished:
             self._set(number, 1.0)
@@ -23,9 +23,10 @@ class Bar:
     def of(self, number: int, draw: bool) -> Progress:
         """The progress of one batch; draw if it comes from the thread that may draw."""
 
-        def show(fraction: float, _text: str) -> None:
+        def show(fraction: float, text: str) -> None:
             self._set(number, ALMOST * min(fraction, 1.0))
             if draw:
+                self.text = text
                 self.draw()
 
         return show
@@ -33,12 +34,14 @@ class Bar:
     def finish(self, number: int) -> None:
         """A batch is finished."""
         self._set(number, 1.0)
+        self.text = ""
         self.draw()
 
     def draw(self) -> None:
         """Show it."""
         if self.progress is not None:
-            self.progress(min(self.done / self.total, 1.0), f"{int(self.done)} of {self.total} curves")
+            done = f"{int(self.done)} of {self.total} curves"
+            self.progress(min(self.done / self.total, 1.0), f"{done}: {self.text}" if self.text else done)
 
     def _set(self, number: int, share: float) -> None:
         with self._lock:

@@ -24,10 +24,22 @@ class Report:
         self, show: Progress, saved: Sequence[Any] = (), save: Callable[[Any], None] | None = None
     ) -> None:
         self.show, self.saved, self._save = show, saved, save
+        self._said, self._steps = (0.0, ""), 0
 
     def __call__(self, fraction: float, text: str) -> None:
         """So much is finished; an interruption is raised from here."""
+        self._said, self._steps = (fraction, text), 0
         self.show(fraction, text)
+
+    def begins(self, text: str) -> None:
+        """What the next steps are of."""
+        self._said, self._steps = (self._said[0], text), 0
+
+    def again(self) -> None:
+        """A step further, and no more finished than was said: so a long part is seen to go on."""
+        self._steps += 1
+        fraction, text = self._said
+        self.show(fraction, f"{text}, step {self._steps}" if text else f"step {self._steps}")
 
     def save(self, state: Any) -> None:
         """Keep a state, in addition to those before."""
