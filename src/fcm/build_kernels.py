@@ -17,10 +17,13 @@ import os
 import re
 from compileall import compile_dir
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from Cython.Build import cythonize
-from setuptools import Extension, setup
-from setuptools.command.build_ext import build_ext
+from setuptools import Distribution, Extension, setup
+from setuptools.command.bdist_wheel import bdist_wheel
+from setuptools.command.build_ext import build_ext, customize_compiler, new_compiler
+from setuptools.command.sdist import sdist
 from setuptools.errors import CompileError
 
 DIRECTIVES = {
@@ -33,6 +36,7 @@ DIRECTIVES = {
 # One rounding for each operation as it is written: the sequence of a contact hangs on signs.
 FLAGS = ["-O3", "-g0", "-ffp-contract=off"]
 ANY_PYTHON = ("Py_LIMITED_API", "0x030B0000")  # from 3.11 on
+BESIDE = ("Makefile", ".ci/*", ".github/**/*", "tests/**/*")  # in an sdist, for its tests
 ARRAYS = "fcm.kernel_arrays"  # what Cython adds for arrays, once for all kernels
 
 _LOST = re.compile(r'\n\s+__Pyx_WriteUnraisable\("([^"]*)"')  # where a translated function loses exceptions
@@ -73,7 +77,8 @@ class Kernels(build_ext):
         for kernel in self.extensions:
             kernel.optional = self.optional
             self._discard_if_old(kernel)
-        if self.optional and not self._compiles():
+        if self.optional and (reason := compiles_not(self.distribution)):
+            self.warn(f"the kernels of fcm are not compiled: {reason}")
             return
         translated = cythonize(  # type: ignore[no-untyped-call]
             self.extensions,
@@ -100,23 +105,48 @@ class Kernels(build_ext):
                 f"exceptions are lost in {', '.join(found)}: declare what is returned for them (except -1)"
             )
 
-    def _compiles(self) -> bool:
-        """Whether C is compiled here, with Python's headers; where not, kernels need not be translated."""
-        source = Path(self.build_temp) / "headers.c"
-        source.parent.mkdir(parents=True, exist_ok=True)
-        source.write_text("#include <Python.h>\n")
-        try:
-            self.compiler.compile([str(source)], self.build_temp, include_dirs=self.include_dirs)
-        except CompileError as reason:
-            self.warn(f"the kernels of fcm are not compiled: {reason}")
-            return False
-        return True
-
     def _discard_if_old(self, kernel: Extension) -> None:
         """What is out of date goes first: should it not be made anew, the source must take its place."""
         made, source = Path(self.get_ext_fullpath(kernel.name)), Path(kernel.sources[0])
         if made.exists() and source.exists() and made.stat().st_mtime < source.stat().st_mtime:
             made.unlink()
+
+
+def compiles_not(distribution: Distribution) -> str:
+    """Why C is not compiled here with Python's headers, so that nothing need be translated; or ''."""
+    trial = build_ext(distribution)
+    trial.ensure_finalized()
+    compiler = new_compiler(compiler=trial.compiler)
+    customize_compiler(compiler)
+    with TemporaryDirectory() as folder:
+        source = Path(folder) / "headers.c"
+        source.write_text("#include <Python.h>\n")
+        try:
+            compiler.compile([str(source)], folder, include_dirs=trial.include_dirs)
+        except CompileError as reason:
+            return str(reason)
+    return ""
+
+
+class Wheel(bdist_wheel):
+    """A wheel that is tagged as what it is: without compiled kernels it is for every Python and machine."""
+
+    def finalize_options(self) -> None:
+        wanted = "editable_wheel" not in self.distribution.command_obj  # that has its own way to do without
+        if wanted and self.distribution.ext_modules and (reason := compiles_not(self.distribution)):
+            self.announce(f"the kernels of fcm are not compiled: {reason}", 3)
+            self.distribution.ext_modules, self.py_limited_api = [], False
+        super().finalize_options()
+
+
+class Sources(sdist):
+    """A source distribution with all that the tests read: the guide, the Makefile and the tests."""
+
+    def make_release_tree(self, base_dir: str, files: list[str]) -> None:
+        found = (path for pattern in BESIDE for path in sorted(Path().glob(pattern)))
+        own = {str(path) for path in found if path.is_file() and "__pycache__" not in path.parts}
+        super().make_release_tree(base_dir, [*files, *sorted(own.difference(files))])
+        Path(base_dir, "tables").symlink_to("src/fcm/tables")  # of which the package holds the files
 
 
 if __name__ == "__main__":

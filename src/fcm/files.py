@@ -5,12 +5,69 @@ from __future__ import annotations
 import errno
 import os
 import re
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 PROBE = 1 << 20  # bytes that have to fit beside a file that failed for its disk not to be the reason
 NETCDF = "NetCDF:"  # how a RuntimeError begins that comes from that library
+
+
+NOT_THERE = "is not there"
+_KINDS = (
+    (stat.S_ISDIR, "is a folder"),
+    (stat.S_ISFIFO, "is a pipe (fifo), not a file"),
+    (stat.S_ISSOCK, "is a socket, not a file"),
+    (stat.S_ISCHR, "is a device, not a file"),
+    (stat.S_ISBLK, "is a device, not a file"),
+)
+
+
+def no_file(path: str | Path, wanted: str = "read") -> str:
+    """What there is where a file is to be: "is a folder", "cannot be read: ..."; '' for a file.
+
+    >>> no_file("/")
+    'is a folder'
+    """
+    try:
+        mode = os.stat(path).st_mode  # noqa: PTH116  # pathlib hides what is wrong
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # or it is no name of a file
+        return NOT_THERE
+    except OSError as error:
+        if error.errno == errno.ELOOP:
+            return "is a loop of symbolic links"
+        return f"cannot be {wanted}: {error.strerror}"
+    return next((what for kind, what in _KINDS if kind(mode)), "")
+
+
+def real(path: str | Path) -> Path:
+    """Where a file is or will be, all symbolic links followed.
+
+    Raises
+    ------
+    OSError
+        If they are a loop.
+    """
+    try:
+        found = Path(path).resolve()
+        os.lstat(found)  # newer Pythons resolve a loop to something in it
+    except RuntimeError:
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path)) from None
+    except FileNotFoundError:
+        pass
+    if found.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), str(path))
+    return found
+
+
+def same_file(one: str | Path, other: str | Path) -> bool:
+    """Whether two names are of one file, also by links, symbolic or hard."""
+    with suppress(OSError, ValueError):
+        return Path(one).samefile(other)
+    with suppress(OSError, ValueError):
+        return real(one) == real(other)
+    return False
 
 
 @contextmanager
@@ -24,7 +81,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
     OSError
         If it cannot be written: with the name of the file, and the true reason where a library hides it.
     """
-    target = Path(path).resolve()
+    target = real(path)
     partial = partial_of(target)
     remove_stale(target)
     try:

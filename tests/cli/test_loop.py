@@ -27,7 +27,8 @@ def folded(tmp_path_factory):
 @pytest.fixture
 def undrawn(monkeypatch):
     """The picture is not drawn; what would be is another test's."""
-    monkeypatch.setattr("fcm.cli.loop._draw", lambda *_args: None)
+    monkeypatch.setattr("fcm.cli.loop._drawn", lambda *_args: None)
+    monkeypatch.setattr("fcm.cli.loop.save_picture", lambda *_args: None)
 
 
 def loops(done):

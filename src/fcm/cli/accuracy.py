@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 
 
@@ -27,5 +27,6 @@ def accuracy(messages: Messages, file: Path, output: Path | None, quantity: str)
     from fcm.plot.accuracy import draw_accuracy, read_accuracy
 
     output = picture_of(file, output, ".png")
-    save_picture(draw_accuracy(read_accuracy(file, quantity.replace("-", "_"))), output)
+    read = read_accuracy(file, quantity.replace("-", "_"))
+    save_picture_of(file, lambda: draw_accuracy(read), output)
     messages.info(f"wrote {output}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm.cli.drawing import ENDINGS, angles, save_picture, shorten
-from fcm.cli.files import output_option
+from fcm.cli.files import check_not_read, output_option
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
@@ -120,6 +120,7 @@ def surface(
     from fcm.plot.surface import draw_contours, draw_surfaces
 
     shown = _panels(coefficients, phases, n0_range, b_range)
+    check_not_read({"-o": output}, [table])
     law: dict[str, Any] = {} if table is None else {"law": _opened(table)}
     steps = STEPS if contour else SPACE_STEPS
     surfaces = [evaluate(name, plane, steps, **law) for name, plane in shown]
@@ -154,6 +155,7 @@ def error(
     from fcm.table.error_map import error_map
 
     shown = _panels(coefficients, phases, n0_range, b_range)
+    check_not_read({"-o": output}, [table])
     opened = _opened(table)
     maps = [error_map(name, plane, opened) for name, plane in shown]
     name = "the shipped table" if table is None else Path(table).name

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import check_output, output_option
+from fcm.cli.files import check_not_read, check_output, output_option
 from fcm.cli.messages import Messages
 from fcm.files import replacing
 from fcm.scene.errors import choices
@@ -32,10 +34,11 @@ def draws_file(ending: str, page: bool = False) -> Callable[[Any], Any]:
     return lambda command: click.argument("file", type=kind)(option(command))
 
 
-def picture_of(file: Path, output: Path | None, ending: str, page: bool = False) -> Path:
-    """Where the picture of a file of results goes."""
+def picture_of(file: Path, output: Path | None, ending: str, *read: Path | None, page: bool = False) -> Path:
+    """Where the picture of a file of results goes, which is none of those that are read."""
     output = output or file.with_name(file.stem + ending)
     check_output(output, (*ENDINGS, PAGE) if page else ENDINGS)
+    check_not_read({"-o": output}, [file, *read])
     return output
 
 
@@ -79,3 +82,28 @@ def save_picture(figure: Figure, output: Path) -> None:
         messages.warning(f"{output}: the fonts lack {choices(letters)}, which are boxes in the picture")
     with replacing(output) as partial:
         save(figure, partial)
+
+
+def save_picture_of(file: Path, drawn: Callable[[], Figure], output: Path) -> None:
+    """Write the picture of a file of results."""
+    with drawable(file):
+        save_picture(drawn(), output)
+
+
+@contextmanager
+def drawable(file: Path) -> Iterator[None]:
+    """Where the numbers of a file of results cannot be drawn, `PlotError` says so of it.
+
+    Whatever has written or damaged a file that could be read, they may have no place on an axis.
+    """
+    from fcm.plot.errors import PlotError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of the sums of such numbers
+            yield
+    except (PlotError, OSError, MemoryError, click.ClickException):
+        raise
+    except (ArithmeticError, LookupError, RuntimeError, TypeError, ValueError) as error:
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise PlotError(f"{file}: its numbers cannot be drawn: {reason}") from error

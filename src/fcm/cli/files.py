@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import click
 
 from fcm.cli.options import FiniteRange
-from fcm.files import partial_of
+from fcm.files import NOT_THERE, no_file, partial_of, real, same_file
 
 
 def output_option(*names: str, endings: tuple[str, ...], **attributes: Any) -> Callable[..., Any]:
@@ -38,25 +40,44 @@ def check_output(path: Path, endings: tuple[str, ...]) -> None:
 
 def check_different(paths: dict[str, Path | None]) -> None:
     """A usage error if two options name the same file to write, in whatever spelling."""
-    seen: dict[Path, str] = {}
-    for option, path in paths.items():
-        if path is None:
-            continue
-        if (other := seen.setdefault(path.resolve(), option)) != option:
+    given = [(option, path) for option, path in paths.items() if path is not None]
+    for (other, first), (option, path) in combinations(given, 2):
+        if same_file(first, path):
             raise click.UsageError(f"{other} and {option} name the same file, {str(path)!r}.")
 
 
+def check_not_read(outputs: Mapping[str, Path | None], inputs: Iterable[str | Path | None]) -> None:
+    """A usage error if a file to write is one that is read, by whatever name."""
+    read = [path for path in inputs if path is not None]
+    for option, path in outputs.items():
+        if path is not None and (one := next((one for one in read if same_file(path, one)), None)):
+            also = "" if str(one) == str(path) else f", which is {str(one)!r}"
+            raise click.UsageError(f"{option} would overwrite {str(path)!r}{also}, and that is read.")
+
+
+@contextmanager
+def alone(outputs: Iterable[Path | None]) -> Iterator[None]:
+    """No other run writes these files meanwhile; `CheckpointError` if one is at work on one of them."""
+    from fcm.run import Checkpoint
+    from fcm.run.checkpoint import unfinished
+
+    with ExitStack() as held:
+        for path in filter(None, outputs):
+            held.enter_context(Checkpoint(unfinished(path), resume=True))
+        yield
+
+
 def _problem(path: Path, endings: tuple[str, ...]) -> str:
-    if path.is_dir():
+    if (what := no_file(path, "written")) == "is a folder":
         return "it is a folder, not a file to write"
     if path.suffix.lower() not in endings:
         return f"the name has to end in {' or '.join(endings)}"
-    if path.exists() and not path.is_file():
-        return "it is no file that could be replaced"
+    if what and what != NOT_THERE:
+        return f"it {what}"
     if not path.parent.is_dir():
-        if path.parent.exists():
-            return f"{str(path.parent)!r} is a file, and no folder"
-        return f"there is no folder {str(path.parent)!r}"
+        if (what := no_file(path.parent)) == NOT_THERE:
+            return f"there is no folder {str(path.parent)!r}"
+        return f"{str(path.parent)!r} {what or 'is a file'}, and no folder"
     str(path).encode()
     _try(path)
     return ""
@@ -64,7 +85,7 @@ def _problem(path: Path, endings: tuple[str, ...]) -> str:
 
 def _try(path: Path) -> None:
     """Make what is written meanwhile, for permissions alone know no read-only disk and no longest name."""
-    target = path.resolve()
+    target = real(path)
     probe = partial_of(target)
     os.close(os.open(probe, os.O_CREAT | os.O_WRONLY))
     probe.unlink()

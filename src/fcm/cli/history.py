@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def history(
     read = read_history(file, dof, against)
     if curves:
         read = replace(read, motions=_chosen(read.motions, curves))
-    save_picture(draw_history(read, window), output)
+    save_picture_of(file, lambda: draw_history(read, window), output)
     messages.info(f"wrote {output}")
 
 

@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli.drawing import ENDINGS, angle, angles, save_picture
-from fcm.cli.files import check_output, output_option
+from fcm.cli.drawing import ENDINGS, angle, angles, save_picture, save_picture_of
+from fcm.cli.files import check_not_read, check_output, output_option
 from fcm.cli.messages import Messages, pass_messages
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from fcm.cli.loop_cases import Case
     from fcm.cli.loop_names import Harmonic
 
@@ -162,8 +164,12 @@ def loop(
     if output is None:
         output = Path("loop.png") if file is None else file.with_name(f"{file.stem}-loop.png")
         check_output(output, ENDINGS)
+    check_not_read({"-o": output}, [file])
     scaled = not options["dimensionless"] and (file is not None or bool(options["mu"]))
-    _draw(cases, output, scaled, units, cosine)
+    if file is None:
+        save_picture(_drawn(cases, scaled, units, cosine), output)
+    else:
+        save_picture_of(file, lambda: _drawn(cases, scaled, units, cosine), output)
     if to_json:
         click.echo(json.dumps({"loops": [case.record(cosine) for case in cases]}, indent=2, allow_nan=False))
     for case in cases:
@@ -224,7 +230,7 @@ def _option(name: str) -> str:
     return other.get(name, "--" + name.removesuffix("s").replace("_", "-"))
 
 
-def _draw(cases: list[Case], output: Path, scaled: bool, units: tuple[str, str] | None, cosine: bool) -> None:
+def _drawn(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosine: bool) -> Figure:
     from fcm.cli.loop_names import titles
     from fcm.plot.loop import DrawnLoop, LoopAxes, draw_loops
 
@@ -235,7 +241,7 @@ def _draw(cases: list[Case], output: Path, scaled: bool, units: tuple[str, str] 
         for case, title in zip(cases, panels, strict=True)
     ]
     axes = LoopAxes.with_units(units, cosine) if scaled else LoopAxes(from_greatest=cosine)
-    save_picture(draw_loops(drawn, axes, common), output)
+    return draw_loops(drawn, axes, common)
 
 
 def _sentence(case: Case, cosine: bool) -> str:

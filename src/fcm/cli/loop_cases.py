@@ -139,6 +139,7 @@ def of_file(
 ) -> list[Case]:
     """The loops of a contact on curves of a response file, at frequencies."""
     from fcm.plot.loop_file import points_at, read_loops
+    from fcm.plot.read import read
 
     file = read_loops(path)
     cases = []
@@ -147,7 +148,8 @@ def of_file(
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         for point in points if solution is None else points[solution - 1 : solution]:
-            cases.append(_at_point(point, file))
+            with read(path, "its loops cannot be drawn"):
+                cases.append(_at_point(point, file))
     return cases
 
 

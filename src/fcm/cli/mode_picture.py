@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 
 
@@ -21,5 +21,6 @@ def mode(messages: Messages, file: Path, output: Path | None) -> None:
     from fcm.plot.mode import draw_modes, read_modes
 
     output = picture_of(file, output, "-mode.png")
-    save_picture(draw_modes(read_modes(file)), output)
+    read = read_modes(file)
+    save_picture_of(file, lambda: draw_modes(read), output)
     messages.info(f"wrote {output}")

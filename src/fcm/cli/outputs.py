@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ import click
 
 from fcm.cli import schedule, track
 from fcm.cli.curves import as_table
+from fcm.cli.files import alone
 from fcm.cli.messages import Messages
 from fcm.cli.terminal import plain
 
@@ -33,18 +34,21 @@ class Outputs:
     @contextmanager
     def kept(self, resume: bool) -> Iterator[Checkpoint | None]:
         """What is finished is kept beside the first of the files as long as they are not written."""
-        anchor = self.output or self.csv or self.history_csv
-        if anchor is None:
+        files = [path for path in (self.output, self.csv, self.history_csv) if path is not None]
+        if not files:
             yield None
             return
-        from fcm.files import remove_stale
+        anchor = files[0]
+        from fcm.files import real, remove_stale
         from fcm.run import Checkpoint
         from fcm.run.checkpoint import unfinished
 
-        with Checkpoint(unfinished(anchor), resume) as self.checkpoint:
+        with ExitStack() as held:
+            self.checkpoint = held.enter_context(Checkpoint(unfinished(anchor), resume))
+            held.enter_context(alone(files[1:]))
             if resume and not self.checkpoint.resumable:
                 self.messages.info(f"{plain(anchor)}: nothing of an unfinished run is kept: begun afresh")
-            remove_stale(anchor.resolve())
+            remove_stale(real(anchor))
             try:
                 yield self.checkpoint
             except BaseException:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.cli.files import check_not_read
 from fcm.cli.messages import Messages
 from fcm.run import Progress
 from fcm.table import TableError, open_table
@@ -18,8 +19,12 @@ from fcm.table.part import Part, Reach
 REPEATS = 3  # the best of so many times is reported
 
 
-def reached(messages: Messages, scene: str, resolution: Resolution, progress: Progress | None = None) -> Part:
+def reached(
+    messages: Messages, scene: str, output: Path, resolution: Resolution, progress: Progress | None = None
+) -> Part:
     """The nodes that the response of a scene looks up, traced with the closed form.
+
+    The output must be no file of the scene.
 
     Raises
     ------
@@ -30,7 +35,9 @@ def reached(messages: Messages, scene: str, resolution: Resolution, progress: Pr
     from fcm.scene import load_scene
 
     reach = Reach(resolution)
-    response = trace(load_scene(scene), "closed-form", progress=progress, harmonics=1)
+    loaded = load_scene(scene)
+    check_not_read({"-o": output}, loaded.files)
+    response = trace(loaded, "closed-form", progress=progress, harmonics=1)
     if response.interrupted:
         raise KeyboardInterrupt
     messages.clear()

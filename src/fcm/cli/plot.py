@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fcm.cli.drawing import draws_file, is_page, picture_of, save_picture
+from fcm.cli.drawing import drawable, draws_file, is_page, picture_of, save_picture_of
 from fcm.cli.lazy import LazyGroup
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.options import FiniteRange
@@ -79,7 +79,7 @@ def response(
     """
     from fcm.plot import draw_response, read_points, read_response
 
-    output = picture_of(file, output, ".png", page=True)
+    output = picture_of(file, output, ".png", points, page=True)
     if is_page(output):
         if band is not None or points is not None:
             raise click.UsageError(
@@ -87,17 +87,17 @@ def response(
             )
         from fcm.plot.interactive import response_page
 
-        with replacing(output) as partial:
+        with drawable(file), replacing(output) as partial:
             response_page(read_response(file), dof, log, partial)
         messages.info(f"wrote {output}")
         return
     if band is not None:
-        save_picture(_bands(file, dof, log, points, band), output)
+        save_picture_of(file, lambda: _bands(file, dof, log, points, band), output)
         messages.info(f"wrote {output}")
         return
     marked = None if points is None else read_points(points)
-    figure = draw_response(read_response(file), dof=dof, log=log, errors=errors, points=marked)
-    save_picture(figure, output)
+    read = read_response(file)
+    save_picture_of(file, lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
     messages.info(f"wrote {output}")
 
 

@@ -10,7 +10,7 @@ from click.core import ParameterSource
 
 from fcm.cli import balance, cluster, exact, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.calculation import calculated
-from fcm.cli.files import check_different
+from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
 from fcm.cli.remarks import announce, close
@@ -19,6 +19,8 @@ from fcm.cli.scene_name import scene_argument
 from fcm.cli.time_limit import TimeLimit
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fcm.scene.model import Scene
 
 
@@ -43,6 +45,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     from fcm.response.visible import visible
 
     loaded = _loaded(messages, scene, asked)
+    check_not_read(_files(asked), [*loaded.files, asked.table])
     _check_scene(loaded, asked)
     announce(messages, loaded, asked)
     outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv)
@@ -59,7 +62,9 @@ def _compare(messages: Messages, scene: str, asked: Asked) -> None:
 
     refuse_other_options()
     loaded = _loaded(messages, scene, asked)
-    write_comparison(messages, loaded, asked.table, asked.tolerance, asked.output, asked.to_json)
+    check_not_read({"-o": asked.output}, [*loaded.files, asked.table])
+    with alone([asked.output]):
+        write_comparison(messages, loaded, asked.table, asked.tolerance, asked.output, asked.to_json)
 
 
 def _check_options(asked: Asked) -> None:
@@ -76,10 +81,15 @@ def _check_options(asked: Asked) -> None:
     if asked.table is not None and method != "table":
         raise click.UsageError("--table is of no use with --method closed-form.")
     sensitivity.check_options(asked.sensitivity, method, level, mode, asked.peaks_only)
-    files = {"-o": asked.output, "--csv": asked.csv, "--history-csv": asked.history_csv}
+    files = _files(asked)
     if asked.resume and not any(files.values()):
         raise click.UsageError("--resume needs the -o FILE of the sweep that was interrupted.")
     check_different(files)
+
+
+def _files(asked: Asked) -> dict[str, Path | None]:
+    """The files to write, by their options."""
+    return {"-o": asked.output, "--csv": asked.csv, "--history-csv": asked.history_csv}
 
 
 def _check_left_out(asked: Asked) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fcm.cli.drawing import draws_file, picture_of, save_picture
+from fcm.cli.drawing import draws_file, picture_of, save_picture_of
 from fcm.cli.messages import Messages, pass_messages
 
 
@@ -24,5 +24,6 @@ def sensitivity(messages: Messages, file: Path, output: Path | None, dof: str | 
     from fcm.plot.sensitivity import draw_sensitivity, read_sensitivity
 
     output = picture_of(file, output, "-sensitivity.png")
-    save_picture(draw_sensitivity(read_sensitivity(file), dof=dof, curve=curve), output)
+    read = read_sensitivity(file)
+    save_picture_of(file, lambda: draw_sensitivity(read, dof=dof, curve=curve), output)
     messages.info(f"wrote {output}")

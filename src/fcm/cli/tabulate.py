@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli.files import output_option
+from fcm.cli.files import alone, output_option
 from fcm.cli.guard import NOT_COMPLETED
 from fcm.cli.interruptible import Interruptible
 from fcm.cli.messages import Messages, pass_messages
@@ -83,11 +83,13 @@ def tabulate(
         _verify(messages, verify, to_json)
     elif study is not None:
         _alone(ctx, "study")
-        write_study(messages, study, to_json)
+        with alone([study]):
+            write_study(messages, study, to_json)
     else:
         if scene is not None and ctx.get_parameter_source("points") is click.core.ParameterSource.DEFAULT:
             points = POINTS_OF_PART
-        _build(messages, output, preset, nodes, scene, points, to_json)
+        with alone([output]):
+            _build(messages, output, preset, nodes, scene, points, to_json)
 
 
 def _resolution(value: tuple[int, int, int, int] | None) -> tuple[int, int, int, int] | None:
@@ -127,7 +129,7 @@ def _build(
         made_by = f"fcm tabulate --nodes {' '.join(map(str, resolution))} --points {points}"
         part, begin = None, 0.0
         if scene is not None:
-            part, begin = reached(messages, scene, resolution, share(progress, 0.0, HALF)), HALF
+            part, begin = reached(messages, scene, output, resolution, share(progress, 0.0, HALF)), HALF
         made_by += "" if scene is None else f" --for {plain(scene)}"
         table = build_table(output, resolution, points, share(progress, begin, 1.0), made_by, part)
     seconds = time.perf_counter() - began

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from fcm.plot.errors import PlotError
-from fcm.plot.read import opened
+from fcm.plot.read import LARGEST, opened, read
 from fcm.plot.style import house_style, new_figure, plain_ticks
 
 if TYPE_CHECKING:
@@ -71,15 +71,14 @@ def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
         layout, text = getattr(file, "layout", ""), getattr(file, "summary", "{}")
     if not str(layout).startswith("fcm comparison"):
         raise PlotError(f"{path}: not a comparison; `fcm respond SCENE --compare -o FILE.nc` writes one")
-    try:
+    with read(path, "not a sound comparison"):
         summary = json.loads(text)
         panels = [_panel(summary, name, quantity) for name in ("exact", "closed form")]
-    except (ValueError, KeyError, TypeError) as error:
-        raise PlotError(f"{path}: not a sound comparison: {error!r}") from error
+        title = str(summary["title"])
     known = tuple(panel for panel in panels if panel.lines)
     if not known:
         raise PlotError(f"{path}: it has no error of that kind: {quantity}")
-    return Accuracy(str(summary["title"]), quantity, known)
+    return Accuracy(title, quantity, known)
 
 
 def _panel(summary: Any, reference: str, quantity: str) -> Panel:
@@ -94,11 +93,20 @@ def _panel(summary: Any, reference: str, quantity: str) -> Panel:
         shown = run["against"][reference]
         error, below = shown["errors"][quantity], shown["below"].get(quantity)
         if error or below:
-            seconds, complete = float(run["processor_seconds"]), bool(run["complete"])
-            mark = Mark(seconds, float(error or below), error is None, complete)
+            seconds, complete = _number(run["processor_seconds"]), bool(run["complete"])
+            mark = Mark(seconds, _number(error or below), error is None, complete)
             lines.setdefault((run["method"], bool(run["corrected"])), []).append(mark)
     one = summary["references"][reference]
-    return Panel(reference, one["own_error"][quantity], float(one["max_step"]), lines)
+    own = one["own_error"][quantity]
+    return Panel(reference, None if own is None else _number(own), _number(one["max_step"]), lines)
+
+
+def _number(value: Any) -> float:
+    """A time, an error or a step."""
+    number = float(value)
+    if not 0.0 <= number <= LARGEST:
+        raise ValueError(f"it holds {number:g} in the place of a time, an error or a step")
+    return number
 
 
 def draw_accuracy(accuracy: Accuracy) -> Figure:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.plot.errors import PlotError
-from fcm.plot.read import FloatArray, floats, read_response
+from fcm.plot.read import FloatArray, floats, opened, read_response
 
 MOST_NAMES = 10  # contacts that a message lists
 _ENERGY = "dissipated_energy"
@@ -57,10 +57,8 @@ class LoopFile:
 
 def read_loops(path: Path) -> LoopFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file holds no loops."""
-    from netCDF4 import Dataset
-
     response = read_response(path)
-    with Dataset(str(path)) as data:
+    with opened(path, "a response file", ()) as data:
         missing = [name for name in (*_PARTS, "contact") if name not in data.variables]
         if missing:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")

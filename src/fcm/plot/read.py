@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.files import NETCDF, no_file
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 from fcm.units import CF_UNIT
@@ -25,6 +26,8 @@ _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
+NO_NETCDF = "Unknown file format"  # what the library says of other files
+LARGEST = 1e100  # no result is as large, in whatever units: such a number was not written as one
 
 
 @dataclass(frozen=True)
@@ -82,25 +85,35 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
     """The open netCDF dataset; PlotError if it has not the variables needed, or they do not fit together."""
     from netCDF4 import Dataset
 
-    try:
-        if not path.is_file():
-            raise OSError
+    if what := no_file(path):
+        raise PlotError(f"{path}: {what}")
+    with read(path, "not a netCDF file that can be read"):
         dataset = Dataset(str(path))
-    except (OSError, ValueError) as error:
-        if getattr(error, "errno", 0) == errno.ENOMEM:
-            raise MemoryError(str(error)) from error
-        raise PlotError(f"{path}: not a netCDF file that can be read") from error
     with dataset:
         missing = [name for name in needed if name not in dataset.variables]
         if missing:
             names = ", ".join(missing[:3]) + (", ..." if len(missing) > 3 else "")
             raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
-        try:
+        with read(path, f"not {kind}"):
             yield dataset
-        except PlotError:
-            raise
-        except (IndexError, RuntimeError, TypeError, ValueError) as error:
-            raise PlotError(f"{path}: not {kind}: {error}") from error
+
+
+@contextmanager
+def read(path: Path, otherwise: str) -> Iterator[None]:
+    """What is read from a file, which may be damaged, or written by anything: `PlotError` says what it is
+    otherwise, and why."""
+    try:
+        yield
+    except (PlotError, MemoryError):
+        raise
+    except Exception as error:  # the library and what is made of its numbers fail in many ways
+        if getattr(error, "errno", 0) == errno.ENOMEM:
+            raise MemoryError(str(error)) from error
+        reason = str(error).partition("\n")[0]
+        if (reason.startswith(NETCDF) and NO_NETCDF not in reason) or "HDF" in reason:
+            raise PlotError(f"{path}: damaged, or cut off: {reason}") from error
+        why = "" if isinstance(error, OSError) else f": {reason or type(error).__name__}"
+        raise PlotError(f"{path}: {otherwise}{why}") from error
 
 
 def _hint(dataset: Any) -> str:
@@ -198,4 +211,8 @@ def _swept(variables: Any) -> dict[str, Any]:
 
 def floats(variable: Any) -> FloatArray:
     """A variable of the file, with NaN where it has no value."""
-    return np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
+    found: FloatArray = np.ma.filled(np.ma.asarray(variable[:], dtype=float), np.nan)
+    largest = float(np.max(np.abs(found), initial=0.0, where=~np.isnan(found)))
+    if largest > LARGEST:
+        raise ValueError(f"{getattr(variable, 'name', 'a variable')} holds {largest:.3g}")
+    return found

@@ -12,7 +12,7 @@ import numpy as np
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
-from fcm.plot.read import FloatArray, floats
+from fcm.plot.read import FloatArray, floats, opened
 from fcm.plot.style import (
     HEIGHT,
     WIDTH,
@@ -60,13 +60,7 @@ class DrawnTracking:
 
 def read_tracked(path: Path) -> DrawnTracking | None:
     """Read what ``fcm respond`` has written with --track, or of an [optimum]; None of another file."""
-    from netCDF4 import Dataset
-
-    try:
-        data = Dataset(str(path))
-    except OSError as error:
-        raise PlotError(f"{path}: not a netCDF file that can be read") from error
-    with data:
+    with opened(path, "a response file", ()) as data:
         variables = data.variables
         if any(name not in variables for name in _NEEDED):
             return None
@@ -81,7 +75,8 @@ def read_tracked(path: Path) -> DrawnTracking | None:
             tracks.append(DrawnTrack(what, *columns))
         optimum, stays = None, ""
         if "optimum_peak" in variables and variables["optimum_peak"].shape == (1,):
-            optimum = (float(variables["optimum_number"][0, 0]), float(variables["optimum_peak"][0]))
+            number_at, peak = (floats(variables[name]) for name in ("optimum_number", "optimum_peak"))
+            optimum = (float(number_at[0, 0]), float(peak[0]))
             stays = _stays(variables)
         return DrawnTracking(
             str(getattr(variables["tracked_number"], "key", "")),

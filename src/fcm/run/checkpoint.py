@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from fcm.files import real
 from fcm.run.lock import LENGTH, TITLE, CheckpointError, locked, same
 from fcm.run.records import Record, packed, unpacked, whole
 from fcm.signals import undisturbed
@@ -185,8 +186,9 @@ class _Kept(Results):
 
 
 def unfinished(output: Path) -> Path:
-    """Where the work for an output is kept meanwhile."""
-    return output.with_name(f"{output.name}.unfinished")
+    """Where the work for an output is kept meanwhile: beside the file itself, whatever links lead to it."""
+    place = real(output) if output.is_symlink() else output
+    return place.with_name(f"{place.name}.unfinished")
 
 
 def _write(file: int, data: bytes) -> None:

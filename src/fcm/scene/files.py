@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from errno import EACCES, EIO
 from pathlib import Path
 
+from fcm.files import no_file
 from fcm.scene.errors import quoted
 
 LONGEST_PATH = 400  # characters of a path shown in a message
@@ -47,20 +48,20 @@ class Files:
 
     folder: Path = Path()
     largest: int = LARGEST  # bytes, unpacked
+    read: list[Path] = field(default_factory=list, compare=False)  # those that were opened
 
     @contextmanager
     def opened(self, name: str) -> Iterator[Path]:
         """The path of a file that is there and not too large; whatever fails within is said of the file."""
         path = self.folder / name
+        self.read.append(path)
         try:
-            if not path.is_file():
+            if what := no_file(path):
                 backslash = not name.isprintable()
                 within = (
                     ", and has a special character: write \\ twice, or the name in '...'" if backslash else ""
                 )
-                raise DataFileError(
-                    f"{_shown(path)} is {'a folder' if path.is_dir() else 'not there'}{within}"
-                )
+                raise DataFileError(f"{_shown(path)} {what}{within}")
             self.check_size(path, path.stat().st_size)
             yield path
         except DataFileError:

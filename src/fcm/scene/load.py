@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.files import NOT_THERE, no_file
 from fcm.scene.cyclic import check_diameters, note_of_stability, only_own, own_names, read_cyclic
 from fcm.scene.doubtful import questions
 from fcm.scene.draft import Draft, forces_of, modes_of
@@ -80,9 +81,10 @@ def load_scene(path_or_name: str | Path, *, largest_file: int = LARGEST) -> Scen
     """
     bundled = str(path_or_name) in bundled_scenes()
     path = _bundled() / f"{path_or_name}.toml" if bundled else _there(path_or_name)
-    return scene_from_dict(
+    scene = scene_from_dict(
         read_toml(path, str(path_or_name)), str(path_or_name), path.parent, largest_file=largest_file
     )
+    return replace(scene, files=(path, *scene.files))
 
 
 def scene_from_dict(
@@ -106,9 +108,10 @@ def scene_from_dict(
         mistakes.add("", "is empty; a scene has [modal], [[contact]], [[force]] and [response]")
         mistakes.raise_if_any()
     top.only(*names(""))
-    fields = _read(top, Files(Path(folder), largest_file))
+    beside = Files(Path(folder), largest_file)
+    fields = _read(top, beside)
     mistakes.raise_if_any()
-    scene = _made(name, fields)
+    scene = replace(_made(name, fields), files=tuple(dict.fromkeys(beside.read)))
     _check_curves(scene, mistakes)
     return scene
 
@@ -238,14 +241,12 @@ def _unit(top: Section) -> str:
 
 def _there(path_or_name: str | Path) -> Path:
     """The path of a scene's file."""
-    path = Path(path_or_name)
-    try:
-        if path.exists():
-            return path
-    except (OSError, ValueError) as error:  # a name that is too long, or has a null character
-        reason = getattr(error, "strerror", None) or error
-        raise SceneError(str(path), [f"cannot be read: {reason}"]) from None
-    raise SceneError(str(path), [_not_there(str(path))])
+    path, what = Path(path_or_name), no_file(Path(path_or_name))
+    if what == NOT_THERE:
+        raise SceneError(str(path), [_not_there(str(path))])
+    if what.startswith(("cannot", "is a loop")):  # of folders and pipes the reader says more
+        raise SceneError(str(path), [what])
+    return path
 
 
 def _not_there(path: str) -> str:

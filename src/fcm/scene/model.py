@@ -12,6 +12,8 @@ import numpy.typing as npt
 from fcm.scene.ring import Ring, with_own
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fcm.scene.draft import Draft
 
 FloatArray = npt.NDArray[np.float64]
@@ -137,6 +139,7 @@ class Scene:
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
     optimum: Optimum | None = None
     of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
+    files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places
     draft: Draft | None = field(default=None, repr=False, compare=False)  # what it was made of
 

@@ -10,6 +10,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+from fcm.files import no_file
 from fcm.scene.errors import SceneError
 from fcm.scene.toml_slips import slips
 
@@ -55,8 +56,8 @@ def _text(path: Path, source: str) -> str:
             raise SceneError("SCENE", ["is empty; name a TOML file, or a bundled scene"])
         if path.is_dir():
             raise SceneError(source, ["is a folder; name the TOML file in it"])
-        if not (path.is_file() or path.is_fifo()):
-            raise SceneError(source, ["is a device, not a file"])
+        if not path.is_fifo() and (what := no_file(path)):
+            raise SceneError(source, [what])
         pipe = _from_pipe(path, source) if path.is_fifo() else None
         if max(len(pipe or b""), path.stat().st_size) > LARGEST_FILE:
             raise SceneError(source, ["is too large; keep its modes in a file of their own"])

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import fcm
-from fcm.files import replacing
+from fcm.files import real, replacing
 from fcm.table import TableError, seal
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
@@ -48,7 +48,7 @@ def write(
     OSError
         If the file cannot be written.
     """
-    target = Path(path).resolve()
+    target = real(path)
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder", str(target.parent))
     attributes = _attributes(arrays, error, history, part)

@@ -1,0 +1,67 @@
+"""Files of results that are damaged, or no files at all: one sentence, and never a defect."""
+
+import os
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+from fcm import load_scene
+from fcm.response import trace
+from fcm.results.output import write_netcdf
+
+KINDS = ("response", "peak", "loop", "mode", "history", "sensitivity", "accuracy")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    path = tmp_path_factory.mktemp("damaged") / "whole.nc"
+    scene = load_scene("yang1998")
+    curves = tuple(replace(one, max_step=0.5, harmonics=(1,)) for one in scene.curves[3:5])
+    write_netcdf(trace(replace(scene, curves=curves)), path)
+    return path.read_bytes()
+
+
+def refused(done, said=""):
+    """Refused in a sentence."""
+    assert done.code in (2, 3), done
+    (line,) = [line for line in done.err.splitlines() if not line.startswith(("Usage", "Try", "wrote"))][-1:]
+    assert said in line and "defect" not in done.err and "Traceback" not in done.err
+
+
+@pytest.mark.parametrize("value", [1e300, -1e300, np.inf])
+@pytest.mark.parametrize(("kind", "name"), [("response", "amplitude"), ("peak", "peak_amplitude")])
+def test_a_number_that_is_no_result_is_said(fcm, whole, kind, name, value):
+    Path("a.nc").write_bytes(whole)
+    with netCDF4.Dataset("a.nc", "a") as data:
+        data[name][0, 0] = value
+    refused(fcm("plot", kind, "a.nc"), f"{name} holds {abs(value):.3g}")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_file_that_was_cut_off_is_refused(fcm, whole, kind):
+    rng = random.Random(kind)
+    for _ in range(8):
+        Path("a.nc").write_bytes(whole[: rng.randrange(len(whole))])
+        refused(fcm("plot", kind, "a.nc"), "a.nc: ")
+
+
+def test_a_pipe_is_said_to_be_one(fcm):
+    os.mkfifo("pipe.nc")
+    for kind in KINDS:
+        refused(fcm("plot", kind, "pipe.nc"), "pipe.nc: is a pipe (fifo), not a file")
+    refused(fcm("plot", "loop", "-o", "pipe.nc"), "has to end in")
+    os.mkfifo("pipe.png")
+    refused(fcm("plot", "loop", "-o", "pipe.png"), "it is a pipe (fifo), not a file")
+
+
+def test_an_output_that_is_a_loop_of_links_is_refused(fcm):
+    for name in ("a.png", "b.png", "c.nc", "d.csv"):
+        Path(name).symlink_to({"a.png": "b.png", "b.png": "a.png"}.get(name, name))
+    refused(fcm("plot", "loop", "-o", "a.png"), "it is a loop of symbolic links")
+    refused(fcm("respond", "yang1998-n5", "-o", "c.nc"), "it is a loop of symbolic links")
+    refused(fcm("respond", "yang1998-n5", "--csv", "d.csv"), "it is a loop of symbolic links")
+    refused(fcm("tabulate", "-o", "c.nc"), "it is a loop of symbolic links")
