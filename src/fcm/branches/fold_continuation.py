@@ -79,7 +79,7 @@ def folds_from(
     span : (low, high)
         Of the frequency [rad/s].
     paid : callable
-        Called after each step.
+        Called now and then.
     """
     follower = _Follower(surface, span, options, paid)
     for singular in across:
@@ -168,7 +168,8 @@ class _Follower:
             if not surface.recentre(found.along, found.across):
                 return points, Ending.STALLED
             points.append((np.array(surface.z), self._singular(found.across)))
-            self.paid()
+            if count % options.report == 0:
+                self.paid()
             ending = self._ended(points[-1][0])
             if ending is not None:
                 return points, ending

@@ -25,6 +25,7 @@ class FoldOptions:
     wider: tuple[float, ...] = (1.0, 5.0, 25.0)  # times the first step: circles about a start beside a fold
     circle: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
     most: int = 400  # steps of a curve
+    report: int = 16  # steps after which it is told what they took
     near: float = 0.3  # of a step: a known fold this near to a curve is on it
     share: float = 0.5  # of the work before, that all curves may take,
     unnoticed: float = 0.2  # and seconds of work that they may in any case
