@@ -16,12 +16,12 @@ from fcm.continuation.newton import Newton
 from fcm.continuation.path import Path as Followed
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
-from fcm.orbit import OrbitProblem, harmonic_state, periodic, raised, sample
+from fcm.orbit import OrbitProblem, branch, harmonic_state, periodic, raised, sample, start
 from fcm.orbit.apart import passes
 from fcm.orbit.branch import explore, incomplete, known, spread
 from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.held import held
-from fcm.orbit.start import first_point, inner_resonances, near_balance, starts
+from fcm.orbit.start import Along, first_point, inner_resonances, near_balance, starts
 from fcm.response import exact_work
 from fcm.response.exact import trace_exact
 from fcm.response.trace import traced_curve
@@ -77,6 +77,7 @@ def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
     paths, missed = explore(OrbitProblem(scene), most=0.0)
     assert paths and all(path.status is not Status.STALLED for path in paths)
     assert missed.startswith("the search for further branches was given up: what leads")
+    monkeypatch.setattr(branch, "along_balance", lambda *_: Along([], False, []))
     monkeypatch.setattr(raised, "_begun", lambda *_: ())
     (curve,) = trace_exact(scene).curves
     assert not curve.complete and "was given up: the level of the forces cannot" in curve.reason
@@ -144,6 +145,42 @@ def test_closed_branches_that_neither_the_ends_nor_the_resonances_of_the_range_l
         share = (off[across] / (off[across] - off[across + 1]))[:, None]
         there = (1.0 - share) * curve.amplitude[across] + share * curve.amplitude[across + 1]
         assert np.abs(there / amplitude - 1.0).max(axis=1).min() < 3e-3
+
+
+def test_a_branch_is_found_that_only_the_converged_balance_has():
+    """Marched independently: a peaks at 23.4 near 1.5795 rad/s. At the ends of the range, and with one
+    harmonic all over it, the contacts stick, and the greatest is 0.058."""
+    (curve,) = trace_exact(fcm.load_scene(SCENES / "stuck_at_the_ends.toml")).curves
+    assert curve.complete
+    assert curve.peaks["a"].amplitude == pytest.approx(23.4, rel=2e-3)
+    assert curve.peaks["a"].frequency == pytest.approx(1.5795, rel=1e-4)
+
+
+def test_a_curve_is_not_complete_while_the_balance_has_a_stable_branch_that_it_has_not(monkeypatch):
+    """Where shooting leads to none of its motions, nor does the level of the forces."""
+    scene = fcm.load_scene(SCENES / "stuck_at_the_ends.toml")
+    monkeypatch.setattr(start, "_points", lambda *_: iter(()))
+    monkeypatch.setattr(branch, "raised", lambda *_: iter(()))
+    paths, missed = explore(OrbitProblem(scene))
+    assert paths and "a stable branch of the balance at 1.5794" in missed
+
+
+@pytest.mark.parametrize(
+    ("name", "dof", "amplitude", "frequency"),
+    [("closed_impact", "y", 6.9203, 1.772), ("equal_stops", "x1", 0.31653, 1.7695)],
+)
+def test_exact_curves_have_the_closed_branches_and_those_without_symmetry(name, dof, amplitude, frequency):
+    """The branch between 1.492 and 1.969 rad/s of an impact oscillator, at which marches settle at 1.6 rad/s
+    with 0.5009; the peak of two motions, mirror images of one another, between equal stops."""
+    scene = fcm.load_scene(SCENES.parents[1] / f"branches/scenes/{name}.toml")
+    (curve,) = trace_exact(scene).curves
+    assert curve.complete
+    assert curve.peaks[dof].amplitude == pytest.approx(amplitude, rel=1e-4)
+    assert curve.peaks[dof].frequency == pytest.approx(frequency, rel=1e-4)
+    if name == "closed_impact":
+        off, k = curve.frequency - 1.6, curve.stable == 1.0
+        near = np.flatnonzero((off[:-1] * off[1:] < 0.0) & k[:-1] & k[1:])
+        assert np.abs(curve.amplitude[near, 0] / 0.5009 - 1.0).min() < 2e-2
 
 
 def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_not():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from fcm.harmonic.outline import Outline
     from fcm.harmonic.system import System
 
+ACCURACY = 1e-2  # of the balance that exact motions begin near
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
@@ -47,15 +49,28 @@ def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArra
     return there and bool(np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME)
 
 
-def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, Iterator[Place]]]:
-    """The height of each end and top of a balance's branches, and guesses beside it, the nearest first."""
+def is_stable(found: Outline, z: FloatArray) -> bool:
+    """Whether small disturbances of a solution (unknown + 1,) of a balance die out."""
+    from fcm.harmonic.floquet import multipliers_of
+
+    of = multipliers_of(found.system, found.system.scene.frequency_range[1])
+    return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
+
+
+def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
+    """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
+    first."""
     from fcm.harmonic.beside import around, tops
 
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
         beside = [(top, around(even, top)) for top, even in tops(path, shown.amplitude)]
         for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
             guesses = (path.z[i] for i in points)
-            yield float(shown.amplitude[top].max()), _places(scene, found.system.harmonics, guesses)
+            yield (
+                float(shown.amplitude[top].max()),
+                path.z[top],
+                _places(scene, found.system.harmonics, guesses),
+            )
 
 
 def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArray]) -> Iterator[Place]:
@@ -64,17 +79,35 @@ def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArra
         yield float(z[-1]), computed_state(scene, harmonics, z)
 
 
-def first_balance(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
-    """The response of the balance of one harmonic, whose ends and tops may lead to other branches.
+def converged_balance(scene: Scene, apart: bool, look: Look) -> Iterator[Outline]:
+    """The response of the balance with every branch, whose ends and tops lead to those of the exact motion.
 
-    Of many contacts only where branches are known to be apart.
+    Of many contacts, for which that has one harmonic, only where branches are known to be apart.
     """
-    from fcm.harmonic.outline import outlined
+    from fcm.harmonic.rest import RestError
 
     whole = scene.whole()
-    many = len(whole.contacts) >= MANY
-    if whole.modal.frequency.all() and whole.contacts and (apart or not many):
-        yield outlined(_single(whole, look))
+    if not (whole.modal.frequency.all() and whole.contacts) or (len(whole.contacts) >= MANY and not apart):
+        return
+    with suppress(RestError):
+        yield every_balance(whole, look)
+
+
+def every_balance(whole: Scene, look: Look) -> Outline:
+    """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
+    with one harmonic."""
+    from fcm.branches.search import with_branching, with_isolas
+    from fcm.harmonic.choice import accurate
+    from fcm.harmonic.error import reported
+    from fcm.harmonic.outline import Outline, outlined
+
+    if len(whole.contacts) >= MANY:
+        return outlined(_single(whole, look))
+    found = accurate(_single(whole, look), ACCURACY)
+    system = found.system
+    traced = with_branching(system, with_isolas(system, found.traced))
+    shown = (reported(system, path) for path in traced.branches.paths[len(found.shown) :])
+    return Outline(system, traced, (*found.shown, *shown), found.seconds)
 
 
 def states_across(scene: Scene, frequencies: Sequence[float], look: Look) -> dict[float, list[State]]:

@@ -11,14 +11,14 @@ import numpy as np
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Branches, Follow
 from fcm.motion.errors import SimulationError
-from fcm.orbit.apart import first_balance, passes
+from fcm.orbit.apart import converged_balance, passes
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.raised import Raised, raised
 from fcm.orbit.restless import approached_there
 from fcm.orbit.sample import Sample, samples
-from fcm.orbit.start import along_balance, first_point, starts
+from fcm.orbit.start import AS_HIGH, along_balance, first_point, height_of, starts
 from fcm.scene.modal import UNITS
 from fcm.scene.model import FloatArray, Scene
 
@@ -109,15 +109,27 @@ def explore(
         all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step, along=along
     )
     paths = branches(found).paths
-    bounded = Bounded(look, most)
+    bounded, lacking = Bounded(look, most), list[tuple[float, float]]()
     if not sought:
-        paths = _with_others(problem, paths, apart, branches, bounded)
+        paths = _with_others(problem, paths, apart, branches, bounded, lacking)
     if _broken(paths) >= BROKEN:
         bounded.note(f"{BROKEN} that were followed break off")
     if not bounded.given_up:
         paths = _with(problem, paths, approached_there(problem, paths, look), branches)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
-    return list(paths), "; ".join([*(missed[end] for end in ends), *bounded.given_up])
+    lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
+    told = [f"a stable branch of the balance at {shown(scene, one)} led to no exact motion" for one in lost]
+    return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
+
+
+def _reaches(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
+    """Whether a path has motions as high as that where it passes a frequency [rad/s]."""
+    for path in paths:
+        off = path.parameter - omega
+        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0).tolist():
+            if max(height_of(problem, z) for z in path.z[i : i + 2]) >= AS_HIGH * height:
+                return True
+    return False
 
 
 def _with_others(
@@ -126,18 +138,20 @@ def _with_others(
     apart: bool,
     branches: Callable[..., Branches],
     bounded: Bounded,
+    lacking: list[tuple[float, float]],
 ) -> tuple[Path, ...]:
-    """Paths, and those of others that the balance of one harmonic and the level of the forces lead to.
+    """Paths, and those of others that the converged balance and the level of the forces lead to.
 
-    The level is not followed where each end and top of that balance leads to a motion as high, on a path that
-    is there. apart as of `first_balance`.
+    The level is not followed where each end and top of that balance leads to a motion as high. What led to
+    none is added to lacking, see `Along`. apart as of `converged_balance`.
     """
     scene, look = problem.scene, bounded.look
-    before, high = len(paths), True
-    for balance in bounded.each(first_balance(scene, apart, look)):
-        points, high = along_balance(problem, balance, bounded.outside)
-        paths = _with(problem, paths, points, branches)
-    if high and len(paths) == before:
+    high = True
+    for balance in bounded.each(converged_balance(scene, apart, look)):
+        along = along_balance(problem, balance, bounded.outside)
+        paths, high = _with(problem, paths, along.points, branches), along.alike
+        lacking += along.lacking
+    if high:
         return paths
 
     def there(omega: float) -> list[FloatArray]:

@@ -13,7 +13,7 @@ from fcm.continuation.newton import Newton
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
-from fcm.orbit.apart import Place, states_along
+from fcm.orbit.apart import Place, is_stable, states_along
 from fcm.orbit.damped import less_damped, more_damped
 from fcm.orbit.family import chosen
 from fcm.orbit.harmonic import balanced_states, computed_state
@@ -42,7 +42,7 @@ class Starts(NamedTuple):
     points: list[FloatArray]  # z, from which branches are followed
     missed: dict[float, str]  # of ends of the range why there is none
     sought: bool  # whether they are from anywhere in the range, as nothing led to one that was looked at
-    apart: bool  # whether the balance has more solutions than there are points: see `first_balance`
+    apart: bool  # whether the balance has more solutions than there are points: see `converged_balance`
 
 
 def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
@@ -80,30 +80,39 @@ def starts(problem: OrbitProblem, look: Look = without_end) -> Starts:
     return Starts(found or _anywhere(problem, look), at_ends, not found, apart)
 
 
-def along_balance(
-    problem: OrbitProblem, found: Outline, look: Look = without_end
-) -> tuple[list[FloatArray], bool]:
-    """Points beside the ends and tops of a balance's branches, and whether each is as high as there.
+class Along(NamedTuple):
+    """What the branches of a balance lead to: points, whether each is as high as there, and the frequencies
+    [rad/s] and heights of tops at which the balance is stable and nothing as high was found."""
 
-    The few harmonics that `starts` has, at its frequencies, need not lead there: some branches are closed, or
-    are so for the exact motion alone.
+    points: list[FloatArray]
+    alike: bool
+    lacking: list[tuple[float, float]]
+
+
+def along_balance(problem: OrbitProblem, found: Outline, look: Look = without_end) -> Along:
+    """Points beside the ends and tops of a balance's branches.
+
+    What `starts` has, at its frequencies, need not lead there: some branches are closed, or are so for the
+    exact motion alone.
     look is called now and then.
     """
-    points, alike = list[FloatArray](), True
-    for height, places in states_along(problem.scene, found):
+    points, alike, lacking = list[FloatArray](), True, list[tuple[float, float]]()
+    for height, top, places in states_along(problem.scene, found):
         there, high = list[tuple[float, FloatArray]](), False
         for place in islice(places, TRIED):
-            there += [(_height(problem, z), z) for z in _points(problem, place, look)]
-            high = bool(there) and there[-1][0] > AS_HIGH * height
+            there += [(height_of(problem, z), z) for z in _points(problem, place, look)]
+            high = bool(there) and there[-1][0] >= AS_HIGH * height
             if high:
                 break
         if there:  # some may lead to a lower branch
             _add(problem, points, max(there, key=lambda one: one[0])[1])
         alike = alike and high
-    return points, alike
+        if not high and is_stable(found, top):
+            lacking.append((float(top[-1]), height))
+    return Along(points, alike, lacking)
 
 
-def _height(problem: OrbitProblem, z: FloatArray) -> float:
+def height_of(problem: OrbitProblem, z: FloatArray) -> float:
     """The greatest amplitude of any degree of freedom."""
     shot = problem.shot(z)
     return 0.0 if shot is None else float(shot.amplitude.max())

@@ -1,6 +1,6 @@
 """Contacts that stick, or are open, all over a range: springs, or nothing, in their places.
 
-Which these are is foreseen by the balance with one harmonic. Whether they did is seen afterwards from the
+Which these are is foreseen by the converged balance. Whether they did is seen afterwards from the
 exact motion itself, at every point that was found: a contact that would have slipped, opened or closed in one
 of them is computed after all.
 """
@@ -15,10 +15,10 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Status
 from fcm.harmonic.rest import RestError
-from fcm.harmonic.system import System as Balanced
-from fcm.harmonic.trace import traced
 from fcm.motion.matrices import has_friction
 from fcm.motion.state import State
+from fcm.orbit.apart import every_balance
+from fcm.orbit.periodic import without_end
 from fcm.orbit.residual_friction import resting
 from fcm.orbit.shooting import Shot
 from fcm.reduction.sentences import named
@@ -36,16 +36,19 @@ STIFF = 100.0  # times the highest mode: a stiffer spring would lose digits that
 
 
 def foreseen(scene: Scene, look: Callable[[], None] | None = None) -> tuple[Held, ...]:
-    """The contacts that keep their state all along the balance with one harmonic.
+    """The contacts that keep their state all along every branch of the converged balance.
 
     look is called now and then.
     """
-    z = _balanced(scene, look)
+    z, harmonics = _balanced(scene, look)
     if not z.size:
         return ()
     theta = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
-    x = z[:, :-1].reshape(z.shape[0], len(scene.contacts), 6)
-    motion = x[:, :, :2, None] + x[:, :, 2::2, None] * np.cos(theta) - x[:, :, 3::2, None] * np.sin(theta)
+    x = z[:, :-1].reshape(z.shape[0], len(scene.contacts), -1)
+    motion = np.repeat(x[:, :, :2, None], ANGLES, axis=-1)
+    for i, h in enumerate(harmonics):
+        wave = x[:, :, 2 + 4 * i : 6 + 4 * i, None]
+        motion += wave[:, :, ::2] * np.cos(h * theta) - wave[:, :, 1::2] * np.sin(h * theta)
     found, rest = [], resting(scene)
     for i, contact in enumerate(scene.contacts):
         u, v = motion[:, i].swapaxes(0, 1)
@@ -55,18 +58,16 @@ def foreseen(scene: Scene, look: Callable[[], None] | None = None) -> tuple[Held
     return tuple(found)
 
 
-def _balanced(scene: Scene, look: Callable[[], None] | None) -> FloatArray:
-    """Points z of that balance (point, unknown + 1), without their errors; none where it is not complete."""
-    system = Balanced(scene, (1,))
-    system.work.look = look or system.work.look
+def _balanced(scene: Scene, look: Callable[[], None] | None) -> tuple[FloatArray, tuple[int, ...]]:
+    """Points z of that balance (point, unknown + 1), and its harmonics; none where it is not complete."""
     try:
-        branches = traced(system).branches
+        found = every_balance(scene, look or without_end)
     except RestError:
-        return np.zeros((0, 0))
+        return np.zeros((0, 0)), ()
+    branches = found.traced.branches
     if branches.status is not Status.COMPLETE or not branches.paths:
-        return np.zeros((0, 0))
-    points: FloatArray = np.concatenate([path.z for path in branches.paths])
-    return points
+        return np.zeros((0, 0)), ()
+    return np.concatenate([path.z for path in branches.paths]), found.system.harmonics
 
 
 def _keeps(place: int, contact: Contact, rest: float, u: FloatArray, v: FloatArray) -> Held | None:
