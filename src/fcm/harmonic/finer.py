@@ -4,8 +4,8 @@ The forces of the motion have all harmonics. What the structure answers to those
 
     X_h = -G(h omega) F_h,
 
-without its feedback on the forces, brings the motion nearer to the true one: the multipliers about it err five
-to ten times less, and what it changes of them says how wrong they may be.
+without its feedback on the forces, brings the motion nearer to the true one: the multipliers about it err
+five to ten times less, and what it changes of them says how wrong they may be.
 
 A structure that resists less than its contacts do, as the halves of a joint, would so answer with many times
 the motion itself: where |G K| > 1 at a port the contacts resist, too, as they do in the mean over the cycle,
@@ -202,7 +202,7 @@ class Finer:
             if (np.abs(G.diagonal()) * spring > 1.0).any():
                 GK = G * spring
                 GK[:, 1::2] += G[:, ::2] * coupling
-                X = np.linalg.solve(np.eye(len(G)) + GK, X)
+                X = np.asarray(np.linalg.solve(np.eye(len(G)) + GK, X), dtype=np.complex128)
         else:
             P = np.asarray(self.seen.shapes)
             c = np.asarray(self.seen.c_re)[h] + 1j * np.asarray(self.seen.c_im)[h]

@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import PORTS, Finer, beyond
+from fcm.harmonic.many_monodromy import ManyMonodromy
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.propagator import Propagator
 from fcm.harmonic.refined import Refined
@@ -32,6 +33,8 @@ from fcm.scene.model import FloatArray
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
 SMALL = 60  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
+MANY_CONTACTS = 12  # from which on a change of one's state is followed as that
+STIFF = 1e-3  # part of the contacts' displacement that a far mode gives, below which it is left out
 FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
 SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
 LIGHT = 200.0  # if it is also this many times what further harmonics add: light impacts make that of it
@@ -49,18 +52,17 @@ class Multipliers:
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
         self.contact = contact = np.zeros((self.contacts, 4))  # what all look at
+        self.fine: Monodromy | ManyMonodromy
+        self.plain: Monodromy | ManyMonodromy
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
         far = far_above(linear.natural, highest, harmonics)
-        soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
-        stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
         self.adrift = int(np.count_nonzero(linear.adrift))
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
         self.finer = Finer(seen, contact, harmonics)
-        carried = system.propagators.setdefault(stiffness.modes, Propagator())
-        self.fine = Monodromy(stiffness, Transitions(contact, finer), carried)
-        self.plain = Monodromy(stiffness, Transitions(contact, harmonics), carried)
+        followed = Transitions(contact, finer), Transitions(contact, harmonics)
+        self.fine, self.plain = _many(system, far, contact, followed) or _few(system, far, contact, followed)
         self.eigenvalues = Eigenvalues(SMALL)
         self.further: tuple[Refined, Multipliers] | None = None
         self.take(system)
@@ -145,7 +147,7 @@ class Multipliers:
         there = refined.beside(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)
 
-    def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
+    def _values(self, monodromy: Monodromy | ManyMonodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         monodromy.follow(omega)
         found = self._eigenvalues(monodromy.matrix())
@@ -176,6 +178,30 @@ class Multipliers:
         values = self._values(self.fine, omega) if transitions.moving else []
         transitions.yielding = True
         return UNKNOWN if values is None else Spectrum(values).verdict()
+
+
+def _few(
+    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, followed: tuple[Transitions, Transitions]
+) -> tuple[Monodromy, Monodromy]:
+    """Of transitions, those that are followed with each state of the contacts put together anew."""
+    linear = system.linear
+    soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
+    stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
+    carried = system.propagators.setdefault(stiffness.modes, Propagator())
+    fine, plain = (Monodromy(stiffness, one, carried) for one in followed)
+    return fine, plain
+
+
+def _many(
+    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, followed: tuple[Transitions, Transitions]
+) -> tuple[ManyMonodromy, ManyMonodromy] | None:
+    """Those of many contacts, without far modes that hardly yield beside them; None of few contacts."""
+    if len(contact) < MANY_CONTACTS:
+        return None
+    linear, kept = system.linear, ~far | (system.yields > STIFF)
+    shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
+    fine, plain = (ManyMonodromy(*shown, contact, one) for one in followed)
+    return fine, plain
 
 
 def far_above(natural: FloatArray, highest: float, harmonics: list[int]) -> npt.NDArray[np.bool_]:
