@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.multipliers import Multipliers
+from fcm.harmonic.spectrum import meeting
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
+from fcm.orbit import periodic
 from fcm.scene import scene_from_dict
 
 
@@ -48,3 +50,21 @@ def test_halves_held_together_by_contacts_have_the_further_harmonics_that_are_ba
     assert np.abs(balanced).max() > 0.0
     assert np.abs(added - balanced).max() < 0.5 * np.abs(balanced).max()
     assert few.verdict(only(scene, omega, (1,))).stable == 1.0
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
+def test_a_pair_near_minus_one_that_decays_where_it_meets_is_stable(harmonics):
+    """As the exact motion; contacts change their state too little to part the pair as fast as it decays."""
+    scene, omega = halves(2), 0.66
+    verdict = Multipliers(System(scene, harmonics), omega).verdict(only(scene, omega, harmonics))
+    assert verdict.before_flip < 0.4 and verdict.stable == 1.0
+    assert periodic(scene, omega).stable
+
+
+def test_how_far_a_pair_is_from_meeting_and_how_far_it_has_parted():
+    turned = 0.9 * np.exp(1j * (np.pi - 0.2))
+    apart, size = meeting([turned, turned.conjugate(), 0.9 + 0.1j, 0.9 - 0.1j])
+    assert (apart, size) == pytest.approx((2.0 - 2.0 * np.cos(0.2), np.log(0.9)))
+    apart, size = meeting([complex(-0.9 * np.exp(0.1)), complex(-0.9 * np.exp(-0.1)), 0.5 + 0j])
+    assert (apart, size) == pytest.approx((2.0 - 2.0 * np.cosh(0.1), np.log(0.9)))
+    assert np.isnan(meeting([0.9 + 0.1j, 0.9 - 0.1j, -0.1 + 0j])).all()

@@ -25,7 +25,7 @@ from fcm.harmonic.many_monodromy import ManyMonodromy
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.propagator import Propagator
 from fcm.harmonic.refined import Refined
-from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even
+from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
 from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
 from fcm.harmonic.transitions import Transitions
@@ -40,6 +40,11 @@ SAFE = 0.05  # decay in a period that truncation hardly makes a growth,
 LIGHT = 200.0  # if it is also this many times what further harmonics add: light impacts make that of it
 SLIGHT = 4.0  # the same of a growth that truncation may have made
 ROUNDING = 1e-6  # a shift that may be none: at a resonance, what slides without friction adds some of that
+TURNED = 1e-4  # relative change of the frequency at which it is seen how fast a pair turns towards -1,
+FURTHEST = 0.05  # the most until it meets there,
+MEETINGS = 8  # looks until then,
+MET = 1e-3  # the square of the angle [rad] that is then left,
+STABLE_BY = 1e-3  # and by how much it decays there
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
@@ -128,11 +133,47 @@ class Multipliers:
         if turning:
             return found
         if self.last:
-            return found._replace(stable=math.nan) if doubtful(found, fine, plain, 1.0) else found
+            doubt = self._doubtful(found, fine, plain, 1.0, float(z[-1]))
+            return found._replace(stable=math.nan) if doubt else found
         slight = 0.0 < found.growth < max(SAFE, SLIGHT * self.finer.shift)
-        if slight or doubtful(found, fine, plain, SLIGHT):
+        if slight or self._doubtful(found, fine, plain, SLIGHT, float(z[-1])):
             return self.refined(z, persistent=found.stable == 1.0) or found._replace(stable=math.nan)
         return found
+
+    def _doubtful(self, found: Verdict, fine: Spectrum, plain: Spectrum, times: float, omega: float) -> bool:
+        """As `doubtful`, but for a pair that decays also where it meets at -1."""
+        if not doubtful(found, fine, plain, times):
+            return False
+        return doubtful(found, fine, plain, times, False) or not self._meets_in_decay(found.values, omega)
+
+    def _meets_in_decay(self, values: Sequence[complex], omega: float) -> bool:
+        """Whether the pair nearest to -1, of values of the finer motion, decays where it meets there.
+
+        The same motion is taken at frequencies at which the pair comes to -1: as far as it parts there, the
+        changing contacts drive it.
+        """
+        at, seen = [0.0], [meeting(values)]
+        ahead = TURNED
+        for _ in range(MEETINGS):
+            there = self._values(self.fine, omega * (1.0 + ahead))
+            if there is None:
+                return False
+            at.append(ahead)
+            seen.append(meeting(there))
+            if not math.isfinite(seen[-1][0]):
+                return False
+            if len(at) > 2 and abs(seen[-1][0]) < MET:
+                break
+            roots = [math.copysign(math.sqrt(abs(apart)), apart) for apart, _ in seen[-2:]]
+            slope = (roots[1] - roots[0]) / (at[-1] - at[-2])
+            if slope == 0.0 or abs(roots[1] / slope) > FURTHEST:
+                return False
+            ahead = at[-1] - roots[1] / slope
+        else:
+            return False
+        bend, tilt, level = np.polyfit(at[-3:], [apart for apart, _ in seen[-3:]], 2)
+        least = level - 0.25 * tilt**2 / bend if bend > 0.0 else -math.inf
+        return bool(math.sqrt(max(-least, 0.0)) + seen[-1][1] < -STABLE_BY)
 
     def refined(self, z: FloatArray, persistent: bool) -> Verdict | None:
         """Of the solution with the harmonics of the finer motion, which was looked at last, balanced; None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from enum import Enum
 from typing import NamedTuple
 
@@ -135,12 +136,15 @@ def even(fine: Spectrum, plain: Spectrum, turning: bool = False) -> Verdict:
     return found
 
 
-def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> bool:
+def doubtful(
+    found: Verdict, fine: Spectrum, plain: Spectrum, times: float, meetings: cython.bint = True
+) -> bool:
     """Whether a verdict may be another once the motion has changed further, as it did from plain to fine.
 
     That is so where it is none, of a decay that is less than its change, of a growth that is less than some
-    times that, and where a pair turns so fast that it may meet at -1, of which one multiplier leaves by a
-    flip; and of what decays but for a multiplier, of either, that is taken to be far on the wrong side of 1.
+    times that, and (meetings) where a pair turns so fast that it may meet at -1, of which one multiplier
+    leaves by a flip; and of what decays but for a multiplier, of either, that is taken to be far on the wrong
+    side of 1.
     """
     if math.isnan(found.stable):
         return True
@@ -151,7 +155,24 @@ def doubtful(found: Verdict, fine: Spectrum, plain: Spectrum, times: float) -> b
     near, turned = to_flip(one), abs(to_flip(one) - to_flip(other))
     flips = near < min(max(FLIP_NEAR, turned), SHIFTED * turned)
     far = (fine.odd and abs(fine.nearest) > SURELY) or (plain.odd and abs(plain.nearest) > SURELY)
-    return flips or -found.growth < change or far
+    return (meetings and flips) or -found.growth < change or far
+
+
+def meeting(values: Sequence[complex]) -> tuple[float, float]:
+    """How far a pair is from -1, and the logarithm of its size; nan if there is none that is not small.
+
+    The pair's sum over its size, plus 2: the square of the angle that is left until both meet, or, less than
+    0, that of the logarithm by which they have parted along the axis. It changes evenly where they do so.
+    """
+    pairs = [value for value in values if value.imag > 0.0 and abs(value) > SMALL and value.real < 0.0]
+    axis = sorted(value.real for value in values if value.imag == 0.0 and value.real < 0.0)
+    if len(axis) > 1 and axis[0] * axis[1] > SMALL**2:
+        size = math.sqrt(axis[0] * axis[1])
+        return (axis[0] + axis[1]) / size + 2.0, math.log(size)
+    if not pairs:
+        return math.nan, math.nan
+    nearest = max(pairs, key=lambda value: -value.real / abs(value))
+    return 2.0 * nearest.real / abs(nearest) + 2.0, math.log(abs(nearest))
 
 
 def to_flip(verdict: Verdict) -> float:
