@@ -185,7 +185,11 @@ record.measure = measure"""
     done = program("respond", "scene.toml", "-o", "a.nc", "--json", before=code)
     assert done.returncode == 3 and "Traceback" not in done.err
     if not (left or finished):
-        assert done.err == "fcm: interrupted: the calculation was not completed\n" and done.out == ""
+        nothing = "fcm: warning: nothing is finished, so nothing is kept\n"
+        assert (
+            done.err == nothing + "fcm: interrupted: the calculation was not completed\n" and done.out == ""
+        )
+        assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
         return
     (history,) = json.loads(done.out)["histories"]
     assert history["cycles"] == finished and "interrupted" in history["reason"]

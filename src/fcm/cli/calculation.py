@@ -23,7 +23,7 @@ def calculated(messages: Messages, scene: Scene, asked: Asked, place: Any, keep:
     if asked.sensitivity:
         sensitivity.added(messages, response, scene)
     if scene.schedule and asked.level is None and asked.track is None:
-        response.histories = schedule.simulated(messages, scene, response)
+        response.histories = schedule.simulated(messages, scene, response, keep)
     return response
 
 
@@ -31,7 +31,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
     if asked.track is not None:
         return _tracked(messages, scene, asked, run)
     if asked.mode is not None:
-        return _mode(messages, scene, asked)
+        return _mode(messages, scene, asked, run["keep"])
     if scene.optimum is not None:
         table = _opened(asked.table)
         response = track.optimised(messages, scene, asked.method, {**run, **_balanced(asked), "table": table})
@@ -43,7 +43,7 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
         options["limit"] = None if asked.time_limit is None else math.inf  # that of the run is enough
         return exact.traced(messages, scene, asked.at, options)
     if asked.level is not None:
-        return _levels(messages, scene, asked)
+        return _levels(messages, scene, asked, run["keep"])
     if scene.has_range:
         return _traced(messages, scene, asked, {**run, **_balanced(asked)})
     from fcm.response import Response
@@ -72,24 +72,25 @@ def _tracked(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any]
     return track.tracked(messages, scene, asked.track, asked.over, (asked.low, asked.high), options)
 
 
-def _mode(messages: Messages, scene: Scene, asked: Asked) -> Response:
+def _mode(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Response:
     assert asked.mode is not None and asked.level is not None  # --mode needs --level
     chosen = {
         "harmonics": asked.harmonics,
         "accuracy": asked.accuracy,
         "force_levels": asked.force_levels or (1.0,),
         "progress": messages.progress,
+        "keep": keep,
     }
     response = nonlinear_mode.traced(scene, asked.mode, asked.level, chosen)
     messages.clear()
     return response
 
 
-def _levels(messages: Messages, scene: Scene, asked: Asked) -> Response:
+def _levels(messages: Messages, scene: Scene, asked: Asked, keep: Any) -> Response:
     from fcm.response.level import trace_levels
 
     assert asked.level is not None and asked.at is not None  # --level needs --at
-    chosen: dict[str, Any] = {"harmonics": asked.harmonics, "accuracy": asked.accuracy}
+    chosen: dict[str, Any] = {"harmonics": asked.harmonics, "accuracy": asked.accuracy, "keep": keep}
     response = trace_levels(scene, asked.at, asked.level, progress=messages.progress, **chosen)
     messages.clear()
     return response

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 OF_NO_USE = {  # with --mode, and why
     "method": "modes are followed by the balance",
     "table": "their forces are exact",
-    "resume": "nothing is kept of it",
     "tolerance": "nothing is left out",
     "keep_all": "nothing is left out",
     "history_csv": "no schedule is simulated",

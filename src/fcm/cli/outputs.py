@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from fcm import signals
 from fcm.cli import schedule, track
 from fcm.cli.curves import as_table
 from fcm.cli.files import alone
@@ -51,8 +52,9 @@ class Outputs:
             remove_stale(real(anchor))
             try:
                 yield self.checkpoint
-            except BaseException:
-                self._say_kept("what is finished is kept")
+            except BaseException as error:
+                nothing = "nothing is finished, so nothing is kept" if signals.interrupted(error) else ""
+                self._say_kept("what is finished is kept", nothing)
                 raise
 
     def write(self, response: Response, to_json: bool) -> dict[str, Any]:
@@ -67,7 +69,9 @@ class Outputs:
             text = json.dumps(result, indent=2, allow_nan=False) if to_json else _tables(result, response)
             click.echo(text)
         if response.interrupted:
-            self._say_kept("interrupted; what is finished is kept")
+            self._say_kept(
+                "interrupted; what is finished is kept", "interrupted; nothing is kept to go on from"
+            )
         elif self.checkpoint is not None:
             self.checkpoint.done()
         return result
@@ -101,9 +105,12 @@ class Outputs:
             part.wrote(path, points)
         self.messages.info(f"wrote {plain(path)}")
 
-    def _say_kept(self, what: str) -> None:
+    def _say_kept(self, what: str, nothing: str) -> None:
+        """Where the work is kept that can be gone on from; that there is none, if that is to be said."""
         if self.checkpoint is not None and self.checkpoint.resumable:
             self.messages.warning(f"{what} in {plain(self.checkpoint.path)}: continue with --resume")
+        elif nothing:
+            self.messages.warning(nothing)
 
 
 def _tables(result: dict[str, Any], response: Response) -> str:

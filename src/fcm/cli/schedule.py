@@ -16,6 +16,7 @@ from fcm.rotation import MOST_DOFS
 if TYPE_CHECKING:
     from fcm.motion import Histories
     from fcm.response import Response
+    from fcm.run import Checkpoint
     from fcm.scene.model import Scene
 
 Summary = Mapping[str, Any]  # one of the summary's "histories"
@@ -23,7 +24,7 @@ Summary = Mapping[str, Any]  # one of the summary's "histories"
 _MOST_CONTACTS = 3  # that fit beside the degrees of freedom on a line
 _OF_CURVES = {  # options that mean nothing without a range of frequencies
     "method": "--method", "table": "--table", "max_step": "--max-step", "jobs": "--jobs",
-    "resume": "--resume", "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
+    "tolerance": "--leave-out-tolerance", "keep_all": "--keep-all",
 }  # fmt: skip
 
 
@@ -45,15 +46,17 @@ def check_options(scene: Scene, history_csv: Path | None) -> None:
         )
 
 
-def simulated(messages: Messages, scene: Scene, response: Response) -> Histories:
+def simulated(messages: Messages, scene: Scene, response: Response, keep: Checkpoint | None) -> Histories:
     """The motion through the schedule, after the curves; an interruption does not take those away."""
-    from fcm.motion.histories import histories, not_begun
+    from fcm.motion.histories import not_begun
+    from fcm.response import scheduled
     from fcm.run.progress import part
 
     if response.interrupted:
         return not_begun(scene)
     try:
-        found = histories(scene, part(messages.progress, 0.5 if response.curves else 0.0, 1.0))
+        shown = part(messages.progress, 0.5 if response.curves else 0.0, 1.0)
+        found = scheduled.simulated(scene, shown, keep)
     except KeyboardInterrupt:
         if not response.curves:
             raise

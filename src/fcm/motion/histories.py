@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 from fcm.motion.errors import SimulationError
 from fcm.motion.plan import Plan
-from fcm.motion.record import INTERRUPTED, Record, record, unfinished
+from fcm.motion.record import INTERRUPTED, Passed, Record, record, unfinished
 from fcm.motion.run import Progress
 from fcm.scene.model import Scene
 
@@ -27,7 +29,20 @@ class Histories:
         return all(one.complete for one in self.records)
 
 
-def histories(scene: Scene, progress: Progress | None = None) -> Histories:
+class Kept(Protocol):
+    """What is kept of a run, by the number of the curve (`fcm.run.Results`)."""
+
+    finished: dict[int, list[Any]]  # one `Record`
+    states: dict[int, list[Any]]  # `Passed`, of the first phases
+
+    def add(self, number: int, results: list[Any], /) -> None:
+        """A curve is finished."""
+
+    def save(self, number: int, state: Any, /) -> None:
+        """A phase of a curve is."""
+
+
+def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None = None) -> Histories:
     """Simulate the schedule of a scene, for each combination of its swept values.
 
     Parameters
@@ -36,6 +51,8 @@ def histories(scene: Scene, progress: Progress | None = None) -> Histories:
         From `fcm.load_scene`, with a schedule.
     progress : optional
         Called now and then with the finished fraction and a text.
+    kept : optional
+        What an interrupted run has finished, and where what is finished goes.
 
     Raises
     ------
@@ -56,7 +73,7 @@ def histories(scene: Scene, progress: Progress | None = None) -> Histories:
     begin, curves, plan = time.perf_counter(), scene.each_curve(), _plan(scene)
     records: list[Record] = []
     for number, curve in enumerate(curves):
-        made = record(curve, plan, _share(progress, number, len(curves)))
+        made = _record(number, curve, plan, _share(progress, number, len(curves)), kept)
         records.append(made)
         if made.reason == INTERRUPTED:
             break
@@ -64,6 +81,20 @@ def histories(scene: Scene, progress: Progress | None = None) -> Histories:
         raise KeyboardInterrupt
     records += [unfinished(curve, plan) for curve in curves[len(records) :]]
     return Histories(scene, plan, records, time.perf_counter() - begin)
+
+
+def _record(number: int, curve: Scene, plan: Plan, progress: Progress | None, kept: Kept | None) -> Record:
+    """The record of a curve, from what is kept of it on."""
+    if kept is None:
+        return record(curve, plan, progress)
+    if number in kept.finished:
+        whole: Record = kept.finished[number][0]
+        return whole
+    passed: Sequence[Passed] = kept.states.get(number, ())
+    made = record(curve, plan, progress, passed, lambda one: kept.save(number, one))
+    if made.reason != INTERRUPTED:
+        kept.add(number, [made])
+    return made
 
 
 def _share(progress: Progress | None, number: int, count: int) -> Progress | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from array import array
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -85,11 +85,33 @@ class Record:
         return total([phase.energy for phase in self.phases])
 
 
-def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = None) -> Record:
+@dataclass(frozen=True)
+class Passed:
+    """What is reported of a whole phase, and the state at its end: the schedule can go on from there."""
+
+    measures: FloatArray  # (4, cycle, dof) amplitude, mean, greatest and least displacement
+    displacement: FloatArray  # (instant, dof)
+    state: ByteArray  # (instant, contact)
+    transitions: tuple[FloatArray, npt.NDArray[np.int16], ByteArray]  # times [s], contacts, states
+    letters: str  # the states of all contacts at the end
+    count: int  # transitions in all
+    states: tuple[str, ...]  # (contact,) of the last whole cycle
+    energy: Energy
+    end: State
+
+
+def record(
+    scene: Scene,
+    plan: Plan | None = None,
+    progress: Progress | None = None,
+    passed: Sequence[Passed] = (),
+    save: Callable[[Passed], None] | None = None,
+) -> Record:
     """Simulate the schedule of a scene, and keep what is reported of it.
 
     An interruption, contacts that chatter without end, or static loads that nothing holds, leave it
-    incomplete with a reason.
+    incomplete with a reason. It goes on after the phases that are passed, to the same record; every further
+    one but the last is saved.
 
     Examples
     --------
@@ -103,11 +125,15 @@ def record(scene: Scene, plan: Plan | None = None, progress: Progress | None = N
     recorder, reason = _Recorder(scene, plan), ""
     try:
         recorder.end = State.start(scene)
-        for number, phase in enumerate(scene.schedule):
+        for one in passed:
+            recorder.take(one)
+        for number, phase in list(enumerate(scene.schedule))[len(passed) :]:
             for cycle, end in cycles_from(System(scene, phase.frequency), phase.cycles, recorder.end):
                 recorder.add(number, cycle, end)
                 if progress is not None:
                     progress(recorder.done / plan.phase.size, f"phase {number + 1}, cycle {recorder.done}")
+            if save is not None and recorder.done < plan.phase.size:
+                save(recorder.passed())
     except KeyboardInterrupt:
         reason = INTERRUPTED
     except SimulationError as error:
@@ -134,6 +160,7 @@ class _Tally:
     """What is counted in a phase."""
 
     first: int  # its first cycle
+    kept: int  # transitions before it that are kept with their times
     energy: Energy = field(default_factory=lambda: total([]))
     transitions: int = 0
     states: tuple[str, ...] | None = None  # of each contact in the last whole cycle
@@ -178,7 +205,7 @@ class _Recorder:
         balance = energy(Motion(self.scene, (cycle,), end))
         self._sample(cycle)
         if phase == len(self.tallies):
-            self.tallies.append(_Tally(self.done))
+            self.tallies.append(_Tally(self.done, len(self.transitions.times)))
         tally = self.tallies[phase]
         tally.transitions += self.transitions.count(cycle, float(self.plan.start[self.done]))
         tally.energy = total([tally.energy, balance])
@@ -186,6 +213,38 @@ class _Recorder:
             tally.states = cycle.states
         self.measures[:, self.done] = found.amplitude, found.mean, found.greatest, found.least
         self.end, self.done = end, self.done + 1
+
+    def passed(self) -> Passed:
+        """The last phase, which is whole, and not the last of the schedule."""
+        tally, found = self.tallies[-1], self.transitions
+        cycles, instants = slice(tally.first, self.done), self._instants(tally.first, self.done)
+        times, contacts, states = (
+            values[tally.kept :] for values in (found.times, found.contacts, found.states)
+        )
+        return Passed(
+            self.measures[:, cycles].copy(), self.displacement[instants].copy(), self.state[instants].copy(),
+            (np.array(times), np.array(contacts, dtype=np.int16), np.array(states, dtype=np.int8)),
+            found.letters, tally.transitions, tally.states or (), tally.energy, self.end,
+        )  # fmt: skip
+
+    def take(self, passed: Passed) -> None:
+        """A phase that was simulated before."""
+        found, first = self.transitions, self.done
+        tally = _Tally(first, len(found.times), passed.energy, passed.count, passed.states)
+        self.tallies.append(tally)
+        self.end, self.done = passed.end, first + passed.measures.shape[1]
+        self.measures[:, first : self.done] = passed.measures
+        instants = self._instants(first, self.done)
+        self.displacement[instants], self.state[instants] = passed.displacement, passed.state
+        times, contacts, states = passed.transitions
+        found.times.extend(times.tolist())
+        found.contacts.extend(contacts.tolist())
+        found.states.extend(states.tolist())
+        found.letters = passed.letters
+
+    def _instants(self, first: int, end: int) -> slice:
+        """Those of the cycles from one to before another, which is not beyond the last."""
+        return slice(int(self.plan.first[first]), int(self.plan.first[end]))
 
     def _sample(self, cycle: Cycle) -> None:
         first, count = int(self.plan.first[self.done]), int(self.plan.sampled[self.done])

@@ -68,7 +68,7 @@ class Work:
 
 def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:
     """The first curves of a group that are finished already."""
-    fitting = [_fits(scene, curve) for scene, curve in zip(group, saved, strict=False)]
+    fitting = [fits(scene, curve) for scene, curve in zip(group, saved, strict=False)]
     return list(saved[: fitting.index(False) if False in fitting else len(fitting)])
 
 
@@ -89,16 +89,17 @@ def fit(groups: Sequence[Group], number: int, results: Any) -> bool:
     if not 0 <= number < len(groups) or not isinstance(results, list):
         return False
     group = groups[number]
-    return len(results) == len(group) and all(map(_fits, group, results))
+    return len(results) == len(group) and all(map(fits, group, results))
 
 
-def _fits(scene: Scene, curve: Any) -> bool:
+def fits(expected: Scene | Curve, curve: Any) -> bool:
+    """Whether what was read from a file can be the curve of a scene, or that of which this one is to be."""
     if not isinstance(curve, Curve) or vars(curve).keys() != {field.name for field in fields(Curve)}:
         return False
     arrays = [curve.frequency, *(getattr(curve, name) for name in _BY_POINT)]
     if not all(isinstance(array, np.ndarray) and array.ndim for array in arrays):
         return False
-    return curve.parameters == scene.parameters and len({array.shape[0] for array in arrays}) == 1
+    return curve.parameters == expected.parameters and len({array.shape[0] for array in arrays}) == 1
 
 
 def as_curve(scene: Scene, result: Curve | Lost | None, reason: str = "") -> Curve:

@@ -27,7 +27,7 @@ from fcm.harmonic.rest import RestError
 from fcm.harmonic.start import level_curve
 from fcm.harmonic.system import System
 from fcm.response.around import check_modes
-from fcm.response.groups import lost_curve
+from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
 from fcm.response.loose import loose
 from fcm.response.one_by_one import one_by_one
@@ -36,7 +36,7 @@ from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
-from fcm.run import Progress
+from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Scene
 from fcm.units import EXCITATION, UNIT, in_unit
@@ -53,13 +53,15 @@ def trace_levels(
     harmonics: int | Sequence[int] | None = None,
     accuracy: float | None = None,
     progress: Progress | None = None,
+    keep: Checkpoint | None = None,
 ) -> Response:
     """A curve for each curve of the scene and each frequency, in the scene's unit.
 
     The curve begins at rest and is followed through its folds until the level has left the span for good;
     with the harmonics given, or as many as an accuracy (relative) of its greatest amplitudes and of the
     motions at the level 1 takes; without either as the scene says. The errors are what the harmonics left out
-    would change at the same level, NaN where that cannot be told, as beside folds.
+    would change at the same level, NaN where that cannot be told, as beside folds. What is finished goes to
+    the checkpoint, and what that holds of it is not followed again.
 
     Raises
     ------
@@ -83,7 +85,10 @@ def trace_levels(
         (_without(curve, omega, NOT_BEGUN), partial(_level, curve, wanted, omega, span))
         for curve, omega in ways
     ]
-    curves = [without_rounding(one) for one in one_by_one(tasks, progress)]
+    mark = (
+        b"" if keep is None else fingerprint("level", wanted, tuple(at), span, anonymous(scene.each_curve()))
+    )
+    curves = [without_rounding(one) for one in one_by_one(tasks, progress, keep, mark)]
     response = Response.of(scene, curves, "level of the forces")
     response.seconds = time.perf_counter() - begin
     return response

@@ -16,7 +16,7 @@ from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_l
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
-from fcm.response.groups import lost_curve
+from fcm.response.groups import anonymous, lost_curve
 from fcm.response.incomplete import because, no_steady_states
 from fcm.response.loose import loose
 from fcm.response.one_by_one import one_by_one
@@ -25,7 +25,7 @@ from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
-from fcm.run import Progress
+from fcm.run import Checkpoint, Progress, fingerprint
 from fcm.scene.errors import counted
 from fcm.scene.model import FloatArray, Scene
 from fcm.units import in_unit
@@ -43,13 +43,15 @@ def trace_modes(
     accuracy: float | None = None,
     force_levels: Sequence[float] = (1.0,),
     progress: Progress | None = None,
+    keep: Checkpoint | None = None,
 ) -> Response:
     """The mode of each curve of the scene over a span of modal amplitudes.
 
     The modal amplitude is the root of sum_i |Q_i|^2 over the amplitudes Q_i of the fundamental in modes of
     mass 1: the root of X^H M X. Modes are counted from the lowest of the structure with its contacts as they
     are at rest, without rigid-body modes. Without harmonics or an accuracy, those of the scene. The response
-    near the resonance is predicted at some levels of the scene's forces.
+    near the resonance is predicted at some levels of the scene's forces. What is finished goes to the
+    checkpoint, and what that holds of it is not followed again.
 
     Raises
     ------
@@ -70,6 +72,8 @@ def trace_modes(
     begin = time.perf_counter()
     wanted = wanted_of(scene, harmonics, accuracy)
     levels = tuple(float(level) for level in force_levels)
+    of_curves = (number, span, wanted, levels, anonymous(scene.each_curve()))
+    mark = b"" if keep is None else fingerprint("mode", *of_curves)
     try:
         curves = one_by_one(
             [
@@ -77,6 +81,8 @@ def trace_modes(
                 for one in scene.each_curve()
             ],
             progress,
+            keep,
+            mark,
         )
     except ModeError as error:
         raise ResponseError(f"{scene.name}: {error}") from None

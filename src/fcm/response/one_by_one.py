@@ -5,18 +5,31 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from fcm.response.groups import KINDS, fits
 from fcm.results.result import INTERRUPTED, Curve
-from fcm.run import Progress
+from fcm.run import Checkpoint, Progress, Results
+
+Task = tuple[Curve, Callable[[], Curve]]  # the curve without points, and what follows it
 
 
-def one_by_one(tasks: Sequence[tuple[Curve, Callable[[], Curve]]], progress: Progress | None) -> list[Curve]:
+def one_by_one(
+    tasks: Sequence[Task],
+    progress: Progress | None,
+    keep: Checkpoint | None = None,
+    mark: bytes = b"",
+) -> list[Curve]:
     """What each task follows; of those that an interruption leaves out, the curve without points beside it.
+
+    Whole curves are kept, and those that are kept already are not followed again.
+
+    mark : digest of all that decides the results.
 
     Raises
     ------
     KeyboardInterrupt
         If no curve is finished then.
     """
+    kept = Results() if keep is None else keep.results(mark, KINDS, lambda i, found: _fit(tasks, i, found))
     curves: list[Curve] = []
     for i, (none, followed) in enumerate(tasks):
         if progress is not None:
@@ -24,10 +37,23 @@ def one_by_one(tasks: Sequence[tuple[Curve, Callable[[], Curve]]], progress: Pro
         if curves and curves[-1].reason.startswith(INTERRUPTED):
             curves.append(none)
             continue
+        if i in kept.finished:
+            curves += kept.finished[i]
+            continue
         try:
             curves.append(followed())
+            if not curves[-1].reason.startswith(INTERRUPTED):
+                kept.add(i, [curves[-1]])
         except KeyboardInterrupt:
             if not curves:
                 raise
-            curves.append(replace(none, reason=f"{INTERRUPTED} at the start"))
+            if len(curves) == i:
+                curves.append(replace(none, reason=f"{INTERRUPTED} at the start"))
     return curves
+
+
+def _fit(tasks: Sequence[Task], number: int, results: object) -> bool:
+    """Whether results that were read from a file can be the curve of the task with this number."""
+    if not 0 <= number < len(tasks) or not isinstance(results, list) or len(results) != 1:
+        return False
+    return fits(tasks[number][0], results[0])

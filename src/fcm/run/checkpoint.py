@@ -127,10 +127,10 @@ class Checkpoint:
         self.close()
 
     def close(self) -> None:
-        """Let go of the file; one that holds nothing is removed."""
+        """Let go of the file; one that holds no work is removed."""
         if self._file < 0:
             return
-        if (self.spent or self.empty) and same(self._file, self.path):
+        if (self.spent or not self.resumable) and same(self._file, self.path):
             self.path.unlink(missing_ok=True)
         os.close(self._file)
         self._file = -1
@@ -140,11 +140,6 @@ class Checkpoint:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    @property
-    def empty(self) -> bool:
-        """Whether it holds nothing that is whole."""
-        return next(whole(self._file, os.fstat(self._file).st_size, LENGTH), None) is None
 
     @property
     def resumable(self) -> bool:

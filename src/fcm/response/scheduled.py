@@ -1,0 +1,47 @@
+"""The schedule of a scene simulated, and what is finished of it kept."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fcm.motion import Energy, Histories, State, histories
+from fcm.motion.record import Passed, PhaseResult, Record
+from fcm.response.groups import anonymous
+from fcm.run import Checkpoint, Progress, fingerprint
+from fcm.scene.model import Scene
+
+_KINDS = (Record, PhaseResult, Passed, State, Energy)  # what is kept consists of these
+
+
+def simulated(scene: Scene, progress: Progress | None = None, keep: Checkpoint | None = None) -> Histories:
+    """The motion through the schedule for each curve of a scene.
+
+    Whole curves, and of the one at work whole phases, go to the checkpoint; what that holds of them is not
+    simulated again.
+
+    Raises
+    ------
+    SimulationError
+        If the scene has no schedule.
+    KeyboardInterrupt
+        If it is interrupted before its first cycle is finished; later, what is finished is returned.
+    """
+    if keep is None:
+        return histories(scene, progress)
+    curves, phases = scene.each_curve(), len(scene.schedule)
+    mark = fingerprint("schedule", anonymous(curves))
+    kept = keep.results(mark, _KINDS, lambda number, found: _fit(curves, number, found))
+    kept.states = {number: found for number, found in kept.states.items() if _begun(found, phases)}
+    return histories(scene, progress, kept)
+
+
+def _fit(curves: tuple[Scene, ...], number: int, found: Any) -> bool:
+    """Whether what was read from a file can be the record of the curve with this number."""
+    if not 0 <= number < len(curves) or not isinstance(found, list) or len(found) != 1:
+        return False
+    return isinstance(found[0], Record) and found[0].parameters == curves[number].parameters
+
+
+def _begun(found: list[Any], phases: int) -> bool:
+    """Whether what was read from a file can be the first phases of a curve."""
+    return len(found) < phases and all(isinstance(one, Passed) for one in found)
