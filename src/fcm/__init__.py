@@ -18,6 +18,8 @@ if TYPE_CHECKING:
         periodic_forces,
         periodic_gradients,
         periodic_loop,
+        planar_forces,
+        planar_gradients,
     )
     from fcm.response import respond
     from fcm.scene import load_scene
@@ -36,6 +38,8 @@ _HOME = {
     "periodic_forces": "contact",
     "periodic_gradients": "contact",
     "periodic_loop": "contact",
+    "planar_forces": "contact",
+    "planar_gradients": "contact",
     "respond": "response",
 }
 
@@ -50,6 +54,8 @@ __all__ = [
     "periodic_forces",
     "periodic_gradients",
     "periodic_loop",
+    "planar_forces",
+    "planar_gradients",
     "respond",
 ]
 

@@ -15,11 +15,13 @@ if TYPE_CHECKING:
     from fcm.contact.normal import normal_coefficients, normal_gradients
     from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
     from fcm.contact.periodic.loop import PeriodicLoop, periodic_loop
+    from fcm.contact.plane.coefficients import PlanarGradients, planar_forces, planar_gradients
 
 __all__ = [
     "Loop",
     "PeriodicGradients",
     "PeriodicLoop",
+    "PlanarGradients",
     "fourier_coefficients",
     "fourier_gradients",
     "hysteresis_loop",
@@ -28,12 +30,15 @@ __all__ = [
     "periodic_forces",
     "periodic_gradients",
     "periodic_loop",
+    "planar_forces",
+    "planar_gradients",
 ]
 
 _HOME = {
     "Loop": "loop",
     "PeriodicGradients": "periodic.coefficients",
     "PeriodicLoop": "periodic.loop",
+    "PlanarGradients": "plane.coefficients",
     "fourier_coefficients": "fourier",
     "fourier_gradients": "fourier",
     "hysteresis_loop": "loop",
@@ -42,6 +47,8 @@ _HOME = {
     "periodic_forces": "periodic.coefficients",
     "periodic_gradients": "periodic.coefficients",
     "periodic_loop": "periodic.loop",
+    "planar_forces": "plane.coefficients",
+    "planar_gradients": "plane.coefficients",
 }
 
 __getattr__ = on_demand(__name__, _HOME)

@@ -94,7 +94,7 @@ class Motion(Nodes):
         self.scale = max(k_u * motion, mu * self.load_scale, FAINT * k_u * fabs(x[first]), LEAST)
         if not (isfinite(self.scale) and isfinite(self.preload) and isfinite(k_u) and isfinite(k_v)):
             return UNKNOWN
-        self.ratio = mu * (self.load_scale / self.scale)
+        self.ratio = mu * (self.load_scale / self.scale) if mu > 0.0 else 0.0
         self.fill(x, first + 2, k_u, k_v)
         self.take_nodes(self.moving)
         self.mean[LOAD] = self.preload / self.load_scale

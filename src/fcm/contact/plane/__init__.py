@@ -1,0 +1,1 @@
+"""A contact that slides in a plane, over any periodic motion: kernels, and what Python calls."""

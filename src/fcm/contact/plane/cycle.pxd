@@ -1,0 +1,19 @@
+from fcm.contact.periodic.crossings cimport Crossings
+from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.resting cimport Resting
+from fcm.contact.plane.slider cimport Slider
+
+cdef int STUCK, UNSOLVED
+
+cdef class Cycle:
+    cdef readonly PlaneMotion motion
+    cdef readonly Slider slider
+    cdef readonly Resting resting
+    cdef readonly Crossings crossings
+    cdef readonly int kind, behaviour, periods
+    cdef double[::1] cut
+    cdef int[::1] cut_kind
+    cdef int solve(self, int behaviour, double s_x, double s_y, bint gradient) noexcept nogil
+    cdef int opening(self, bint gradient) noexcept nogil
+    cdef int closed(self, bint gradient) noexcept nogil
+    cdef double period(self, double begin, double w_x, double w_y) noexcept nogil

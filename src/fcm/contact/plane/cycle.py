@@ -1,0 +1,199 @@
+"""Kernel: one steady cycle of a contact in its plane, its forces summed.
+
+A contact that opens has forgotten everything when it closes again. One that does not open remembers where its
+slider was a period ago: the steady cycle is a fixed point of the map P of that place over a period, which no
+two places leave farther apart than they were. Newton's method finds it, with the derivative of P that comes
+with the slip; where that does not help, a period more is taken as it is.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs, hypot
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
+    from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
+    from cython.cimports.fcm.contact.plane.resting import Resting
+    from cython.cimports.fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
+else:
+    from fcm.contact.periodic.motion import CLOSED, LOAD, MIXED, OPEN, UNKNOWN
+    from fcm.contact.plane.motion import SCAN, PlaneMotion
+    from fcm.contact.plane.resting import Resting
+    from fcm.contact.plane.slider import SEPARATION, SLIP, STICK, Slider
+
+from fcm.contact.periodic.crossings import Crossings
+
+STUCK = cython.declare(cython.int, 4)  # of a whole cycle, beside OPEN, MIXED and UNKNOWN
+UNSOLVED = cython.declare(cython.int, 5)
+
+TWO_PI = cython.declare(cython.double, 6.283185307179586)
+EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
+PERIODS = cython.declare(cython.int, 200)
+CLOSES = cython.declare(cython.int, 0)
+OPENS = cython.declare(cython.int, 1)
+
+
+@cython.cclass
+class Cycle:
+    """The steady cycle of a motion; its pieces are those of `slider`, its place of rest that of `resting`.
+
+    Attributes
+    ----------
+    kind
+        OPEN, STUCK, MIXED, UNKNOWN, or UNSOLVED where no steady cycle was found.
+    periods
+        How many were gone through for it.
+    """
+
+    def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
+        self.motion = motion
+        self.slider = Slider(motion, outputs, most_panels)
+        self.resting = Resting(motion)
+        self.crossings = Crossings(motion.normal)
+        self.cut = np.zeros(self.crossings.capacity)
+        self.cut_kind = np.zeros(self.crossings.capacity, dtype=np.intc)
+        self.kind = self.behaviour = UNKNOWN
+        self.periods = 0
+
+    def solve(self, behaviour: cython.int, s_x: float, s_y: float, gradient: bool) -> cython.int:
+        """The cycle of the motion that is loaded, of a slider that began at a place, from the means of u."""
+        i: cython.int
+        j: cython.int
+        self.periods = self.slider.pieces = self.slider.panels = 0
+        self.slider.failed = False
+        self.behaviour = self.kind = behaviour
+        self.slider.theta = self.slider.w_x = self.slider.w_y = 0.0
+        if behaviour == UNKNOWN:
+            return UNKNOWN
+        self.slider.sums.begin()
+        if behaviour == MIXED:
+            self.motion.normal.sample()
+            self.crossings.begin()
+            self.crossings.search(LOAD, CLOSES, OPENS)
+            if self.crossings.count < 2:
+                behaviour = CLOSED if self.crossings.sign > 0 else OPEN
+        self.behaviour = behaviour
+        if behaviour == OPEN:
+            self.slider.add(SEPARATION)
+            self.kind = OPEN
+            return OPEN
+        if behaviour == CLOSED:
+            self.slider.sums.contact(0.0, TWO_PI)
+            if not self.motion.rubs():
+                self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
+                self.slider.add(SLIP)
+                self.kind = MIXED
+            elif self.resting.stays(s_x, s_y):
+                self.slider.w_x, self.slider.w_y = self.resting.w_x, self.resting.w_y
+                self.slider.add(STICK)
+                self.kind = STUCK
+            else:
+                self.kind = self.closed(gradient)
+            return self.kind
+        for i in range(self.crossings.count):
+            angle: float = self.crossings.angle[i]
+            j = i
+            while j > 0 and self.cut[j - 1] > angle:
+                self.cut[j], self.cut_kind[j] = self.cut[j - 1], self.cut_kind[j - 1]
+                j -= 1
+            self.cut[j], self.cut_kind[j] = angle, self.crossings.kind[i]
+        self.kind = self.opening(gradient)
+        return self.kind
+
+    def opening(self, gradient: bool) -> cython.int:
+        """From the first closing to the last opening."""
+        i: cython.int
+        at: cython.int
+        turn: float = 0.0
+        count: cython.int = self.crossings.count
+        first: cython.int = 0
+        while self.cut_kind[first] != CLOSES:
+            first += 1
+        self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
+        self.slider.derivatives.take(2, self.slider.derivatives.unknowns)
+        at = first
+        for i in range(count // 2):  # noqa: B007
+            begin: float = self.cut[at] + turn
+            at += 1
+            if at == count:
+                at, turn = 0, TWO_PI
+            end: float = self.cut[at] + turn
+            at += 1
+            if at == count:
+                at, turn = 0, TWO_PI
+            self.slider.sums.contact(begin, end)
+            if self.motion.rubs():
+                self.slider.close(begin)
+                self.slider.advance(end, True)
+            else:
+                self.slider.theta = begin
+                self.slider.add(SLIP)
+            self.slider.theta = end
+            self.slider.add(SEPARATION)
+        return UNSOLVED if self.slider.failed else MIXED
+
+    def closed(self, gradient: bool) -> cython.int:
+        """A period from the angle at which the disc is least, over and over."""
+        i: cython.int
+        j: cython.int
+        begin: float = 0.0
+        least: float = 1e300
+        self.resting.sample()
+        for j in range(self.resting.nodes):
+            if self.resting.at[2, j] < least:
+                least = self.resting.at[2, j]
+                begin = self.resting.step * (j + 0.1171)
+        self.motion.place(SCAN, begin)
+        speed: float = hypot(self.motion.value[SCAN, 3], self.motion.value[SCAN, 4])
+        r: float = max(self.motion.value[SCAN, 2], 0.0)
+        r = r / speed if speed > 0.0 else 0.0
+        w_x: float = self.motion.value[SCAN, 0] - r * self.motion.value[SCAN, 3]
+        w_y: float = self.motion.value[SCAN, 1] - r * self.motion.value[SCAN, 4]
+        change: float
+        before: float = 1e300
+        fine: float = 1e-14 * min(self.motion.reach, self.motion.size)
+        rounding: float = 4.0 * EPSILON * self.motion.size
+        self.slider.gathering, self.slider.varying, self.slider.gradient = False, True, False
+        self.slider.derivatives.take(0, 2)
+        for i in range(PERIODS):
+            self.periods = i + 1
+            change = self.period(begin, w_x, w_y)
+            if self.slider.failed:
+                return UNSOLVED
+            x: float = self.slider.w_x - w_x
+            y: float = self.slider.w_y - w_y
+            if change <= fine + rounding:
+                w_x, w_y = self.slider.w_x, self.slider.w_y
+                break
+            a: float = 1.0 - self.slider.derivatives.w_x[0]
+            b: float = -self.slider.derivatives.w_x[1]
+            c: float = -self.slider.derivatives.w_y[0]
+            d: float = 1.0 - self.slider.derivatives.w_y[1]
+            by: float = a * d - b * c
+            if change < 0.5 * before and fabs(by) > 1e-12:
+                before = change
+                w_x, w_y = w_x + (d * x - b * y) / by, w_y + (a * y - c * x) / by
+                # the next change is of the square of this one
+                if change * change < 0.01 * fine * self.motion.reach * by * by:
+                    break
+            else:
+                before = 2.0 * change if change < before else 1e300
+                w_x, w_y = self.slider.w_x, self.slider.w_y
+        else:
+            return UNSOLVED
+        self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
+        self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
+        self.period(begin, w_x, w_y)
+        return UNSOLVED if self.slider.failed else MIXED
+
+    def period(self, begin: float, w_x: float, w_y: float) -> float:
+        """Once around from a place of the slider; how far it is from there at the end."""
+        self.slider.pieces = self.slider.panels = 0
+        if self.slider.varying:
+            self.slider.derivatives.start()
+        self.slider.enter(begin, w_x, w_y)
+        self.slider.advance(begin + TWO_PI, False)
+        moved: float = hypot(self.slider.w_x - w_x, self.slider.w_y - w_y)
+        return moved

@@ -1,0 +1,35 @@
+from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.panel cimport Panel
+from fcm.contact.plane.sums cimport Sums
+from fcm.contact.plane.derivatives cimport Derivatives
+
+cdef int STICK, SLIP, SEPARATION
+
+cdef class Slider:
+    cdef readonly PlaneMotion motion
+    cdef readonly Panel panel
+    cdef readonly Sums sums
+    cdef readonly Derivatives derivatives
+    cdef readonly int pieces, capacity, panels, most_panels
+    cdef readonly int[::1] state
+    cdef readonly double[::1] begin, rest_x, rest_y
+    cdef readonly double[:, ::1] record
+    cdef readonly double theta, w_x, w_y, e_x, e_y
+    cdef readonly double longest
+    cdef double next_length, gap, gap_slope, noise, stalled, first_step
+    cdef public double tolerance
+    cdef readonly bint sliding, varying, gathering, gradient, failed
+    cdef void add(self, int state) noexcept nogil
+    cdef void enter(self, double theta, double w_x, double w_y) noexcept nogil
+    cdef void close(self, double theta) noexcept nogil
+    cdef void advance(self, double end, bint opens) noexcept nogil
+    cdef void slide(self, double end, bint opens) noexcept nogil
+    cdef double realign(self, double push) noexcept nogil
+    cdef void accept(self) noexcept nogil
+    cdef void halt(self) noexcept nogil
+    cdef void hold(self, double end) noexcept nogil
+    cdef double push(self) noexcept nogil
+    cdef double first_length(self) noexcept nogil
+    cdef void measure(self, double theta) noexcept nogil
+    cdef void release(self, double begin, double theta) noexcept nogil
+    cdef double meet(self, double low, double high) noexcept nogil

@@ -1,0 +1,403 @@
+"""Kernel: the slider of a contact in its plane, from an angle on: it rests, or is pushed, until it opens.
+
+A resting slider is met by its disc at a root of g = |U - W|^2 - R^2, a trigonometric polynomial. Its values
+and slopes at both ends of a step, and a bound of its fourth derivative, prove that there is none between; a
+step that proves nothing is halved. A slip is a chain of panels, each as long as its polynomial resolves; it
+ends where lambda falls to zero.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs, hypot
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.plane.derivatives import Derivatives
+    from cython.cimports.fcm.contact.plane.motion import SCAN, PlaneMotion
+    from cython.cimports.fcm.contact.plane.panel import Panel
+    from cython.cimports.fcm.contact.plane.sums import Sums
+else:
+    from fcm.contact.plane.derivatives import Derivatives
+    from fcm.contact.plane.motion import SCAN, PlaneMotion
+    from fcm.contact.plane.panel import Panel
+    from fcm.contact.plane.sums import Sums
+
+STICK = cython.declare(cython.int, 0)  # states
+SLIP = cython.declare(cython.int, 1)
+SEPARATION = cython.declare(cython.int, 2)
+
+EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
+VALUE_ERROR = cython.declare(cython.double, 1.0 / 384.0)  # of a cubic, over step**4 and its fourth derivative
+SLOPE_ERROR = cython.declare(cython.double, 3.0**0.5 / 216.0)  # of its slope, over step**3
+SHORTEST = cython.declare(cython.double, 1e-13)  # [rad] of a step, or of a slip
+FIRST_STEP = cython.declare(
+    cython.double, 1e-8
+)  # [rad] at least, from the start of a stick; doubled while no slip follows it
+ON_EDGE = cython.declare(cython.double, 1e-12)  # of the square of the radius, by which g is below zero
+NEGLIGIBLE = cython.declare(cython.double, 1e-10)  # [rad] before it opens: the force there adds nothing
+NOTHING = cython.declare(cython.double, 1e-12)  # of its bound, a radius that is none
+SHORT = cython.declare(cython.double, 10.0)  # times the length, where the load is small: of derivatives
+RESOLVED = cython.declare(cython.double, 4.0)  # [rad] of the highest exp(i m theta), integrated to 1e-12
+SHRINK = cython.declare(cython.double, 0.2)  # factors of the next length of a panel
+GROW = cython.declare(cython.double, 2.5)
+SAFETY = cython.declare(cython.double, 0.85)
+
+
+@cython.cclass
+class Slider:
+    """The pieces of a cycle in order, up to `pieces`, and the slider at the present angle.
+
+    Attributes
+    ----------
+    state, begin, rest_x, rest_y
+        Of a piece: STICK, SLIP or SEPARATION, the angle at which it begins, and where the slider rests then.
+    theta, sliding, w_x, w_y, e_x, e_y
+        The present angle; whether it slips; where it rests if it does not, else its direction.
+    longest
+        Of a panel [rad], so that Radau's rule integrates the harmonics.
+    tolerance
+        What the last coefficient of a panel may be, times the radius over its bound, or the length.
+    varying, gathering, gradient
+        Whether derivatives are carried along, the forces summed, and their Jacobian.
+    record (panel, 4 + s), panels
+        Of each panel while forces are summed: angle, length, direction at the start, t at the nodes.
+    failed
+        Whether a slip or the pieces came to no end.
+    """
+
+    def __init__(self, motion: PlaneMotion, outputs: list[int], most_panels: int) -> None:
+        self.motion = motion
+        self.panel = Panel(motion)
+        self.sums = Sums(motion, max(outputs, default=0))
+        self.derivatives = Derivatives(self.panel, self.sums, outputs)
+        self.capacity = 64 + 32 * max(motion.highest, 1)
+        self.state = np.zeros(self.capacity, dtype=np.intc)
+        self.begin, self.rest_x, self.rest_y = np.zeros((3, self.capacity))
+        self.record, self.most_panels = np.zeros((most_panels, 4 + motion.stages)), most_panels
+        self.pieces = self.panels = 0
+        self.theta = self.w_x = self.w_y = self.e_x = self.e_y = self.next_length = 0.0
+        self.gap = self.gap_slope = self.noise = self.stalled = 0.0
+        self.first_step = FIRST_STEP
+        self.tolerance = 1e-8
+        self.longest = RESOLVED / max(self.sums.highest, 1)
+        self.sliding = self.varying = self.gathering = self.gradient = self.failed = False
+
+    def add(self, state: cython.int) -> None:
+        """The next piece, unless it goes on with the last."""
+        i: cython.int = self.pieces
+        if i > 0 and self.state[i - 1] == state:
+            return
+        if i == self.capacity:
+            self.failed = True
+            return
+        self.state[i], self.begin[i] = state, self.theta
+        self.rest_x[i], self.rest_y[i] = self.w_x, self.w_y
+        self.pieces += 1
+
+    def enter(self, theta: float, w_x: float, w_y: float) -> None:
+        """Begin at an angle with a slider at a place, which the disc may hold elsewhere."""
+        self.theta, self.w_x, self.w_y, self.stalled = theta, w_x, w_y, -1e300
+        self.measure(theta)
+        d_x: float = self.motion.value[SCAN, 0] - w_x
+        d_y: float = self.motion.value[SCAN, 1] - w_y
+        d: float = hypot(d_x, d_y)
+        r: float = max(self.motion.value[SCAN, 2], 0.0)
+        self.sliding = False
+        if d < r * (1.0 - 4.0 * EPSILON) or d == 0.0:
+            return
+        self.e_x, self.e_y = d_x / d, d_y / d
+        if self.push() > 0.0 and r > 0.0:
+            self.sliding = True
+            self.next_length = self.first_length()
+            if self.varying:
+                self.derivatives.slide(self.e_x, self.e_y)
+        else:
+            self.w_x = self.motion.value[SCAN, 0] - r * self.e_x
+            self.w_y = self.motion.value[SCAN, 1] - r * self.e_y
+
+    def close(self, theta: float) -> None:
+        """The contact closes at an angle: it sticks, or slips at once along the motion if that is faster."""
+        self.theta, self.stalled = theta, -1e300
+        self.motion.place(SCAN, theta)
+        self.w_x, self.w_y = self.motion.value[SCAN, 0], self.motion.value[SCAN, 1]
+        x_1: float = self.motion.value[SCAN, 3]
+        y_1: float = self.motion.value[SCAN, 4]
+        speed: float = hypot(x_1, y_1)
+        r_1: float = max(self.motion.value[SCAN, 5], 0.0)
+        rounding: float = 8.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
+        self.sliding = speed > r_1 + rounding
+        if not self.sliding:
+            if self.varying:
+                self.derivatives.close()
+            return
+        self.e_x, self.e_y = x_1 / speed, y_1 / speed
+        self.motion.bend(SCAN)
+        rate: float = self.e_x * self.motion.value[SCAN, 7] - self.e_y * self.motion.value[SCAN, 6]
+        rate /= r_1 + speed
+        self.next_length = 1.0 / max(self.motion.highest, 1)
+        if self.varying:
+            self.derivatives.close_sliding(self.e_x, self.e_y, rate)
+
+    def push(self) -> float:
+        """lambda at the angle in SCAN."""
+        along: float = self.e_x * self.motion.value[SCAN, 3] + self.e_y * self.motion.value[SCAN, 4]
+        push: float = along - self.motion.value[SCAN, 5]
+        return push
+
+    def first_length(self) -> float:
+        """About how long the first panel of a slip can be, from the angle in SCAN on."""
+        x_1: float = self.motion.value[SCAN, 3]
+        y_1: float = self.motion.value[SCAN, 4]
+        across: float = fabs(self.e_x * y_1 - self.e_y * x_1)
+        turning: float = max(across, 0.1 * hypot(x_1, y_1))
+        length: float = 1.5 / max(self.motion.highest, 1)
+        r: float = max(self.motion.value[SCAN, 2], 1e-12 * self.motion.reach)
+        return min(length, 1.5 * r / turning) if turning > 0.0 else length
+
+    def advance(self, end: float, opens: bool) -> None:
+        """To an angle, at which the contact opens or does not."""
+        while self.theta < end and not self.failed:
+            if self.sliding:
+                self.slide(end, opens)
+            else:
+                self.hold(end)
+        if self.sliding and not opens:
+            self.halt()
+
+    def slide(self, end: float, opens: bool) -> None:
+        """Slip until lambda vanishes, or to an angle."""
+        begin: float = self.theta
+        length: float
+        left: float
+        rest: float
+        part: float
+        before: cython.int = self.pieces
+        tries: cython.int
+        self.add(SLIP)
+        self.motion.place(SCAN, begin)
+        push: float = self.push()
+        r: float = self.motion.value[SCAN, 2]
+        while self.theta < end and not self.failed:
+            if r <= NOTHING * self.motion.reach:
+                push = self.realign(push)
+            left = end - self.theta
+            if left < (NEGLIGIBLE if opens else SHORTEST):
+                self.theta = end
+                return
+            length = min(self.next_length, left, self.longest)
+            if length > 0.6 * left and length < left:
+                length = 0.6 * left
+            for tries in range(200):  # noqa: B007
+                rest = 1e300
+                if self.panel.solve(self.theta, length, self.e_x, self.e_y):
+                    rest = self.panel.rest()
+                    rest *= max(
+                        max(r, self.motion.value[self.panel.stages, 2]) / self.motion.reach,
+                        min(SHORT * length, 1.0),
+                    )
+                    if rest <= self.tolerance:
+                        break
+                part = (self.tolerance / rest) ** (1.0 / self.panel.stages) if rest < 1e300 else 0.0
+                length *= min(max(SAFETY * part, SHRINK), 0.7)
+            else:
+                self.failed = True
+                return
+            part = (self.tolerance / max(rest, 1e-300)) ** (1.0 / self.panel.stages)
+            self.next_length = length * min(max(SAFETY * part, SHRINK), GROW)
+            self.panel.push[0] = push
+            part = self.panel.end_of_slip()
+            if part <= 1.0:
+                if part * length > SHORTEST:
+                    if not self.panel.solve(self.theta, part * length, self.e_x, self.e_y):
+                        self.next_length = 0.5 * part * length
+                        continue
+                    self.accept()
+                elif self.theta == begin:
+                    self.stalled, self.first_step = begin, 2.0 * self.first_step  # no slip at all
+                    self.pieces = before
+                self.halt()
+                return
+            push, r = self.panel.push[self.panel.stages], self.motion.value[self.panel.stages, 2]
+            self.accept()
+
+    def realign(self, push: float) -> float:
+        """Where the disc is nothing, the direction is that of the motion; lambda there."""
+        self.motion.place(SCAN, self.theta)
+        x_1: float = self.motion.value[SCAN, 3]
+        y_1: float = self.motion.value[SCAN, 4]
+        speed: float = hypot(x_1, y_1)
+        if self.e_x * x_1 + self.e_y * y_1 >= 0.5 * speed:
+            return push
+        self.e_x, self.e_y = x_1 / speed, y_1 / speed
+        if self.varying:
+            self.derivatives.close_sliding(self.e_x, self.e_y, 0.0)
+        return self.push()
+
+    def accept(self) -> None:
+        """The end of the panel is the present angle."""
+        i: cython.int
+        s: cython.int = self.panel.stages
+        self.theta, self.first_step = self.panel.theta + self.panel.length, FIRST_STEP
+        self.e_x, self.e_y = self.panel.e_x[s - 1], self.panel.e_y[s - 1]
+        size: float = 1.0 / hypot(self.e_x, self.e_y)
+        self.e_x, self.e_y = self.e_x * size, self.e_y * size
+        if self.gathering:
+            self.sums.slip(self.panel)
+            if self.panels < self.most_panels:
+                self.record[self.panels, 0], self.record[self.panels, 1] = self.panel.theta, self.panel.length
+                self.record[self.panels, 2], self.record[self.panels, 3] = (
+                    self.panel.start_x, self.panel.start_y,
+                )  # fmt: skip
+                for i in range(s):
+                    self.record[self.panels, 4 + i] = self.panel.tangent[i + 1]
+            self.panels += 1
+        if self.varying:
+            self.derivatives.carry(self.gathering and self.gradient)
+
+    def halt(self) -> None:
+        """The slip ends at the present angle."""
+        self.motion.place(SCAN, self.theta)
+        r: float = max(self.motion.value[SCAN, 2], 0.0)
+        self.w_x = self.motion.value[SCAN, 0] - r * self.e_x
+        self.w_y = self.motion.value[SCAN, 1] - r * self.e_y
+        self.sliding = False
+        if self.varying:
+            self.derivatives.rest(self.e_x, self.e_y)
+
+    def measure(self, theta: float) -> None:
+        """`gap`, `gap_slope`, `noise`: g, its derivative and rounding at an angle, placed in SCAN."""
+        self.motion.place(SCAN, theta)
+        d_x: float = self.motion.value[SCAN, 0] - self.w_x
+        d_y: float = self.motion.value[SCAN, 1] - self.w_y
+        r: float = self.motion.value[SCAN, 2]
+        size: float = self.motion.size + self.motion.reach + fabs(self.w_x) + fabs(self.w_y)
+        self.noise = 8.0 * EPSILON * size * (fabs(r) + EPSILON * size)
+        self.gap = d_x * d_x + d_y * d_y - r * r
+        self.gap_slope = d_x * self.motion.value[SCAN, 3] + d_y * self.motion.value[SCAN, 4]
+        self.gap_slope = 2.0 * (self.gap_slope - r * self.motion.value[SCAN, 5])
+
+    def hold(self, end: float) -> None:
+        """Stick until the disc meets the slider, or to an angle."""
+        begin: float = self.theta
+        self.add(STICK)
+        self.measure(begin)
+        self.motion.bend(SCAN)
+        r: float = max(self.motion.value[SCAN, 2], 0.0)
+        size: float = self.motion.size + hypot(self.w_x, self.w_y)
+        noise: float = self.noise
+        bend: float = (
+            (self.motion.value[SCAN, 0] - self.w_x) * self.motion.value[SCAN, 6]
+            + (self.motion.value[SCAN, 1] - self.w_y) * self.motion.value[SCAN, 7]
+            + self.motion.value[SCAN, 3] * self.motion.value[SCAN, 3]
+            + self.motion.value[SCAN, 4] * self.motion.value[SCAN, 4]
+            - self.motion.value[SCAN, 2] * self.motion.value[SCAN, 8]
+            - self.motion.value[SCAN, 5] * self.motion.value[SCAN, 5]
+        )
+        third: float = 2.0 * (
+            size * self.motion.motion_bound[3]
+            + 3.0 * self.motion.motion_bound[1] * self.motion.motion_bound[2]
+            + self.motion.reach * self.motion.reach_bound[3]
+            + 3.0 * self.motion.reach_bound[1] * self.motion.reach_bound[2]
+        )
+        fourth: float = 2.0 * (
+            size * self.motion.motion_bound[4]
+            + 4.0 * self.motion.motion_bound[1] * self.motion.motion_bound[3]
+            + 3.0 * self.motion.motion_bound[2] * self.motion.motion_bound[2]
+            + self.motion.reach * self.motion.reach_bound[4]
+            + 4.0 * self.motion.reach_bound[1] * self.motion.reach_bound[3]
+            + 3.0 * self.motion.reach_bound[2] * self.motion.reach_bound[2]
+        )
+        longest: float = 0.8 / max(self.motion.highest, 1)
+        length: float = 0.5 * longest
+        low: float = begin
+        g: float = self.gap
+        d: float = self.gap_slope
+        # on the edge of its disc, from where g falls as bend / 2 times the square
+        if g > -noise - ON_EDGE * r * r:
+            rate: float = 16.0 * EPSILON * size * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
+            if (
+                d > rate
+                and begin != self.stalled
+                and (bend >= 0.0 or d * d > -2.0 * bend * (noise + ON_EDGE * r * r))
+            ):
+                self.release(begin, begin)
+                return
+            length = 3.0 * fabs(bend) / third if bend < 0.0 and third > 0.0 else 0.0
+            low = min(begin + min(max(length, self.first_step), longest), end)
+            self.measure(low)
+            g, d, noise = self.gap, self.gap_slope, self.noise
+            if g > self.noise and low < end:
+                self.release(begin, low)
+                return
+            length = max(length, self.first_step)
+        while low < end:
+            length = min(length, longest)
+            high: float = min(low + length, end)
+            self.measure(high)
+            h: float = high - low
+            value: float = VALUE_ERROR * fourth * h * h * h * h
+            slope: float = SLOPE_ERROR * fourth * h * h * h
+            b_1: float = g + h * d / 3.0
+            b_2: float = self.gap - h * self.gap_slope / 3.0
+            middle: float = 3.0 * (b_2 - b_1) / h
+            rises: bool = min(d, middle, self.gap_slope) > slope
+            falls: bool = max(d, middle, self.gap_slope) < -slope
+            if self.gap > self.noise:
+                if rises or h < SHORTEST or high <= low:
+                    self.release(begin, self.meet(low, high))
+                    return
+            elif (
+                rises or falls or max(g, b_1, b_2, self.gap) + value <= min(noise, self.noise) or h < SHORTEST
+            ):
+                low, g, d, noise = high, self.gap, self.gap_slope, self.noise
+                length *= 2.0
+                continue
+            length = 0.5 * h
+        self.theta = end
+        if self.gathering:
+            self.sums.stick(begin, end, self.w_x, self.w_y)
+            if self.gradient:
+                self.derivatives.stick(begin, end)
+
+    def release(self, begin: float, theta: float) -> None:
+        """The stick ends at an angle, and slip begins."""
+        if self.gathering:
+            self.sums.stick(begin, theta, self.w_x, self.w_y)
+            if self.gradient:
+                self.derivatives.stick(begin, theta)
+        self.theta = theta
+        self.motion.place(SCAN, theta)
+        d_x: float = self.motion.value[SCAN, 0] - self.w_x
+        d_y: float = self.motion.value[SCAN, 1] - self.w_y
+        d: float = hypot(d_x, d_y)
+        if not (d > 0.0 and self.motion.value[SCAN, 2] > 0.0):
+            self.stalled = theta
+            return
+        self.e_x, self.e_y, self.sliding = d_x / d, d_y / d, True
+        self.next_length = self.first_length()
+        if self.varying:
+            self.derivatives.slide(self.e_x, self.e_y)
+
+    def meet(self, low: float, high: float) -> float:
+        """Where the disc meets the slider, between an angle before and one after: Newton, bracketed."""
+        i: cython.int
+        x: float = 0.5 * (low + high)
+        for i in range(80):  # noqa: B007
+            self.measure(x)
+            d: float = hypot(self.motion.value[SCAN, 0] - self.w_x, self.motion.value[SCAN, 1] - self.w_y)
+            r: float = max(self.motion.value[SCAN, 2], 0.0)
+            if self.gap > 0.0:
+                high = x
+            else:
+                low = x
+            step: float = high - low
+            if self.gap_slope > 0.0:
+                # of |U - W| - R, whose derivative is about that of g over |U - W| + R
+                step = (r - d) * (d + r) / self.gap_slope
+            if not low < x + step < high:
+                step = 0.5 * (low + high) - x
+            x += step
+            if fabs(step) <= 2.0 * EPSILON * fabs(x) or high - low <= 2.0 * EPSILON * fabs(x):
+                break
+        return x

@@ -1,0 +1,96 @@
+"""The Jacobian of the forces in the plane: against differences that are extrapolated, and closed forms."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from fcm import periodic_gradients, planar_gradients
+
+from .motions import random_cases
+from .planar_motions import Planar, kernel, random_planars
+
+
+def differences(contact, x, law, column, step):
+    """By one unknown, from steps that are halved three times."""
+
+    def forces(t):
+        y = x.copy()
+        y[column] += t
+        contact.at(y, *law, gradient=False)
+        return np.array(contact.forces)
+
+    rows = [(forces(step / 2**i) - forces(-step / 2**i)) / (2.0 * step / 2**i) for i in range(4)]
+    before = rows[-1]
+    for order in range(1, 4):
+        before = rows[-1]
+        rows = [b + (b - a) / (4**order - 1) for a, b in itertools.pairwise(rows)]
+    return rows[-1], np.abs(rows[-1] - before).max()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_against_differences(seed):
+    """Where the differences themselves settle: not at a tangency, which their steps go past."""
+    settled = 0
+    for case in random_planars(12, 20 + seed, 3):
+        contact, x = kernel(case, case.u_x.size + 1)
+        law = (case.mu, case.k_u, case.k_v, case.n_0)
+        contact.cycle.slider.tolerance = 1e-11
+        contact.at(x, *law)
+        J, size = np.array(contact.jacobian), max(case.k_u, case.k_v)
+        for column in range(x.size):
+            tried = [differences(contact, x, law, column, step) for step in (1e-2, 1e-3)]
+            found, error = min(tried, key=lambda one: one[1])
+            if error > 2e-9 * size:
+                continue
+            settled += 1
+            assert np.abs(J[:, column] - found).max() <= 1e-8 * size, (case, column)
+    assert settled > 100
+
+
+def test_of_a_circle():
+    """f = (r^2 + i r sqrt(1 - r^2)) exp(i theta), as a complex number; by v at constant load."""
+    r = 0.6
+    G = planar_gradients([0, 1], [0, -1j], [0], mu=0.5, k_u=1.0, k_v=1.0, n_0=2.0 * r)
+    slope = 0.5 * (2.0 * r + 1j * (1.0 - 2.0 * r * r) / np.sqrt(1.0 - r * r))
+    assert G.df_x[1, 2, 0, 0] == pytest.approx(slope, abs=1e-11)
+    assert G.df_y[1, 2, 0, 0] == pytest.approx(-1j * slope, abs=1e-11)
+    assert G.dn[0, 2, 0, 0] == pytest.approx(1.0, abs=1e-15)
+
+
+def test_along_a_line_are_those_of_a_contact_on_a_line():
+    for case in random_cases(40, 31, most=4):
+        on_line = periodic_gradients(*case.arguments())
+        G = planar_gradients(case.u, 0.0 * case.u, *case.arguments()[1:])
+        count = min(case.u.size, on_line.df.shape[2])
+        for mine, theirs in ((G.df_x, on_line.df), (G.dn, on_line.dn)):
+            size = max(case.k_u, case.k_v)
+            assert np.abs(mine[:, 0, :count] - theirs[:, 0, :count]).max() <= 1e-8 * size, case
+            assert np.abs(mine[:, 2] - theirs[:, 1]).max() <= 1e-8 * size, case
+        assert np.abs(G.df_y[:, 0]).max() <= 1e-8 * case.k_u
+
+
+def test_turning_the_axes_turns_the_derivatives():
+    c, s = np.cos(0.7), np.sin(0.7)
+    turn = np.array([[c, -s], [s, c]])
+    for case in random_planars(30, 32, 3):
+        u_x, u_y = c * case.u_x - s * case.u_y, s * case.u_x + c * case.u_y
+        G, H = case.gradients(), planar_gradients(u_x, u_y, *case.arguments()[2:])
+        one, other = np.stack((G.df_x, G.df_y))[:, :, :2], np.stack((H.df_x, H.df_y))[:, :, :2]
+        turned = np.einsum("ij,jhkmp,lk->ihlmp", turn, one, turn)
+        assert np.abs(turned - other).max() <= 1e-7 * case.k_u
+
+
+def test_shape_and_a_motion_that_is_open_or_stuck():
+    G = planar_gradients(np.zeros((2, 3)), [0, 1], [0, 1j], 0.5, 2.0, 3.0, np.array([[9.0], [-9.0]]))
+    assert G.df_x.shape == G.df_y.shape == G.dn.shape == (2, 2, 3, 3, 3, 2)
+    stuck = Planar(
+        np.array([0.1, 0.2]), np.array([0.3, 0.1j]), np.array([0, 0.1]), 0.5, 2.0, 3.0, 9.0
+    ).gradients()
+    identity = np.zeros((2, 2, 2), complex)
+    identity[0, 0, 0], identity[1, 1, 0], identity[1, 1, 1] = 1.0, 1.0, 1j
+    np.testing.assert_allclose(stuck.df_x[:, 0], 2.0 * identity, atol=1e-15)
+    np.testing.assert_allclose(stuck.df_y[:, 1], 2.0 * identity, atol=1e-15)
+    np.testing.assert_allclose(stuck.dn[:, 2], 3.0 * identity, atol=1e-15)
+    assert not stuck.df_x[:, 1:].any() and not stuck.dn[:, :2].any()
+    assert not np.abs(np.stack(G[3:5]))[:, 1].any()
