@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.harmonic.error import reported
+from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene

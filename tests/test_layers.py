@@ -20,6 +20,7 @@ NUMERICS = (
     "continuation",
     "harmonic",
     "branches",
+    "accuracy",
     "track",
     "motion",
     "orbit",

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.harmonic.choice import accurate, given
-from fcm.harmonic.error import reported
+from fcm.accuracy.refinement import accurate, given
+from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.motion import State, simulate

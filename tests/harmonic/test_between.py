@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.choice import accurate, given
+from fcm.accuracy.refinement import accurate, given
 from fcm.harmonic.system import System
 from fcm.motion import State, simulate
 from fcm.scene import scene_from_dict

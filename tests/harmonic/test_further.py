@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.choice import estimated
+from fcm.accuracy.refinement import estimated
 from fcm.harmonic.further import Further, padded
 from fcm.harmonic.system import System
 

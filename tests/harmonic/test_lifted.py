@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-
 from fcm.harmonic.corrector import ENOUGH, Corrector
-from fcm.harmonic.error import reported_at
+
 from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.choice import accurate
+from fcm.accuracy.refinement import accurate
 from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced

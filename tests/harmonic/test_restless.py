@@ -6,11 +6,10 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from fcm.harmonic import restless
 from fcm.harmonic.start import solutions
 from fcm.harmonic.unstable import unstable_stretches
 from fcm.motion import State, simulate
-from fcm.response import trace
+from fcm.response import restless, trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import load_scene, scene_from_dict

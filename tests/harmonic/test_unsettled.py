@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fcm.harmonic.choice import given
+from fcm.accuracy.refinement import given
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene import scene_from_dict

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.harmonic.choice import Accurate, accurate
+from fcm.accuracy.refinement import Accurate, accurate
 from fcm.harmonic.system import System
 from fcm.motion import SimulationError
 from fcm.orbit.harmonic import state_of

@@ -13,8 +13,8 @@ from fcm.contact.loop import sequences
 from fcm.contact.periodic.measures import Measures
 from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation import Path
-from fcm.harmonic.error import Reported, reported
 from fcm.harmonic.points import Points, cycles_of
+from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.system import System
 from fcm.scene.model import Contact, FloatArray
 

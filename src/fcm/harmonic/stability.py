@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.secants import Secants
-from fcm.harmonic.believed import runs
 from fcm.harmonic.inserted import Crossing, Inserted, with_points
+from fcm.harmonic.runs import runs
 from fcm.harmonic.spectrum import FLIP_NEAR, Kind, Verdict
 from fcm.harmonic.system import System
 from fcm.harmonic.verdicts import Verdicts

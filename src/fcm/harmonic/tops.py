@@ -8,7 +8,7 @@ from numpy.polynomial import chebyshev
 
 from fcm.continuation import Path
 from fcm.continuation.between import Between
-from fcm.harmonic.error import Reported, reported_at
+from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 

@@ -19,7 +19,7 @@ from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
-    from fcm.harmonic.outline import Outline
+    from fcm.accuracy.outline import Outline
     from fcm.harmonic.system import System
 
 ACCURACY = 1e-2  # of the balance that exact motions begin near
@@ -149,6 +149,6 @@ def _single(whole: Scene, look: Look) -> System:
 
 def _outlined(one: System) -> Outline:
     """The branches of `SOME` harmonics, or of one where there are many contacts."""
-    from fcm.harmonic.outline import outlined
+    from fcm.accuracy.outline import outlined
 
     return outlined(one if len(one.scene.contacts) >= MANY else one.with_harmonics(SOME))

@@ -26,7 +26,7 @@ from fcm.orbit.undetermined import not_determined, rests_elsewhere
 from fcm.scene.model import FloatArray, Scene
 
 if TYPE_CHECKING:
-    from fcm.harmonic.outline import Outline
+    from fcm.accuracy.outline import Outline
 
 TRIED = 16  # guesses around a top of the balance, of whose motions the highest is followed,
 AS_HIGH = 0.9  # of the top's height: or the first that is so high, as the balance of one harmonic may be off

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from fcm.accuracy.refinement import Accurate, enlarged, finer
 from fcm.branches.branch_points import all_up_to
 from fcm.branches.prolongation import prolongated
 from fcm.branches.search import breaks_symmetry, with_branching, with_isolas
-from fcm.harmonic.choice import Accurate, enlarged, finer
-from fcm.harmonic.restless import with_traced
 from fcm.harmonic.trace import with_further
+from fcm.response.restless import with_traced
 
 ROUNDS = 3  # of more harmonics, for branches that were not known when the harmonics were chosen
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.refinement import Accurate
 from fcm.continuation import Status
-from fcm.harmonic.choice import Accurate
 from fcm.harmonic.drift import REASONS, undetermined
 from fcm.harmonic.points import Points
 from fcm.harmonic.record import Record

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.harmonic.choice import Accurate, judged
-from fcm.harmonic.error import reported
-from fcm.harmonic.outline import Outline
+from fcm.accuracy.outline import Outline
+from fcm.accuracy.refinement import Accurate, judged
+from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 from fcm.harmonic.tops import tops_between
 from fcm.results.peak import Peak

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.harmonic.choice import enlarged, estimated
+from fcm.accuracy.refinement import enlarged, estimated
 from fcm.harmonic.cost import AGAIN
 from fcm.harmonic.system import System
 from fcm.response.tracked_work import as_curve

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.at_levels import errors_at_levels, evenness, stable_at_levels
+from fcm.accuracy.options import REFINEMENT
+from fcm.accuracy.trust import BELIEVED
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
-from fcm.harmonic.believed import BELIEVED
-from fcm.harmonic.believed_levels import errors_at_levels, evenness, stable_at_levels
 from fcm.harmonic.cost import with_twice_as_many
-from fcm.harmonic.foreseen import NOTHING
 from fcm.harmonic.linear_contacts import highest
 from fcm.harmonic.record import cycles, loops, recorded_at_levels
 from fcm.harmonic.rest import RestError
@@ -149,7 +149,7 @@ def _worst(curve: Curve) -> float:
     that of a peak is not. What hardly moves is not asked for."""
     assert curve.level is not None
     height = np.nanmax(curve.amplitude, axis=0)
-    moves = height > NOTHING * height.max()
+    moves = height > REFINEMENT.nothing * height.max()
     peaks = np.array([peak.error for peak in curve.peaks.values()])[moves]
     there = curve.error[curve.level == 1.0][:, moves]
     return float(np.max([*peaks, *there[np.isfinite(there)]], initial=0.0))

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.harmonic.choice import Accurate
+from fcm.accuracy.options import REFINEMENT
+from fcm.accuracy.refinement import Accurate
+from fcm.accuracy.stability_limits import Lost
 from fcm.harmonic.cost import PATIENCE
-from fcm.harmonic.foreseen import NOTHING
-from fcm.harmonic.lost import Lost
 from fcm.scene.errors import counted
 from fcm.units import in_unit
 
@@ -52,7 +52,7 @@ def _of_harmonics(found: Accurate, accuracy: float) -> str:
 def _whose(found: Accurate, accuracy: float) -> str:
     """The degrees of freedom whose peaks fall short, the worst of them first; empty where all do, or none."""
     height = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0)
-    short = ~(found.peak <= accuracy) & (height > NOTHING * height.max())
+    short = ~(found.peak <= accuracy) & (height > REFINEMENT.nothing * height.max())
     off, dofs = np.flatnonzero(short), found.system.scene.modal.dofs
     if not 0 < off.size < len(dofs):
         return ""

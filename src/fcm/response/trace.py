@@ -10,24 +10,24 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.refinement import Accurate, accurate, enlarged, finer, given
+from fcm.accuracy.stability_limits import Lost, lost_along, moved
+from fcm.accuracy.trust import astray, disbelieved
 from fcm.branches.options import FOLDS
 from fcm.continuation import Mark
-from fcm.harmonic.believed import astray, disbelieved
-from fcm.harmonic.choice import Accurate, accurate, enlarged, finer, given
-from fcm.harmonic.error import Reported, reported_at
-from fcm.harmonic.higher import with_higher
-from fcm.harmonic.lost import Lost, lost_along, moved
 from fcm.harmonic.record import Record, cycles, loops, recorded
+from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.rest import RestError
-from fcm.harmonic.restless import with_missed
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.all_branches import with_all_branches
+from fcm.response.higher import with_higher
 from fcm.response.incomplete import FLOATING, incomplete
 from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
+from fcm.response.restless import with_missed
 from fcm.response.short_of import short_of
 from fcm.response.wanted import ONE_HARMONIC, Wanted
 from fcm.results.peak import Peak, stability_at_top

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.harmonic.choice import accurate
+from fcm.accuracy.refinement import accurate
 from fcm.harmonic.system import System
 from fcm.response.around import check_no_ring
 from fcm.response.curve_sweep import checkpoint_of

@@ -47,7 +47,9 @@ class Curve:
     stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN where it is not known
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
     error: FloatArray  # (point, dof) of amplitude, estimated, relative
-    truncation_error: FloatArray  # (point,) the greatest of these that matters, see `fcm.harmonic.error`
+    truncation_error: (
+        FloatArray  # (point,) the greatest of these that matters, see `fcm.accuracy.embedded_pair`
+    )
     complete: bool
     reason: str  # why it is not complete, else ''
     peaks: dict[str, Peak]  # of each dof

@@ -1,7 +1,7 @@
 r"""What the harmonics left out would change at chosen points of a tracked curve.
 
-The same extended system with the further harmonics that would do most is solved at the same value of the
-number, again with more until that changes little. Where the number turns back that has no solution on one
+The same extended system with the harmonics of the partner is solved at the same value of the number.
+Where the number turns back that has no solution on one
 side: there the curve with more harmonics is followed from beside the turn to its own turn.
 """
 
@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.harmonic.corrector import ROUNDS, SETTLED
+from fcm.accuracy.partner import partner_of
 from fcm.harmonic.further import Further
-from fcm.harmonic.ranking import Ranking
 from fcm.track.curve import Track
 from fcm.track.follow import follow, land
 from fcm.track.lowest import lifted
@@ -67,27 +66,19 @@ def places(track: Track) -> dict[int, str]:
 
 
 def change(way: Way, track: Track, i: int) -> Change:
-    """At one point: harmonics are added until that changes it little."""
+    """At one point: to that of the partner."""
     condition, here = track.condition, _Found(way, track.spots[i])
-    first = now = here.value(condition)
-    number, begin = float(here.spot.z[-1]), beginning(track, i)
+    value, number, begin = here.value(condition), float(here.spot.z[-1]), beginning(track, i)
     start = here if begin is None else _Found(way, track.spots[begin])
-    before = Change(0.0, 0.0)
-    for _ in range(ROUNDS):
-        more = _more(here)
-        if more == here.way.system.harmonics:
-            return before
-        wider = replace(way, system=way.system.with_harmonics(more), stations=())
-        found = _landed(wider, condition, start, track.spots[i], begin is not None)
-        if found is None:
-            return UNTOLD
-        start, here = found
-        now = here.value(condition)
-        told = Change(abs(now - first) / abs(first), abs(float(here.spot.z[-1]) - number))
-        if all(abs(a - b) <= SETTLED * a for a, b in zip(told, before, strict=True)):
-            return told
-        before = told
-    return told
+    more = _more(here)
+    if more == here.way.system.harmonics:
+        return Change(0.0, 0.0)
+    wider = replace(way, system=way.system.with_harmonics(more), stations=())
+    there = _landed(wider, condition, start, track.spots[i], begin is not None)
+    if there is None:
+        return UNTOLD
+    off = abs(there.value(condition) - value) / abs(value)
+    return Change(off, abs(float(there.spot.z[-1]) - number))
 
 
 def beginning(track: Track, i: int) -> int | None:
@@ -101,7 +92,7 @@ def beginning(track: Track, i: int) -> int | None:
 
 
 def _more(found: _Found) -> tuple[int, ...]:
-    """The harmonics of a point and those that would do most there; none more where nothing slips or opens."""
+    """The harmonics of the partner; none more where nothing slips or opens."""
     z, s = found.spot.z, float(found.spot.z[-1])
     system = moved(found.way.system, found.way.line.scene(found.way.system.scene, s))
     further, y = Further(system), z[None, :-1]
@@ -110,20 +101,19 @@ def _more(found: _Found) -> tuple[int, ...]:
     problem = found.way.tracked(Condition(Kind.FOLD))
     problem.measure(z)
     amplitude = problem.along(z)[1]
-    return Ranking(system).best(further.shares(y, amplitude[None])[0])
+    share = further.shares(y, amplitude[None])[0]
+    return partner_of(system.harmonics, share, len(system.scene.contacts))
 
 
-def _landed(
-    wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool
-) -> tuple[_Found, _Found] | None:
-    """A start with more harmonics, and the point sought: the start itself, or the turn that follows it."""
+def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool) -> _Found | None:
+    """The point with more harmonics: that beside the start, or the turn that follows it."""
     old, new = start.way.system.harmonics, wider.system.harmonics
     contacts = len(wider.system.scene.contacts)
     beside = land(wider, condition, lifted(start.spot.z, contacts, old, new))
     if beside is None or not _same(wider, condition, beside, start):
         return None
     if not turns:
-        return _Found(wider, beside), _Found(wider, beside)
+        return _Found(wider, beside)
     s, rise = float(start.spot.z[-1]), float(turn.z[-1] - start.spot.z[-1])
     if rise == 0.0:
         return None
@@ -131,7 +121,7 @@ def _landed(
     spots, _ = follow(near, condition, beside, rise > 0.0)
     if not spots or not spots[-1].turn:
         return None
-    return _Found(wider, beside), _Found(wider, spots[-1])
+    return _Found(wider, spots[-1])
 
 
 def _same(wider: Way, condition: Condition, spot: Spot, start: _Found) -> bool:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from fcm.at_rest import at_rest
 from fcm.branches.search import every_branch
 from fcm.continuation import Mark, Path
-from fcm.harmonic.error import reported
+from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import linear_of

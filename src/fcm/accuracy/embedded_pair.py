@@ -1,0 +1,167 @@
+r"""How wrong a curve of a balance is, told by its embedded pair: the curve and that of a partner with
+more harmonics.
+
+As of an embedded pair of Runge-Kutta formulas the difference of both is the error of the lower,
+
+    e = |a_partner - a| / a
+
+at the same frequency; of a peak it is the difference of the heights, of a fold that of the frequencies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.accuracy.options import PAIR, PairOptions
+from fcm.accuracy.partner import partner_of
+from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
+from fcm.accuracy.peaks import heights, rise_beside
+from fcm.continuation import Mark, Path
+from fcm.harmonic.further import HIGHEST, Further
+from fcm.harmonic.reported import Reported, reported
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Of a path; relative; NaN where the pair cannot tell.
+
+    amplitude (point, dof): by how much the partner differs at the same frequency.
+    truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
+    peak (dof,): of the height of the greatest amplitude.
+    height (dof,): the greatest amplitude of the partner, as an amplitude.
+    fold (fold,): of the frequencies of the folds, in their order.
+    share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
+    folds, of the greatest amplitude of the degree of freedom to which it matters most.
+    partner: its harmonics.
+    """
+
+    amplitude: FloatArray
+    truncation: FloatArray
+    peak: FloatArray
+    height: FloatArray
+    fold: FloatArray
+    share: FloatArray
+    partner: tuple[int, ...]
+
+
+def errors_along(
+    system: System, path: Path, shown: Reported | None = None, options: PairOptions = PAIR
+) -> Errors:
+    """Errors of the points of a path of a system's balance; shown is what is reported along it, if known."""
+    shown = shown or reported(system, path)
+    tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
+    folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
+    special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
+    share, met = _spectrum(system, path, shown, special, size, options)
+    more = partner_of(system.harmonics, share, len(system.scene.contacts), options)
+    if shown.linear.all() or more == system.harmonics or not share.any():
+        none = np.zeros_like(shown.amplitude)
+        return Errors(none, none[:, 0], none[0], size, np.zeros(len(folds)), share, system.harmonics)
+    partner = PartnerCurve(system, path, shown, more, options)
+    change = partner.everywhere(np.union1d(special, met))
+    followed = partner.followed(change)
+    shift = partner.shifts(change, followed)
+    error = _of_points(partner, shift, change)
+    error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
+    unit = partner.unit
+    inside = (tops > 0) & (tops < len(path.z) - 1)
+    at_ends = shown.amplitude[tops, d] + unit[tops, d] * shift[tops, d]
+    for end in {0, len(path.z) - 1}.intersection(tops.tolist()):  # which the partner is known beyond, or not
+        there = partner.abreast(end)
+        at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
+    height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
+    own = rise_beside(partner, np.zeros_like(unit), tops)  # no error
+    now = shown.amplitude[tops, d] + np.where(inside, own, 0.0)
+    settles = inside | ~partner.linear[tops]
+    told = settles & np.isfinite(height)
+    error[tops[told], d[told]] = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
+    for top in np.unique(tops[told]).tolist():
+        beyond = np.abs(partner.left_out(top)) / unit[top]
+        error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
+    error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
+    most = shown.amplitude.max(axis=1)
+    system.work.take(partner.seconds())
+    return Errors(
+        amplitude=error,
+        truncation=(error * shown.amplitude).max(axis=1) / np.where(most > 0.0, most, 1.0),
+        peak=np.where(told | ~settles, error[tops, d], np.nan),
+        height=height,
+        fold=_of_folds(partner, folds, change, followed),
+        share=share,
+        partner=more,
+    )
+
+
+def _spectrum(
+    system: System, path: Path, shown: Reported, special: Indices, size: FloatArray, options: PairOptions
+) -> tuple[FloatArray, Indices]:
+    """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
+    special
+    points and where one that is left out meets a mode and leads there; and these."""
+    further = Further(system)
+    met: Indices = further.meetings(path.z, shown.amplitude)
+    share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
+    if met.size:  # there it leads, however small the motion is
+        local = further.shares(path.z[met], shown.amplitude[met])
+        leads = local > options.leads * local.max(axis=1, keepdims=True)
+        share = np.maximum(share, np.where(leads & (local > options.matters), local, 0.0).max(axis=0))
+    return share[:HIGHEST], met
+
+
+def _of_points(partner: PartnerCurve, shift: FloatArray, change: FloatArray) -> FloatArray:
+    """Errors (point, dof) at the same frequency, in units of the partner's curve."""
+    error = np.abs(shift)
+    # what hardly moves may have any error, and says nothing of that of others
+    most = np.where(partner.amplitude < partner.unit, 0.0, error).max(axis=1, keepdims=True)
+    typical = _medians(np.minimum(error, most))[:, None]
+    error = np.where(partner.linear[:, None], 0.0, np.maximum(error, partner.options.chance * typical))
+    # displacements may cancel at a frequency, but not what the partner itself is off by
+    moved = partner.weight[:, None] * np.abs(change[:, :1]) + np.abs(change[:, 1:])
+    moved[np.isnan(moved).any(axis=1)] = 0.0  # where it was followed the shifts alone tell
+    every: FloatArray = np.maximum(error, partner.options.own * moved)
+    return every
+
+
+def _of_peaks(error: FloatArray, options: PairOptions) -> FloatArray:
+    """Errors (dof,) of the greatest amplitudes by their changes, of which one may be small by chance."""
+    told = error[np.isfinite(error)]
+    typical = _medians(told[None])[0] if told.size else 0.0
+    peaks: FloatArray = np.maximum(error, options.chance_at_peaks * typical)
+    return peaks
+
+
+def _of_folds(
+    partner: PartnerCurve, folds: Indices, change: FloatArray, followed: list[Followed]
+) -> FloatArray:
+    """Errors (fold,) of the frequencies of folds: to the partner's own beside them, or in their order
+    where the partner was followed and has as many."""
+    error, parameter = np.full(len(folds), np.nan), partner.path.parameter
+    theirs = parameter * (1.0 + change[:, 0])
+    for k, fold in enumerate(folds.tolist()):
+        around = theirs[max(fold - 2, 0) : fold + 3]
+        if np.isfinite(around[[0, -1]]).all():  # at a corner that has moved the fold itself may be missed
+            beside = parameter[[max(fold - 1, 0), min(fold + 1, len(parameter) - 1)]].mean()
+            own = np.nanmax(around) if parameter[fold] >= beside else np.nanmin(around)
+            error[k] = abs(own / parameter[fold] - 1.0)
+        elif np.isfinite(theirs[fold]):
+            error[k] = abs(change[fold, 0])
+    for one in followed:
+        mine = (one.first <= folds) & (folds < one.end)
+        theirs = np.concatenate(
+            [np.empty(0), *(p.path.parameter[p.path.where(Mark.FOLD)] for p in one.pieces)]
+        )
+        if len(one.pieces) == 1 and len(theirs) == mine.sum():
+            error[mine] = np.abs(theirs / parameter[folds[mine]] - 1.0)
+    return error
+
+
+def _medians(values: FloatArray) -> FloatArray:
+    """Of each row, NaN where all of it is; as `numpy.median`, which takes ten times as long for so few."""
+    count = values.shape[1]
+    ordered = np.sort(values, axis=1) if count > 2 else values
+    middle: FloatArray = 0.5 * (ordered[:, (count - 1) // 2] + ordered[:, count // 2])
+    return middle

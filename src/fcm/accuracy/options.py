@@ -1,0 +1,130 @@
+"""What the embedded pair is calculated with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PairOptions:
+    """How the partner of a curve is chosen, and how closely it is looked at.
+
+    Attributes
+    ----------
+    times, least, most : int
+        The partner has the harmonics up to so many times the number of those of the curve, and up to
+        the least, but no more than the most beyond that number.
+    named : int
+        So many more that the spectrum of the exact forces names,
+    share : float
+        each with at least this part of what all that are left out would do.
+    leads, matters : float
+        Part of the greatest share at a point, and of an amplitude, from which on a harmonic that meets a mode
+        there is named.
+    unknowns, fewest : int
+        No more unknowns than this, but so many harmonics more than the curve in any case.
+    every : int
+        Points of the curve from one that is displaced to the next, before it is known how they change.
+    interpolated : float
+        Part of a displacement, by which it may be off where it is interpolated.
+    nothing : float
+        A displacement, relative, that is too small to be looked at more closely.
+    steep : float
+        Relative change of an amplitude over that of the frequency, up to which both count.
+    seconds : float
+        Of calculated work, as of `fcm.harmonic.cost`, that following the partner may take where no
+        point of it lies normal to the curve; and as much again for points that are not found.
+    step : float
+        Longest along the partner.
+    beyond : float
+        Times the width of a stretch, how far beyond it the partner is followed.
+    tries : int
+        Points at an end of a stretch, from which the partner is sought.
+    same : float
+        Relative difference of amplitudes up to which the partner has come to the other end of a stretch.
+    own : float
+        Part of a displacement, by which the partner itself is off: no error at a point is told to be less.
+    chance : float
+        Part of the typical error of the degrees of freedom: less is a chance, at a change of sign;
+    chance_at_peaks : float
+        the same of peaks.
+    rival : float
+        Part of the greatest amplitude: what is this high may become the greatest.
+    gap : float
+        Part of a change of an amplitude, by which it may be more in the gap that a moved corner leaves.
+    past : float
+        Times the harmonic that meets the highest mode, up to which is looked at what the partner lacks,
+    farthest, products : int
+        the last that is looked at, and the multiplications of modes that this may take.
+    samples : int
+        Of the period of the highest harmonic.
+    """
+
+    times: int = 4
+    least: int = 5
+    most: int = 15
+    named: int = 4
+    share: float = 0.02
+    leads: float = 0.5
+    matters: float = 1e-3
+    unknowns: int = 240
+    fewest: int = 3
+    every: int = 16
+    interpolated: float = 0.2
+    nothing: float = 3e-5
+    steep: float = 100.0
+    seconds: float = 2.0
+    step: float = 0.1
+    beyond: float = 1.0
+    tries: int = 8
+    same: float = 0.02
+    own: float = 0.05
+    chance: float = 0.1
+    chance_at_peaks: float = 0.05
+    rival: float = 0.8
+    gap: float = 0.2
+    past: float = 1.5
+    farthest: int = 1024
+    products: int = 10_000_000
+    samples: int = 8
+
+
+PAIR = PairOptions()
+
+
+@dataclass(frozen=True)
+class RefinementOptions:
+    """How harmonics are added to a curve until its pair agrees.
+
+    Attributes
+    ----------
+    rounds : int
+        Of tracing, estimating, choosing.
+    spare : float
+        Part of the accuracy, to which what is left out is chosen to come.
+    unknown : float
+        Times what harmonics do without feedback, what they do, as long as the pair does not tell.
+    first, times : int
+        Harmonics that are added at most to one, and times as many as there are to more.
+    rival : float
+        Part of the greatest amplitude, from which on a top of a branch is looked at.
+    nothing : float
+        Part of the greatest amplitude: degrees of freedom that move less have no peak.
+    beside : tuple of int
+        Points to either side of a top, where the partner may be found if it is not at the top.
+    folds : int
+        Folds of a branch that are looked at, at most.
+    """
+
+    rounds: int = 8
+    spare: float = 0.4
+    unknown: float = 3.0
+    first: int = 6
+    times: int = 2
+    rival: float = 0.8
+    nothing: float = 1e-6
+    beside: tuple[int, ...] = (1, 2, 4, 8)
+    folds: int = 24
+
+
+REFINEMENT = RefinementOptions()

@@ -1,0 +1,81 @@
+"""The harmonics of the partner of a curve, and its balance."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.accuracy.options import PAIR, PairOptions
+from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+from fcm.scene.rules import MOST_HARMONICS
+
+ENOUGH = 0.01  # of a displacement: when a Newton step was less than this, what is left is far less
+MOST = 8  # balances that are kept for the next curve
+
+
+def partner_of(
+    harmonics: Sequence[int], share: FloatArray, contacts: int, options: PairOptions = PAIR
+) -> tuple[int, ...]:
+    """Harmonics of the partner of a curve that has some, as of `PairOptions`.
+
+    Parameters
+    ----------
+    share : array (harmonic,)
+        What each would do that is left out, from the first on: the spectrum of the exact forces times the
+        receptance, of the points that matter.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> partner_of((1,), np.zeros(50), 1)
+    (1, 2, 3, 4, 5)
+    >>> named = np.zeros(50)
+    >>> named[11] = 0.01
+    >>> partner_of((1, 2), named, 1)
+    (1, 2, 3, 4, 5, 6, 7, 8, 12)
+    """
+    has, count = set(harmonics), len(harmonics)
+    allowed = max(options.unknowns // (4 * max(contacts, 1)) - count, options.fewest)
+    total = float(share.sum())
+    order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.share * total]
+    highest = min(options.times * count, count + options.most)
+    low = range(1, min(max(highest, options.least), MOST_HARMONICS) + 1)
+    named = [h for h in order if h not in low][: options.named]
+    # where not all can be had what matters most comes first, then the lowest
+    wanted = dict.fromkeys((*order[:1], *low, *named))
+    more = [h for h in wanted if h not in has][:allowed]
+    return tuple(sorted(has.union(more)))
+
+
+class _Kept(threading.local):
+    """The balances that each thread used last, by what they are for."""
+
+    def __init__(self) -> None:
+        self.of: OrderedDict[tuple[object, ...], Lifted] = OrderedDict()
+
+
+_KEPT = _Kept()
+
+
+def lifted_of(system: System, more: tuple[int, ...]) -> Lifted:
+    """From points of a system to those of its partner; as if it were new: in a sweep the contacts are
+    others."""
+    scene = system.scene
+    key = (*system.linear.numbers, scene.frequency_range, system.harmonics, more)
+    plain = scene.ring is None and not scene.loads
+    made = _KEPT.of.get(key) if plain else None
+    if made is None:
+        made = Lifted(system.with_harmonics(more).balance(), list(system.harmonics), list(more), ENOUGH)
+        if plain:
+            _KEPT.of[key] = made
+            if len(_KEPT.of) > MOST:
+                _KEPT.of.popitem(last=False)
+        return made
+    _KEPT.of.move_to_end(key)
+    made.take(list(system.harmonics), [(c.mu, c.k_u, c.k_v, c.n_0) for c in scene.contacts])
+    return made

@@ -1,0 +1,273 @@
+"""The partner of a curve: point by point normal to it, interpolated in between, followed where that
+leads nowhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.displacement import Displacement
+from fcm.accuracy.interpolation import Filled, places, steepness
+from fcm.accuracy.options import PairOptions
+from fcm.accuracy.partner import lifted_of
+from fcm.accuracy.residual import left_out
+from fcm.accuracy.same_frequency import OtherCurve, shifted
+from fcm.accuracy.stretch import Piece, Stretches
+from fcm.continuation import Mark, Path
+from fcm.harmonic.cost import seconds_of
+from fcm.harmonic.further import LEAST_AMPLITUDE, padded
+from fcm.harmonic.reported import Reported
+from fcm.harmonic.runs import runs
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+Indices = npt.NDArray[np.intp]
+Mask = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A stretch of a curve, points first to before end, beside which the partner was followed: its pieces."""
+
+    first: int
+    end: int
+    pieces: list[Piece]
+
+
+class PartnerCurve:
+    """Relative displacements from the points of a path to its partner: of the frequency, then of amplitudes.
+
+    unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
+    freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
+    linear (point,): where no contact slips or separates, so that nothing is displaced.
+    """
+
+    def __init__(
+        self, system: System, path: Path, shown: Reported, more: tuple[int, ...], options: PairOptions
+    ) -> None:
+        self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
+        self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
+        self.unit = np.maximum(self.amplitude, LEAST_AMPLITUDE * self.amplitude.max(axis=1, keepdims=True))
+        self.unit[self.unit == 0.0] = 1.0
+        lifted, finer = lifted_of(system, more), system.with_harmonics(more)
+        self.finding, self.stretches = Displacement(lifted), Stretches(system, finer, lifted, path, options)
+        self.each = seconds_of(finer, 1, len(more))  # evaluation
+        self.vain, self.before = options.seconds / self.each, lifted.newton.evaluations
+        count, dofs = self.amplitude.shape
+        self.place, self.weight = np.zeros((2, count))
+        places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
+        steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.steep, self.weight)
+        self.change = np.zeros((count, 1 + dofs))
+        self.known = self.linear.copy()
+        self.filled = Filled(self.place, self.change, self.known.view(np.uint8))
+
+    def everywhere(self, special: Indices) -> FloatArray:
+        """Displacements (point, 1 + dof): found at special points, at every so many, next to linear
+        parts, and
+        between two of these where the middle one is not what they lead to expect; interpolated elsewhere."""
+        count = len(self.known)
+        changes = np.flatnonzero(np.diff(self.linear))
+        even = np.arange(0, count, self.options.every)
+        first = np.unique(np.concatenate((special, even, [0, count - 1], changes, changes + 1)))
+        self.find(first)
+        before, after = first[:-1], first[1:]
+        while len(before):
+            wide = (after - before > 1) & ~(self.linear[before] & self.linear[after])
+            wide &= ~(np.isnan(self.change[before, 0]) & np.isnan(self.change[after, 0]))
+            before, after = before[wide], after[wide]
+            middle = (before + after) // 2
+            expected = self.interpolated(middle)
+            self.find(middle)
+            more = self._unforeseen(before, middle, after, expected)
+            before, after = (
+                np.concatenate((before[more], middle[more])),
+                np.concatenate((middle[more], after[more])),
+            )
+        return self.interpolated(np.arange(count))
+
+    def seconds(self) -> float:
+        """About what all that was looked for has taken."""
+        point_by_point = self.finding.lifted.newton.evaluations - self.before
+        return float(self.each * (point_by_point + self.stretches.evaluations))
+
+    def find(self, points: Indices) -> None:
+        """The displacements of some points, which are then known."""
+        path = self.path
+        self.finding.find(
+            points, path.z, path.direction, self.amplitude, self.unit,
+            self.change, self.known.view(np.uint8), self.vain,
+        )  # fmt: skip
+
+    def left_out(self, i: int) -> FloatArray:
+        """By how much (dof,) the harmonics that the partner lacks would change its amplitudes beside a
+        point."""
+        lifted, path = self.finding.lifted, self.path
+        if self.linear[i]:
+            return np.zeros(self.amplitude.shape[1])
+        if not lifted.beside(path.z[i], path.direction[i], True) and not lifted.abreast(
+            self._padded(i), True
+        ):
+            return np.zeros(self.amplitude.shape[1])
+        return left_out(self.stretches.finer, np.array(lifted.newton.z), self.options)
+
+    def abreast(self, i: int) -> FloatArray | None:
+        """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method
+        finds none that
+        is as even."""
+        lifted, path = self.finding.lifted, self.path
+        if self.linear[i] or not lifted.abreast(self._padded(i), True):
+            return None
+        even = path.orientation[i] * path.direction[i, -1]
+        if not lifted.newton.orientation * lifted.newton.tangent[-1] * even > 0.0:
+            return None
+        return np.array(lifted.found[1:])
+
+    def _padded(self, i: int) -> FloatArray:
+        """A point as a guess for the partner."""
+        return padded(self.path.z[i], self.fewer, self.stretches.finer.harmonics)
+
+    def interpolated(self, points: Indices) -> FloatArray:
+        """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""
+        values = np.empty((len(points), self.change.shape[1]))
+        self.filled.at(points, values)
+        return values
+
+    def _unforeseen(self, before: Indices, middle: Indices, after: Indices, expected: FloatArray) -> Mask:
+        """Where a displacement is not what the two around it lead to expect, as errors of an amplitude.
+
+        Along a steep part one of the frequency is a so much larger error of the amplitude.
+        """
+        more, options = np.zeros(len(middle), dtype=np.uint8), self.options
+        points = np.array((before, middle, after))
+        self.filled.unforeseen(points, expected, self.weight, options.interpolated, options.nothing, more)
+        return more.view(np.bool_)
+
+    def followed(self, change: FloatArray) -> list[Followed]:
+        """The stretches without displacements, with the pieces of the partner there; the highest are
+        first."""
+        missed: Mask = np.any(np.isnan(change), axis=1)
+        found = runs(missed)
+        found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
+        return [Followed(first, end, self.stretches.between(first - 1, end)) for first, end in found]
+
+    def shifts(self, change: FloatArray, followed: list[Followed]) -> FloatArray:
+        """Differences (point, dof) of the amplitudes at the same frequency, in their unit; NaN where
+        the partner
+        does not come to that."""
+        path, growth = self.path, self.shown.growth
+        shift = shifted(self.place, path.z, path.direction, self.amplitude, growth, self.unit, change)
+        shift[np.isnan(change).any(axis=1)] = np.nan
+        for one in followed:
+            self._by_pieces(one, change, shift)
+        return shift
+
+    def _by_pieces(self, one: Followed, change: FloatArray, shift: FloatArray) -> None:
+        """Fill those along a stretch, and next to it where the way to the same frequency leads into
+        it: by the
+        pieces, else by the partner before and behind them."""
+        first, end = one.first, one.end
+        missing: Mask = np.any(np.isnan(shift), axis=1)
+        while first > 0 and missing[first - 1]:
+            first -= 1
+        while end < len(shift) and missing[end]:
+            end += 1
+        rows = np.arange(first, end)
+        omega, sign = self.path.parameter[rows], np.sign(self.path.direction[rows, -1])
+        number = np.full(len(rows), -1, dtype=np.intc)
+        if (self.path.mark[first:end] & Mark.FOLD).any():
+            number = self._numbers(one, rows)
+        now, even = self.amplitude[rows], self.path.orientation[rows] * sign
+        for way in (map(_of_piece, one.pieces), self._beside(change, one.first, one.end)):
+            new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
+            for other in way:
+                found = np.empty(now.shape)
+                other.curve.passings(
+                    other.orientation, other.value, other.slope, omega, even, now, number, found
+                )
+                found = (found - now) / self.unit[rows]
+                nearer = ~(np.abs(found).max(axis=1) >= np.abs(new).max(axis=1)) & own
+                nearer &= np.isfinite(found).all(axis=1)
+                new[nearer] = found[nearer]
+            shift[rows], number = new, np.minimum(number, -1)
+
+    def _beside(self, change: FloatArray, first: int, end: int) -> Iterator[_Other]:
+        """The partner at the points before a stretch, and behind it, as far as it is known there."""
+        missed = np.flatnonzero(np.isnan(change).any(axis=1))
+        low = max(missed[missed < first], default=-1) + 1
+        high = min(missed[missed >= end], default=len(change))
+        for rows in (slice(low, first), slice(end, high)):
+            place = np.ascontiguousarray(self.place[rows])
+            if len(place) < 2 or (np.diff(place) <= 0.0).any():
+                continue
+            omega = self.path.parameter[rows] * (1.0 + change[rows, 0])
+            value = self.amplitude[rows] + self.unit[rows] * change[rows, 1:]
+            curve = OtherCurve(place, omega, np.gradient(omega, place))
+            orientation = np.ascontiguousarray(self.path.orientation[rows])
+            yield _Other(curve, orientation, value, np.gradient(value, place, axis=0))
+
+    def _numbers(self, one: Followed, rows: Indices) -> npt.NDArray[np.intc]:
+        """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
+        their order
+        where both have as many, the nearest (-1) where the partner has more, none (-2) where it has fewer."""
+        own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
+        theirs = [piece.path.parameter for piece in one.pieces]
+        number = np.full(len(rows), -1, dtype=np.intc)
+        offset = rows[0] - max(rows[0] - 1, 0)
+        for i, omega in enumerate(self.path.parameter[rows].tolist()):
+            mine = _passed(own, omega)
+            count = sum(len(_passed(one, omega)) for one in theirs)
+            if count < len(mine):
+                number[i] = -2
+            elif count == len(mine) and len(theirs) == 1:
+                number[i] = int(np.count_nonzero(mine < offset + i - 1))
+        return number
+
+
+@dataclass(frozen=True)
+class _Other:
+    """A piece of the partner, with its amplitudes and their slopes (point, dof)."""
+
+    curve: OtherCurve
+    orientation: FloatArray
+    value: FloatArray
+    slope: FloatArray
+
+
+def _of_piece(piece: Piece) -> _Other:
+    parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (piece.path.z, piece.path.direction))
+    return _Other(
+        OtherCurve(_lengths(piece.path), parameter, rate),
+        np.ascontiguousarray(piece.path.orientation),
+        np.ascontiguousarray(piece.shown.amplitude),
+        np.ascontiguousarray(piece.shown.growth),
+    )
+
+
+def _passed(parameter: FloatArray, omega: float) -> Indices:
+    """The pieces between points on which a curve passes a frequency."""
+    below = parameter < omega
+    passes = below[1:] != below[:-1]
+    if len(passes):  # an end on it counts, too
+        passes[0] |= bool(parameter[0] == omega < parameter[1])
+        passes[-1] |= bool(parameter[-1] == omega < parameter[-2])
+    passed: Indices = np.flatnonzero(passes)
+    return passed
+
+
+def _lengths(path: Path) -> FloatArray:
+    """Along a path (point,)."""
+    length = np.zeros(len(path.z))
+    places(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
+    return length
+
+
+def _with_ends(path: Path, linear: Mask) -> Mask:
+    """With the corners at which linear parts end: there rounding decides what a point is."""
+    beside = np.zeros_like(linear)
+    beside[1:] |= linear[:-1]
+    beside[:-1] |= linear[1:]
+    ends: Mask = linear | (beside & ((path.mark & Mark.CORNER) > 0))
+    return ends

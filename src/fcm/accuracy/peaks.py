@@ -1,0 +1,83 @@
+"""The greatest amplitudes of the partner of a curve, and where they cannot be told."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
+from fcm.accuracy.same_frequency import rises
+from fcm.continuation import Mark
+from fcm.scene.model import FloatArray
+
+NEAR = 8  # points to either side of the highest that may be higher where they are only interpolated
+
+
+def heights(partner: PartnerCurve, change: FloatArray, followed: list[Followed], tops: Indices) -> FloatArray:
+    """Greatest amplitudes (dof,) of the partner of a curve that is highest at the tops (dof,).
+
+    change (point, dof): of the amplitudes along the curve, in their unit. Unknown along a stretch that
+    is nearly as high, and that the partner could not be followed along.
+    """
+    amplitude, options = partner.amplitude, partner.options
+    d = np.arange(len(tops))
+    now = amplitude[tops, d]
+    change, highest = _highest(partner, change)
+    greatest: FloatArray = amplitude[highest, d] + partner.unit[highest, d] * change[highest, d]
+    greatest += rise_beside(partner, partner.unit * change, highest)
+    for top in np.unique(tops[(partner.path.mark[tops] & Mark.CORNER) > 0]).tolist():
+        if _gap(partner, top):
+            for piece in partner.stretches.between(top - 1, top + 1):
+                beyond = piece.shown.amplitude.max(axis=0)
+                greatest = np.where(tops == top, np.fmax(greatest, beyond), greatest)
+    for one in followed:
+        for piece in one.pieces:
+            greatest = np.fmax(greatest, piece.shown.amplitude.max(axis=0))
+    for one in followed:
+        if not any(piece.whole for piece in one.pieces):
+            greatest[amplitude[one.first : one.end].max(axis=0) > options.rival * now] = np.nan
+    return greatest
+
+
+def rise_beside(partner: PartnerCurve, moved: FloatArray, places: Indices) -> FloatArray:
+    """By how much (dof,) a curve whose amplitudes are moved (point, dof) is higher between its highest points
+    and the next; places: the indices of the highest.
+
+    Of the amplitudes that is the cubic with their growth, of what they are moved by a straight line. Nothing
+    is told of what lies between a point and a corner.
+    """
+    corner = ((partner.path.mark & Mark.CORNER) > 0).view(np.uint8)
+    return rises(partner.place, partner.amplitude, partner.shown.growth, moved, corner, places)
+
+
+def _highest(partner: PartnerCurve, change: FloatArray) -> tuple[FloatArray, Indices]:
+    """Changes (point, dof) and where (dof,) with them the partner is highest of the points where it is found:
+    also at those near the highest that are expected to be higher, as an interpolated one may be."""
+    change, count, near = change.copy(), len(change), np.arange(-NEAR, NEAR + 1)[:, None]
+    while True:
+        expected = partner.amplitude + partner.unit * change
+        value = np.where(partner.known[:, None] & np.isfinite(change), expected, 0.0)
+        places = value.argmax(axis=0)
+        d, around = np.arange(len(places)), np.clip(places + near, 0, count - 1)
+        higher = ~partner.known[around] & (expected[around, d] > value[places, d])
+        if not higher.any():
+            return change, places
+        new = np.unique(around[higher])
+        partner.find(new)
+        change[new] = partner.change[new, 1:]
+
+
+def _gap(partner: PartnerCurve, top: int) -> bool:
+    """Whether a corner moves so far along the curve that no point of the partner is near its top.
+
+    Of the two pieces of the partner beside it one then goes on beyond what is displaced to it.
+    """
+    path, growth, beside = partner.path, partner.shown.growth, np.array([top - 1, top + 1])
+    if top == 0 or top == len(path.z) - 1:
+        return False
+    partner.find(beside)
+    moved = path.parameter[beside] * partner.change[beside, 0]
+    slope = np.abs(growth[beside] / path.direction[beside, -1][:, None]).min(axis=0)
+    higher = np.abs(moved[1] - moved[0]) * slope
+    changed = np.abs(partner.change[beside, 1:]).max(axis=0) * partner.unit[top]
+    top_of = partner.amplitude[top] >= partner.amplitude.max(axis=0)
+    return bool((higher > partner.options.gap * changed)[top_of].any())

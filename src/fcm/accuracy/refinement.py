@@ -1,0 +1,184 @@
+"""As many harmonics as an accuracy takes: trace, compare with the partner, add what the spectrum
+names, again."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.accuracy.embedded_pair import Errors, errors_along
+from fcm.accuracy.foreseen import foreseen, needed
+from fcm.accuracy.options import PAIR, REFINEMENT, RefinementOptions
+from fcm.accuracy.outline import Outline, near, outlined, with_more
+from fcm.continuation.follow import Progress
+from fcm.harmonic.cost import AGAIN
+from fcm.harmonic.nearby import with_a_window
+from fcm.harmonic.start import few_of
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Accurate(Outline):
+    """A response, its errors, and the accuracy that was asked for.
+
+    errors (path,) belong to the branches' paths, too; peak (dof,) is the relative error of the greatest
+    amplitude over all of them; worst the greatest of these and of the errors of the folds, NaN where one
+    cannot be told, and told the greatest of those that can.
+    """
+
+    errors: tuple[Errors, ...]
+    peak: FloatArray
+    worst: float
+    told: float
+    accuracy: float
+
+    @property
+    def reached(self) -> bool:
+        """Whether all errors are below the accuracy."""
+        return self.worst <= self.accuracy
+
+    @property
+    def folds(self) -> FloatArray:
+        """Errors of all folds, branch after branch."""
+        return np.concatenate([np.empty(0), *(one.fold for one in self.errors)])
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the pair does: it is accurate, or folds alone cannot be told, which more do not change."""
+        return self.reached or (self.told <= self.accuracy and not np.isnan(self.peak).any())
+
+
+def accurate(
+    system: System,
+    accuracy: float,
+    progress: Progress | None = None,
+    options: RefinementOptions = REFINEMENT,
+) -> Accurate:
+    """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
+
+    As long as a peak of a degree of freedom, or a fold, differs from the partner's by more than the accuracy
+    (relative), the harmonics are added that the spectrum names, and all is traced again: from what the
+    branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough the
+    level of the forces is followed, which may lead to branches that fewer harmonics do not have. What would
+    take longer, with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer
+    is given up. Whether the branches are complete is another question, see their status.
+    """
+    found: Outline = outlined(system, progress)
+    sure: Accurate | None = None
+    further, begun = tuple[int, ...](), False
+    for _ in range(options.rounds):
+        if not found.shown:
+            break
+        sure, ahead = None, foreseen(found, options)
+        if ahead.told and ahead.change <= accuracy:
+            found = found.whole()
+            if found.further:
+                break
+            sure = judged(found, accuracy)
+            if sure.agrees:
+                more = with_a_window(found.system, found.traced.found)
+                if more == found.system.harmonics:
+                    return sure
+            else:
+                more = enlarged(sure, accuracy)
+        else:
+            more = needed(ahead, found.system.harmonics, accuracy, options)
+        then, further, begun = with_more(found, more, ahead.told, progress)
+        if then is None:
+            break
+        found, sure = then, None
+    if sure is None:
+        found = found.whole()
+        further, begun = (found.further, found.begun) if found.further else (further, begun)
+        sure = judged(found, accuracy)
+    return replace(sure, further=further, begun=begun)
+
+
+def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accurate | None:
+    """The response traced again with more harmonics; None where no solution is found, or that takes longer
+    than is worth it."""
+    if found.seconds_with(harmonics) > AGAIN:
+        return None
+    beside = near(found, harmonics)
+    then = outlined(found.system.with_harmonics(harmonics), None, found.traced.found, beside)
+    return judged(then, accuracy) if then.shown else None
+
+
+def given(system: System, progress: Progress | None = None) -> Accurate:
+    """The response with the harmonics that a system has.
+
+    Traced with one of them first, then with those that tell how far the level of all is to be followed, then
+    with half: what is beside its stable peaks with more is a start, too, as the level of the forces may not
+    lead to it. A branch that is isolated with three harmonics may hang together with the others with one.
+    """
+    counts = sorted({1, few_of(system), max(len(system.harmonics) // 2, few_of(system))})
+    if not system.scene.contacts:
+        return estimated(system, np.inf, progress)
+    before: Outline | None = None
+    for count in counts:
+        if count < len(system.harmonics):
+            before = _after(before, system.with_harmonics(system.harmonics[:count]))
+    return judged(_after(before, system, progress), np.inf)
+
+
+def _after(before: Outline | None, system: System, progress: Progress | None = None) -> Outline:
+    """The response of a system, after that with fewer harmonics."""
+    if before is None:
+        return outlined(system, progress)
+    return outlined(system, progress, before.traced.found, near(before, system.harmonics))
+
+
+def judged(outline: Outline, accuracy: float, known: tuple[Errors, ...] = ()) -> Accurate:
+    """A response with its errors, of which those of its first branches may be known."""
+    system, response, shown = outline.system, outline.traced, outline.shown
+    paths = response.branches.paths
+    rest = list(zip(paths, shown, strict=True))[len(known) :]
+    errors = (*known, *(errors_along(system, path, one) for path, one in rest))
+    own = system, response, shown, outline.seconds, errors
+    if not paths:
+        none = np.full(len(system.scene.modal.dofs), np.nan)
+        return Accurate(*own, none, np.nan, np.nan, accuracy)
+    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    height, peak = heights.max(axis=0), _peaks(heights, errors)
+    matter = peak[height > REFINEMENT.nothing * height.max()]
+    every = np.concatenate((matter, *(one.fold for one in errors)))
+    worst, told = float(every.max(initial=0.0)), float(every[np.isfinite(every)].max(initial=0.0))
+    return Accurate(*own, peak, worst, told, accuracy)
+
+
+def estimated(system: System, accuracy: float, progress: Progress | None = None) -> Accurate:
+    """The response of a system, with its errors."""
+    return judged(outlined(system, progress), accuracy)
+
+
+def _peaks(heights: FloatArray, errors: tuple[Errors, ...]) -> FloatArray:
+    """Relative error of the greatest of heights (path, dof) of each degree of freedom.
+
+    Another path may be the highest of the partner's; unknown where that of one nearly as high is.
+    """
+    which, d = heights.argmax(axis=0), np.arange(heights.shape[1])
+    now = heights[which, d]
+    peak = np.array([one.peak for one in errors])[which, d]
+    theirs = np.array([one.height for one in errors])
+    greatest = np.where(np.isnan(theirs), 0.0, theirs).max(axis=0)
+    other = greatest > theirs[which, d]
+    peak = np.where(other, np.abs(greatest - now) / np.where(now > 0.0, now, 1.0), peak)
+    unknown = (np.isnan(theirs) & (heights > PAIR.rival * now)).any(axis=0)
+    return np.where(unknown, np.nan, peak)
+
+
+def enlarged(found: Accurate, accuracy: float, seconds: float = np.inf) -> tuple[int, ...]:
+    """The harmonics of a response and those that the spectrum names for the accuracy.
+
+    No more are added than can be followed in some seconds.
+    """
+    has, ahead = found.system.harmonics, foreseen(found)
+    if np.isfinite(found.worst):
+        ahead = replace(ahead, change=found.worst, told=True)
+    share = ahead.share
+    more = sorted(set(needed(ahead, has, accuracy)) - set(has), key=lambda h: -share[h - 1])
+    while more and found.seconds_with((*has, *more)) > seconds:
+        more.pop()
+    return tuple(sorted((*has, *more)))

@@ -1,0 +1,65 @@
+r"""What the harmonics that the partner lacks would still do to a motion of it, without feedback.
+
+Each is the coefficient of the exact forces times the receptance, as in `fcm.harmonic.further`; all of them
+together are added to the motion, whose half peak-to-peak displacement then differs. Far below some
+modes these are met by harmonics so high that no balance has them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.options import PairOptions
+from fcm.contact.periodic.workspace import periodic_contact
+from fcm.harmonic.reported import reported_at
+from fcm.harmonic.system import System
+from fcm.scene.model import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+NO_GRADIENT = np.empty((0, 0, 0))
+
+
+def left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
+    """By how much (dof,) the amplitudes of a motion z (unknown + 1,) change by what a balance leaves out.
+
+    Zero where no mode is met beyond its harmonics. Of a ring nothing is looked at, and of many modes
+    and degrees of freedom only as far as the options allow.
+    """
+    last = _reach(system, float(z[-1]), options)
+    others = tuple(h for h in range(1, last + 1) if h not in system.harmonics)
+    if not others or others[-1] < system.harmonics[-1]:
+        return np.zeros(system.linear.dofs.shape[1])
+    X = reported_at(system, z[None], np.zeros((1, len(z)))).X[0]
+    top = max(last, system.harmonics[-1])
+    spectrum = np.zeros((options.samples * top // 2 + 1, X.shape[1]), dtype=np.complex128)
+    spectrum[list(system.harmonics)] = X
+    without = np.ptp(np.fft.irfft(spectrum, axis=0), axis=0)
+    spectrum[list(others)] = -_moved(system, z, others)
+    changed = np.ptp(np.fft.irfft(spectrum, axis=0), axis=0) - without
+    half: FloatArray = 0.5 * (len(spectrum) - 1) * changed
+    return half
+
+
+def _reach(system: System, omega: float, options: PairOptions) -> int:
+    """The last harmonic that is looked at."""
+    linear = system.linear
+    if system.scene.ring is not None or not linear.natural.size:
+        return 0
+    each = linear.natural.size * (linear.ports.shape[1] + linear.dofs.shape[1])
+    # the same for many frequencies, so that they share a kernel
+    wide = 2.0 ** np.ceil(np.log2(max(options.past * linear.natural.max() / omega, 1.0)))
+    return int(min(wide, options.farthest, options.products / each))
+
+
+def _moved(system: System, z: FloatArray, others: tuple[int, ...]) -> ComplexArray:
+    """What the forces of other harmonics displace (harmonic, dof)."""
+    contacts = system.scene.contacts
+    laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0, 0.0) for c in contacts])
+    force = np.empty((len(contacts), 2 + 4 * len(others)))
+    kernel = periodic_contact(system.harmonics, others)
+    kernel.all(np.ascontiguousarray(z[:-1]).reshape(len(contacts), -1), laws, force, NO_GRADIENT)
+    F = force[:, 2:].reshape(len(contacts), len(others), 2, 2)
+    ports = (F[..., 0] + 1j * F[..., 1]).transpose(1, 0, 2).reshape(1, len(others), -1)
+    found: ComplexArray = system.linear.displacements(np.array(others, dtype=np.float64), z[-1:], ports)[0]
+    return found

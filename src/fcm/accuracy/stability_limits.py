@@ -1,0 +1,147 @@
+r"""How far the frequencies at which stability is lost are from where more harmonics have them.
+
+Places of the curve around a crossing are displaced to the curve of the balance with those further harmonics
+that would do most there, and the growth of disturbances is looked at on that: where it changes its sign is
+the crossing of more harmonics.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fcm.accuracy.partner import lifted_of, partner_of
+from fcm.continuation import Between, Path
+from fcm.continuation.secants import Secants
+from fcm.harmonic.floquet import multipliers_of
+from fcm.harmonic.further import Further
+from fcm.harmonic.inserted import Crossing
+from fcm.harmonic.lifted import Lifted
+from fcm.harmonic.reported import reported_at
+from fcm.harmonic.system import System
+from fcm.harmonic.verdicts import EITHER
+
+FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
+FIRST = 0.5
+FINE = 1e-5  # of the way between two points, to which it is found: an error is told to a few parts of itself,
+PART = 0.03  # or to this part of itself, and of what it may be
+LEAST = -0.3  # growth that is as good as any that is less
+LOOKS = 40
+SAME = 0.1  # of the way to any other crossing, within which that of more harmonics is that of fewer
+
+
+@dataclass(frozen=True)
+class Lost:
+    """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
+    cannot be told. harmonics are those that tell."""
+
+    frequency: float  # [rad/s] of the crossing
+    error: float
+    harmonics: tuple[int, ...]
+
+
+def lost_along(
+    system: System, path: Path, crossings: Sequence[Crossing], accuracy: float = 0.0
+) -> list[Lost]:
+    """Errors of the crossings of a path, which may be as large as accuracy."""
+    known: dict[tuple[int, ...], _Beside] = {}
+    return [_lost(system, path, one, accuracy, known) for one in crossings]
+
+
+def moved(lost: Sequence[Lost], fewer: Sequence[Lost]) -> list[Lost]:
+    """Crossings of a response, and where more harmonics do not tell the error of one, how far it is from
+    where fewer have it: of one that is `SAME` in both."""
+    return [_moved(one, lost, fewer) if math.isnan(one.error) else one for one in lost]
+
+
+def _moved(one: Lost, lost: Sequence[Lost], fewer: Sequence[Lost]) -> Lost:
+    off, *others = sorted([math.inf, math.inf, *(abs(other.frequency - one.frequency) for other in fewer)])
+    others += [abs(other.frequency - one.frequency) for other in lost if other is not one]
+    return replace(one, error=off / one.frequency) if off < SAME * min(others) else one
+
+
+def _lost(
+    system: System, path: Path, one: Crossing, accuracy: float, known: dict[tuple[int, ...], _Beside]
+) -> Lost:
+    """Of one; known are the curves of more harmonics that others have been looked for on."""
+    z, direction = one.z[None], one.direction[None]
+    amplitude = reported_at(system, z, direction).amplitude[0]
+    share = Further(system).shares(z, amplitude[None])[0]
+    more = partner_of(system.harmonics, share, len(system.scene.contacts))
+    if more == system.harmonics:  # nothing is left out
+        return Lost(one.frequency, 0.0, more)
+    if more not in known:
+        known[more] = _Beside(system.with_harmonics(more), path, lifted_of(system, more), system)
+    found = known[more].crossing(one, PART * accuracy)
+    return Lost(one.frequency, abs(found / one.frequency - 1.0), more)
+
+
+class _Beside:
+    """The curve of more harmonics beside a path, at places of this: points, by number, and part of a way."""
+
+    def __init__(self, finer: System, path: Path, lifted: Lifted, system: System) -> None:
+        self.path, self.lifted, self.balance = path, lifted, system.balance()
+        self.multipliers = multipliers_of(finer, float(path.parameter.max()))
+        self.frequency = math.nan  # of the place that was looked at last
+
+    def growth(self, place: float) -> float:
+        """Of disturbances on the curve of more harmonics beside a place; NaN where it is not known.
+
+        The finer motion of so many harmonics tells it: to balance its own as well would be dear, and is done
+        only where it does not tell.
+        """
+        k = min(int(place), len(self.path.z) - 2)
+        z, direction = self.path.z[k], self.path.direction[k]
+        if place != k:
+            between = Between(self.balance, self.path, k)
+            if not between.put(place - k):
+                return math.nan
+            z, direction = between.z, between.direction
+        if not self.lifted.beside(np.ascontiguousarray(z), np.ascontiguousarray(direction)):
+            return math.nan
+        self.frequency = float(self.lifted.newton.z[-1])
+        z = np.array(self.lifted.newton.z)
+        alone = self.multipliers.verdict(z, enough=EITHER).growth
+        return max(self.multipliers.verdict(z).growth if math.isnan(alone) else alone, LEAST)
+
+    def crossing(self, one: Crossing, fine: float) -> float:
+        """The frequency at which growth changes its sign next to a crossing; NaN where that is not found.
+
+        To `FINE`, or until two looks are at frequencies that differ by less than fine, relative, or by less
+        than `PART` of how far they are from the crossing.
+        """
+        near = self._enclosed(one.place)
+        if near is None:
+            return math.nan
+        for _ in range(LOOKS):
+            at, before = near.at, self.frequency
+            value = self.growth(at)
+            if math.isnan(value) or near.width < FINE:
+                break
+            off = max(fine * one.frequency, PART * abs(self.frequency - one.frequency))
+            if abs(self.frequency - before) < off:
+                break
+            near.saw(at, value)
+            if near.known(FINE):
+                break
+        return self.frequency if not math.isnan(value) else math.nan
+
+    def _enclosed(self, place: float) -> Secants | None:
+        """The change of sign nearest to a place, of which both sides are looked at further and further away;
+        None if there is none up to where the growth is not known, or even that there is not."""
+        now, last, near = self.growth(place), float(len(self.path.z) - 1), FIRST
+        before = {} if math.isnan(now) else {1.0: (place, now), -1.0: (place, now)}
+        while before and near <= FAR:
+            for sign, (known, growth) in list(before.items()):
+                at = place + sign * near
+                value = self.growth(at) if 0.0 <= at <= last else math.nan
+                if (value > 0.0) != (growth > 0.0) and not math.isnan(value):
+                    (low, one), (high, other) = sorted(((known, growth), (at, value)))
+                    return Secants(low, high, one, other, may_jump=True)
+                before[sign] = (at, value)
+            before = {sign: side for sign, side in before.items() if not math.isnan(side[1])}
+            near *= 2.0
+        return None

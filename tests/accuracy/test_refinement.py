@@ -1,0 +1,269 @@
+"""Harmonics chosen for an accuracy."""
+
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fcm.accuracy import outline, refinement
+from fcm.accuracy.outline import Outline, outlined
+from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
+from fcm.continuation import follow
+from fcm.continuation.branches import contains
+from fcm.harmonic import start, trace
+from fcm.harmonic.cost import seconds_of
+from fcm.harmonic.system import System
+from fcm.harmonic.work import TooLongError
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
+
+from ..harmonic.truth import scene
+
+EXACT = {
+    300: 7.517e-5,
+    100: 2.590e-5,
+    20: 6.147e-6,
+    10: 3.853e-6,
+    7.5: 6.806e-6,
+}  # peaks of 40z, exact motion
+
+
+def test_a_linear_response_takes_one_harmonic_and_one_pass(monkeypatch):
+    passes = []
+    traced = outline.traced
+    monkeypatch.setattr(outline, "traced", lambda *args: passes.append(args) or traced(*args))
+    found = accurate(System(scene("yang1998", 100)), 1e-6)
+    assert found.system.harmonics == (1,)
+    assert found.reached
+    assert found.worst == 0.0
+    assert len(passes) == 1
+
+
+@pytest.mark.parametrize("preload", EXACT)
+def test_a_blade_to_one_percent(preload):
+    one = scene("shroud", preload)
+    found = accurate(System(one), 1e-2)
+    assert found.reached
+    assert found.worst <= 1e-2
+    at = list(one.modal.dofs).index("40z")
+    height = max(shown.amplitude[:, at].max() for shown in found.shown)
+    assert height == pytest.approx(EXACT[preload], rel=2e-2)
+
+
+@pytest.mark.parametrize("preload", [300, 100])
+def test_a_blade_to_a_tenth_of_a_percent(preload):
+    one = scene("shroud", preload)
+    found = accurate(System(one), 1e-3)
+    assert found.reached
+    at = list(one.modal.dofs).index("40z")
+    height = max(shown.amplitude[:, at].max() for shown in found.shown)
+    assert height == pytest.approx(EXACT[preload], rel=2e-3)
+
+
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("case", [("yang1998", 5), ("yang1998", -5), ("gap5", None), ("stuck_mean", None)])
+def test_peaks_are_as_accurate_as_was_asked_for(case, accuracy):
+    found = accurate(System(scene(*case)), accuracy)
+    assert found.reached
+    many = estimated(System(scene(*case), tuple(range(1, 32))), 0.0)
+    true = many.shown[0].amplitude.max(axis=0)
+    assert np.abs(found.shown[0].amplitude.max(axis=0) / true - 1.0).max() < 1.5 * accuracy
+
+
+def test_harmonics_are_chosen_by_need():
+    """At n_0 = -5 the ninth meets the mode at 10 rad/s; the fourth to eighth do next to nothing."""
+    found = accurate(System(scene("yang1998", -5)), 2e-3)
+    assert 9 in found.system.harmonics
+    assert len(found.system.harmonics) < 9
+
+
+def test_folds_that_cannot_be_told_ask_for_no_more_harmonics(monkeypatch):
+    """The same harmonics as where they can, and this is said."""
+    system = System(scene("yang1998", 5))
+    known, real = accurate(system, 1e-2), refinement.errors_along
+
+    def untold(*args):
+        errors = real(*args)
+        return replace(errors, fold=np.where(np.arange(errors.fold.size) == 0, np.nan, errors.fold))
+
+    monkeypatch.setattr(refinement, "errors_along", untold)
+    found = accurate(system, 1e-2)
+    assert known.reached and not found.reached
+    assert found.system.harmonics == known.system.harmonics
+    assert np.isnan(found.worst) and not found.further
+    assert np.count_nonzero(np.isnan(found.folds)) == 1
+    assert found.told == max(found.peak.max(), np.nanmax(found.folds)) <= 1e-2
+
+
+def test_levels_are_followed_with_the_last_harmonics_and_lead_to_no_branch_that_is_missed(monkeypatch):
+    """The rounds between go on from the branches of fewer harmonics; every solution is on a branch."""
+    followed, passes = [], []
+    found_at, led = trace.found_at, outline.traced_from
+    monkeypatch.setattr(
+        trace, "found_at", lambda one, *a: followed.append(one.harmonics) or found_at(one, *a)
+    )
+    monkeypatch.setattr(outline, "traced_from", lambda one, *a: passes.append(one.harmonics) or led(one, *a))
+    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    last = found.system.harmonics
+    assert found.reached and len(passes) == 2 and passes[-1] == last
+    assert followed == [(1,), last]
+    for omega in start.looked_at(found.system):
+        for z in start.solutions(found.system, omega).solutions:
+            assert any(contains(path, z, found.system.balance()) for path in found.traced.branches.paths)
+
+
+def test_a_branch_that_fewer_harmonics_do_not_lead_to_is_found_by_the_level_at_last(monkeypatch):
+    """As if there were no other way to a closed branch: that is another to be chosen for, too."""
+    known = accurate(System(scene("isola")), 1e-2)
+    led, ahead = outline.traced_from, refinement.foreseen
+    asked: list[int] = []
+
+    def the_first_alone(*args):
+        response = led(*args)
+        asked.clear()
+        return replace(response, branches=replace(response.branches, paths=response.branches.paths[:1]))
+
+    monkeypatch.setattr(outline, "traced_from", the_first_alone)
+    monkeypatch.setattr(
+        refinement, "foreseen", lambda one, *a: asked.append(len(one.shown)) or ahead(one, *a)
+    )
+    found = accurate(System(scene("isola")), 1e-2)
+    assert asked == [1] and len(known.shown) == 2
+    assert found.reached and found.system.harmonics == known.system.harmonics
+    assert found.peak == pytest.approx(known.peak, rel=1e-3)
+    assert sorted(one.amplitude.max() for one in found.shown) == pytest.approx(
+        sorted(one.amplitude.max() for one in known.shown), rel=1e-6
+    )
+
+
+def test_where_the_levels_take_too_long_the_response_is_that_of_fewer_harmonics_and_says_so(monkeypatch):
+    system = System(scene("yang1998", 5))
+    last = accurate(system, 1e-4).system.harmonics
+
+    def too_long(one, before):
+        if one.harmonics == last:
+            raise TooLongError
+        return with_levels(one, before)
+
+    with_levels = outline.with_levels
+    monkeypatch.setattr(outline, "with_levels", too_long)
+    found = accurate(System(system.scene), 1e-4)
+    assert found.further == last and found.begun and not found.reached
+    assert {1} < set(found.system.harmonics) < set(last)
+    assert all(one.harmonics == found.system.harmonics for one in found.traced.found)
+
+
+def test_what_has_been_taken_counts_in_what_takes_too_long(monkeypatch):
+    """A round that alone is not too long is not begun after others."""
+    system = System(scene("yang1998", 5))
+    enough, taken = accurate(system, 1e-4), system.work.seconds
+    assert enough.reached and not enough.begun
+    monkeypatch.setattr(outline, "PATIENCE", taken)
+    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.9 * taken)
+    found = accurate(System(system.scene), 1e-4)
+    assert not found.reached and not found.begun
+    assert set(found.system.harmonics) > {1}
+    assert set(found.further) > set(found.system.harmonics)
+
+
+def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
+    """Each of them as it is counted from outside: by evaluations of balances of their sizes."""
+    system = System(scene("yang1998", 5), (1, 2, 3))
+    paths = {}
+    for module in (start, trace):
+        some = paths[module] = []
+        keep = some.append
+        monkeypatch.setattr(
+            module, "follow", lambda *a, keep=keep, **k: keep(path := follow(*a, **k)) or path
+        )
+    found = outlined(system)
+    assert paths[start] and paths[trace]
+    evaluations = sum(path.evaluations for some in paths.values() for path in some)
+    assert found.seconds == pytest.approx(seconds_of(system, evaluations, 3))
+    judged(found, 1e-3)
+    assert system.work.seconds > found.seconds
+    assert found.seconds_with((1, 2, 3)) == pytest.approx(found.seconds)
+
+
+@pytest.mark.parametrize(
+    ("contacts", "modes", "taken"),
+    [
+        (1, 30, (8.7, 23.7, 83, 565)),
+        (3, 7, (20.6, 98, 477, 5330)),  # the others are condensed from 20 or 9 harmonics on
+        (3, 2, (27, 145, 255, 1205)),
+        (10, 4, (199, 360, 1029, 7350)),
+        (10, 10, (188, 697, 3248, 33800)),
+    ],
+)
+def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
+    """Microseconds of processor time of following curves of 3, 9, 20 and 50 harmonics, for each evaluation.
+
+    Measured once where numpy's sine took 15.7 ns, and divided by 1.57; of contacts that stick and slip, or
+    open. Where they stick it is down to half as long.
+    """
+    sizes = SimpleNamespace(
+        scene=SimpleNamespace(contacts=[None] * contacts), linear=SimpleNamespace(natural=[1.0] * modes)
+    )
+    told = [1e6 * seconds_of(sizes, 1, harmonics) for harmonics in (3, 9, 20, 50)]
+    assert np.log(told) == pytest.approx(np.log(taken), abs=np.log(1.3))
+
+
+def test_a_round_that_takes_longer_than_was_foreseen_is_given_up(monkeypatch):
+    """And that of fewer harmonics before it stays, with its error."""
+    system = System(scene("yang1998", 5))
+    first = outlined(system)
+    monkeypatch.setattr(Outline, "seconds_with", lambda *_: 0.0)
+    monkeypatch.setattr(outline, "PATIENCE", 1.01 * first.seconds)
+    found = accurate(System(system.scene), 1e-3)
+    assert found.begun and set(found.further) > {1, 2, 3}
+    assert found.system.harmonics == (1,) and not found.reached
+    assert found.worst == pytest.approx(0.062, rel=0.1)
+    assert found.system.work.most == np.inf
+    curve = traced_curve(system.scene, Wanted(harmonics=None, accuracy=1e-3))
+    assert "with 1 harmonic an estimated error of 6" in curve.short_of
+    assert "; more were given up after" in curve.short_of
+    assert {int(h) for h in re.split("[, ]", curve.short_of.split("--harmonics ")[1])} <= set(found.further)
+
+
+def test_what_would_take_too_long_is_said(monkeypatch):
+    monkeypatch.setattr(outline, "PATIENCE", 0.0)
+    found = accurate(System(scene("yang1998", 5)), 1e-3)
+    assert not found.reached
+    assert found.system.harmonics == (1,)
+    assert found.worst == found.told == pytest.approx(0.062, rel=0.1)
+    assert set(found.further) > {1, 2, 3}
+
+
+def test_no_more_harmonics_are_added_than_some_seconds_allow():
+    found = estimated(System(scene("yang1998", -5)), 1e-3)
+    every = enlarged(found, 1e-4)
+    assert {2, 9} < set(every)
+    for count in range(1, len(every)):
+        seconds = found.seconds_with(every[: count + 1])
+        fewer = enlarged(found, 1e-4, seconds)
+        assert len(fewer) == count + 1 and {1} < set(fewer) <= set(every)
+        assert found.seconds_with(fewer) <= seconds
+    assert enlarged(found, 1e-4, 0.0) == (1,)
+
+
+def test_where_nothing_is_told_of_more_harmonics_they_take_no_longer_than_some_seconds(monkeypatch):
+    """The lowest three are added all the same: one harmonic may have a branch of no motion at all."""
+    own = refinement.foreseen
+    monkeypatch.setattr(refinement, "foreseen", lambda *a: replace(own(*a), change=0.0, told=False))
+    monkeypatch.setattr(outline, "DOUBTFUL", 0.0)
+    found = accurate(System(scene("yang1998", 5)), 1e-4)
+    assert found.system.harmonics == (1, 2, 3) and not found.reached
+    assert set(found.further) > {1, 2, 3} and not found.begun
+    monkeypatch.setattr(outline, "DOUBTFUL", np.inf)
+    assert set(accurate(System(scene("yang1998", 5)), 1e-4).system.harmonics) > {1, 2, 3}
+
+
+def test_the_highest_of_more_harmonics_are_left_out_where_they_take_too_long():
+    found = outlined(System(scene("yang1998", 5)))
+    every = (1, 2, 3, 5, 9)
+    for count in (3, 4, 5):
+        assert found.within(found.seconds_with(every[:count]), every) == every[:count]
+    assert found.within(0.0, every) == (1, 2, 3)
+    assert found.within(0.0, (1, 2)) == (1, 2)

@@ -1,0 +1,77 @@
+"""Errors where no point of the curve of more harmonics lies beside that of fewer; what is called stable."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.accuracy.refinement import given
+from fcm.harmonic.system import System
+from fcm.orbit import periodic
+from fcm.orbit.harmonic import state_of
+from fcm.response import trace
+from fcm.response.exact import trace_exact
+from fcm.scene import scene_from_dict
+
+
+def test_errors_where_a_corner_has_moved_are_those_at_the_same_frequency():
+    """The exact motion differs by 6 to 9 % from that of three harmonics."""
+    one = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["p", "q", "r"], "frequency": [1.0, 2.534, 2.654],
+                "damping": [0.0058, 0.0057, 0.0329],
+                "shapes": [[-0.631, -0.37, 1.199], [-1.776, 1.221, -0.43], [1.571, 0.519, 1.129]],
+            },
+            "contact": [
+                {"name": "c", "tangential": "p", "normal": "r", "mu": 0.2959, "k_u": 2.432, "k_v": 0.1821,
+                 "n_0": 2.227}
+            ],
+            "force": [
+                {"dof": {"p": -1.134, "q": 0.1549, "r": -0.5379}, "amplitude": 1.0, "phase": 6.208,
+                 "proportional_to": "omega^2"},
+                {"dof": {"p": -1.207, "q": -0.0488, "r": 0.2229}, "amplitude": 1.0, "phase": 2.22,
+                 "proportional_to": "omega^2"},
+            ],
+            "response": {"frequency": [0.815, 1.3]},
+        }
+    )  # fmt: skip
+    found = given(System(one, (1, 2, 3)))
+    (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
+    some = np.flatnonzero((path.parameter > 0.996) & (path.parameter < 1.0005))
+    assert some.size > 8
+    for i in some[:: some.size // 4]:
+        exact = periodic(one, float(path.parameter[i]), state_of(one, (1, 2, 3), path.z[i]))
+        off = np.abs(exact.measure.amplitude - shown.amplitude[i]).max() / shown.amplitude[i].max()
+        assert 0.05 < off < 0.1
+        np.testing.assert_allclose(errors.truncation[i], off, rtol=0.1)
+
+
+def test_a_wide_stretch_whose_error_is_not_known_is_not_called_stable():
+    """Three harmonics have a branch of a hundred times the amplitude down to 0.7 rad/s, that of the exact
+    motion ends before 0.74."""
+    one = scene_from_dict(
+        {
+            "modal": {
+                "dofs": ["p", "q", "r"], "frequency": [0.1536, 3.616], "damping": [0.0474, 0.0182],
+                "shapes": [[0.956, -0.152, -1.186], [0.928, 0.961, -0.97]],
+            },
+            "contact": [
+                {"name": "a", "tangential": "p", "normal": "r", "mu": 0.4963, "k_u": 0.3449, "k_v": 0.4722,
+                 "n_0": 0.1783},
+                {"name": "b", "tangential": "q", "normal": "r", "mu": 0.1279, "k_u": 0.1145, "k_v": 1.309,
+                 "n_0": 2.562},
+            ],
+            "force": [{"dof": {"p": -2.018, "q": 0.7729, "r": -1.563}, "amplitude": 1.0, "phase": 3.45}],
+            "response": {"frequency": [0.55, 1.2]},
+        }
+    )  # fmt: skip
+    (exact,) = trace_exact(replace(one, frequency_range=(0.72, 0.76))).curves
+    (curve,) = trace(one, harmonics=(1, 2, 3)).curves
+
+    def stable_at(one):
+        """Amplitudes at which a curve passes 0.74 rad/s where it is said to be stable."""
+        ways = (one.frequency[:-1] - 0.74) * (one.frequency[1:] - 0.74) <= 0.0
+        return one.amplitude[:-1][ways & (one.stable[:-1] == 1.0)].max(axis=1)
+
+    assert exact.complete and stable_at(exact).max() < 0.2
+    assert np.nanmax(curve.amplitude) > 10.0 and stable_at(curve).max(initial=0.0) < 0.2
