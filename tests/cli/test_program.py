@@ -53,7 +53,7 @@ def test_the_curves_of_the_paper_are_traced_without_lapack():
     """Its import takes longer than all of them."""
     run = "from fcm.cli import main; main(['respond', 'yang1998'], standalone_mode=False)"
     done = python("-c", f"import sys\n{run}\nprint(*sys.modules)")
-    assert "fcm.harmonic.corrected" in done.out.split() and "scipy.linalg" not in done.out.split()
+    assert "fcm.accuracy.embedded_pair" in done.out.split() and "scipy.linalg" not in done.out.split()
 
 
 def test_drawing_and_xarray_are_not_imported_by_respond(scene):

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fcm.accuracy.foreseen import Foreseen, needed
 from fcm.accuracy.partner import lifted_of, partner_of
 from fcm.continuation import Between, Path
 from fcm.continuation.secants import Secants
 from fcm.harmonic.floquet import multipliers_of
-from fcm.harmonic.further import Further
+from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.inserted import Crossing
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import reported_at
@@ -36,7 +37,7 @@ SAME = 0.1  # of the way to any other crossing, within which that of more harmon
 @dataclass(frozen=True)
 class Lost:
     """A crossing as more harmonics have it: by how much its frequency is another, relative; NaN where that
-    cannot be told. harmonics are those that tell."""
+    cannot be told. harmonics are those that the accuracy takes."""
 
     frequency: float  # [rad/s] of the crossing
     error: float
@@ -76,7 +77,9 @@ def _lost(
     if more not in known:
         known[more] = _Beside(system.with_harmonics(more), path, lifted_of(system, more), system)
     found = known[more].crossing(one, PART * accuracy)
-    return Lost(one.frequency, abs(found / one.frequency - 1.0), more)
+    error = abs(found / one.frequency - 1.0)
+    ahead = Foreseen(0.0 if math.isnan(error) else error, not math.isnan(error), share[:HIGHEST], more)
+    return Lost(one.frequency, error, needed(ahead, system.harmonics, accuracy))
 
 
 class _Beside:
