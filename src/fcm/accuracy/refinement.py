@@ -3,13 +3,14 @@ names, again."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fcm.accuracy.embedded_pair import Errors, errors_along
 from fcm.accuracy.foreseen import foreseen, needed
-from fcm.accuracy.options import PAIR, REFINEMENT, RefinementOptions
+from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import Outline, near, outlined, with_more
 from fcm.continuation.follow import Progress
 from fcm.harmonic.cost import AGAIN
@@ -17,6 +18,9 @@ from fcm.harmonic.nearby import with_a_window
 from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+
+# what has been traced, by how much its partner changes it (NaN: not told), and the harmonics that come next
+Keep = Callable[[Outline, float, tuple[int, ...]], None]
 
 
 @dataclass(frozen=True)
@@ -55,6 +59,7 @@ def accurate(
     accuracy: float,
     progress: Progress | None = None,
     options: RefinementOptions = REFINEMENT,
+    keep: Keep | None = None,
 ) -> Accurate:
     """The response of a scene (of one curve) with the harmonics that an accuracy takes; system has one.
 
@@ -63,7 +68,8 @@ def accurate(
     branches before, and their stable peaks, lead to with more. Only with what is foreseen to be enough the
     level of the forces is followed, which may lead to branches that fewer harmonics do not have. What would
     take longer, with all before it, than anyone waits is not begun, see `PATIENCE`, and what does take longer
-    is given up. Whether the branches are complete is another question, see their status.
+    is given up. Whether the branches are complete is another question, see their status. What has been traced
+    is told to keep, before more is.
     """
     found: Outline = outlined(system, progress)
     sure: Accurate | None = None
@@ -85,6 +91,8 @@ def accurate(
                 more = enlarged(sure, accuracy)
         else:
             more = needed(ahead, found.system.harmonics, accuracy, options)
+        if keep is not None:
+            keep(sure or found, ahead.change if ahead.told else np.nan, more)
         then, further, begun = with_more(found, more, ahead.told, progress)
         if then is None:
             break
@@ -106,7 +114,7 @@ def finer(found: Accurate, harmonics: tuple[int, ...], accuracy: float) -> Accur
     return judged(then, accuracy) if then.shown else None
 
 
-def given(system: System, progress: Progress | None = None) -> Accurate:
+def given(system: System, progress: Progress | None = None, keep: Keep | None = None) -> Accurate:
     """The response with the harmonics that a system has.
 
     Traced with one of them first, then with those that tell how far the level of all is to be followed, then
@@ -120,6 +128,8 @@ def given(system: System, progress: Progress | None = None) -> Accurate:
     for count in counts:
         if count < len(system.harmonics):
             before = _after(before, system.with_harmonics(system.harmonics[:count]))
+            if keep is not None and before.shown:
+                keep(before, np.nan, system.harmonics)
     return judged(_after(before, system, progress), np.inf)
 
 
@@ -130,12 +140,14 @@ def _after(before: Outline | None, system: System, progress: Progress | None = N
     return outlined(system, progress, before.traced.found, near(before, system.harmonics))
 
 
-def judged(outline: Outline, accuracy: float, known: tuple[Errors, ...] = ()) -> Accurate:
+def judged(
+    outline: Outline, accuracy: float, known: tuple[Errors, ...] = (), options: PairOptions = PAIR
+) -> Accurate:
     """A response with its errors, of which those of its first branches may be known."""
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
     rest = list(zip(paths, shown, strict=True))[len(known) :]
-    errors = (*known, *(errors_along(system, path, one) for path, one in rest))
+    errors = (*known, *(errors_along(system, path, one, options) for path, one in rest))
     own = system, response, shown, outline.seconds, errors
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)

@@ -97,9 +97,9 @@ def every_balance(whole: Scene, look: Look) -> Outline:
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
     from fcm.branches.search import with_branching, with_isolas
-    from fcm.harmonic.choice import accurate
-    from fcm.harmonic.error import reported
-    from fcm.harmonic.outline import Outline, outlined
+    from fcm.accuracy.refinement import accurate
+    from fcm.harmonic.reported import reported
+    from fcm.accuracy.outline import Outline, outlined
 
     if len(whole.contacts) >= MANY:
         return outlined(_single(whole, look))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,12 +59,18 @@ class Work:
                 saved, begin = _save(curves, saved, report), time.monotonic()
             try:
                 report(number / len(group), "")
-                curve = traced_curve(scene, self.wanted)
-            except KeyboardInterrupt:
+                curve = traced_curve(scene, self.wanted, tell=partial(report, number / len(group)))
+            except KeyboardInterrupt as stopped:
                 _save(curves, saved, report)
+                if isinstance(stopped, Interrupted):
+                    curves += [self._kept(one) for one in stopped.results]
                 raise Interrupted(curves) from None
-            curves.append(without_points(curve, self.samples) if self.peaks_only else curve)
+            curves.append(self._kept(curve))
         return curves
+
+    def _kept(self, curve: Curve) -> Curve:
+        """What is kept of a curve."""
+        return without_points(curve, self.samples) if self.peaks_only else curve
 
 
 def _known(group: Group, saved: Sequence[Any]) -> list[Curve]:

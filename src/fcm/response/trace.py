@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fcm.accuracy.refinement import Accurate, accurate, enlarged, finer, given
+from fcm.accuracy.options import PAIR
+from fcm.accuracy.refinement import Accurate, accurate, enlarged, finer, given, judged
 from fcm.accuracy.stability_limits import Lost, lost_along, moved
 from fcm.accuracy.trust import astray, disbelieved
 from fcm.branches.options import FOLDS
@@ -29,28 +30,68 @@ from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
 from fcm.response.restless import with_missed
 from fcm.response.short_of import short_of
+from fcm.response.so_far import SoFar, Tell
 from fcm.response.wanted import ONE_HARMONIC, Wanted
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
+from fcm.run import Interrupted
 from fcm.scene.model import FloatArray, Scene
 
 METHODS = ("table", "closed-form")
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said
+QUICK = replace(PAIR, seconds=0.1)  # where nobody waits any more
 Rows = npt.NDArray[np.intp]
 
 
 def traced_curve(
-    scene: Scene, wanted: Wanted = ONE_HARMONIC, look: Callable[[], None] | None = None
+    scene: Scene,
+    wanted: Wanted = ONE_HARMONIC,
+    look: Callable[[], None] | None = None,
+    tell: Tell | None = None,
 ) -> Curve:
-    """The response curve of a scene without a sweep; look is called now and then."""
+    """The response curve of a scene without a sweep; look is called now and then, tell with what there is.
+
+    Raises
+    ------
+    fcm.run.Interrupted
+        With the best curve that there is, where an interruption comes after the first.
+    """
+    begin, so_far = time.perf_counter(), SoFar(tell)
+    try:
+        curve = _traced_curve(scene, wanted, look, so_far)
+    except KeyboardInterrupt:
+        if so_far.found is None:
+            raise
+        curve = _unfinished(so_far, scene)
+        curve.seconds = time.perf_counter() - begin
+        raise Interrupted([curve]) from None
+    curve.seconds = time.perf_counter() - begin
+    return curve
+
+
+def _unfinished(so_far: SoFar, scene: Scene) -> Curve:
+    """The best curve that there is, with its errors as far as they are told quickly."""
+    assert so_far.found is not None
+    found = so_far.found
+    found.system.work.look = int  # which interrupts no more
+    if not isinstance(found, Accurate):
+        found = judged(found, np.inf, options=QUICK)
+    stable = [np.full(len(path.z), np.nan) for path in found.traced.branches.paths]
+    if found.system.scene is not scene:
+        found = of_all(found, scene, np.inf)
+    curve = _curve(_Followed(found, stable, []))
+    curve.complete, curve.reason = False, so_far.reason()
+    return curve
+
+
+def _traced_curve(scene: Scene, wanted: Wanted, look: Callable[[], None] | None, so_far: SoFar) -> Curve:
     from fcm.response.groups import lost_curve
 
-    begin = time.perf_counter()
     system = System(leading(scene), wanted.harmonics or (1,), wanted.table, wanted.corrected)
     system.work.look = look or system.work.look
     by_need = wanted.harmonics is None
     try:
-        found = accurate(system, wanted.accuracy) if by_need else given(system)
+        found = accurate(system, wanted.accuracy, keep=so_far) if by_need else given(system, keep=so_far)
     except RestError as nowhere:
         return lost_curve(scene, str(nowhere))
     if wanted.table is not None:
@@ -59,6 +100,7 @@ def traced_curve(
         rigid = bool((system.linear.natural == 0.0).any())
         why = "no solution was found at either end of the range; try another range"
         return lost_curve(scene, f"{why}{FLOATING if rigid else too_stiff(system)}")
+    so_far(found, found.worst, ())
     followed = _followed(found, wanted.accuracy if by_need else None)
     if by_need:
         followed = _with_jumps(followed, wanted.accuracy)
@@ -70,7 +112,6 @@ def traced_curve(
         curve.peaks = with_tops(curve.peaks, followed.found)
     if by_need and curve.complete:
         curve.short_of = short_of(followed.found, followed.lost, wanted.accuracy)
-    curve.seconds = time.perf_counter() - begin
     return curve
 
 

@@ -1,0 +1,84 @@
+"""What a run has while it looks for more harmonics: it is told, and kept where the run is interrupted."""
+
+import numpy as np
+import pytest
+
+from fcm.harmonic.system import System
+from fcm.response.groups import Work
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
+from fcm.run import Interrupted
+from fcm.run.work import Report
+
+from ..harmonic.truth import scene
+
+FINE = Wanted(None, 1e-5)
+
+
+class _Stops:
+    """Told what there is; interrupts when it has been told so often."""
+
+    def __init__(self, often):
+        self.told, self.often = [], often
+
+    def __call__(self, text):
+        self.told.append(text)
+        if len(self.told) == self.often:
+            raise KeyboardInterrupt
+
+
+def test_the_first_curve_is_kept_with_its_error():
+    """Its error by the pair is that to the curve of 15 harmonics."""
+    one, stops = scene("yang1998", 5), _Stops(1)
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(one, FINE, tell=stops)
+    (curve,) = stopped.value.results
+    true = traced_curve(one, Wanted(tuple(range(1, 16)))).peaks["u"].amplitude
+    peak = curve.peaks["u"]
+    assert curve.harmonics == (1,) and not curve.complete
+    off = abs(true / peak.amplitude - 1.0)
+    assert off > 0.03 and off / 2.0 < peak.error < 2.0 * off
+    assert "interrupted" in curve.reason and "1 harmonic, error 6" in curve.reason
+    assert np.isnan(curve.stable).all()
+
+
+def test_the_last_of_several_is_kept_and_each_is_told():
+    one, stops = scene("yang1998", 5), _Stops(3)
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(one, FINE, tell=stops)
+    (curve,) = stopped.value.results
+    assert len(curve.harmonics) > 3
+    assert stops.told[0].startswith("1 harmonic, error 6")
+    assert all("; now " in text for text in stops.told)
+
+
+def test_given_harmonics_leave_the_curve_of_fewer():
+    with pytest.raises(Interrupted) as stopped:
+        traced_curve(scene("yang1998", 5), Wanted(tuple(range(1, 12))), tell=_Stops(1))
+    (curve,) = stopped.value.results
+    assert curve.harmonics == (1,) and "before it was traced with 11" in curve.reason
+
+
+def test_before_the_first_curve_there_is_nothing(monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(System, "balance", stop)
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        traced_curve(scene("isola"), FINE)
+    assert not isinstance(stopped.value, Interrupted)
+
+
+def test_a_group_hands_over_the_curve_that_is_not_finished_and_saves_it_not():
+    saved, told = [], []
+
+    def show(_, text):
+        told.append(text)
+        if text:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as stopped:
+        Work(FINE)((scene("yang1998", 5),), Report(show, save=saved.append))
+    (curve,) = stopped.value.results
+    assert curve.peaks["u"].amplitude > 10.0 and not curve.complete
+    assert not saved and told[-1].startswith("1 harmonic, error")
