@@ -13,6 +13,7 @@ from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
 from fcm.continuation import follow
 from fcm.continuation.branches import contains
 from fcm.harmonic import start, trace
+from fcm.harmonic.condensed import OPTIONS
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.system import System
 from fcm.harmonic.work import TooLongError
@@ -194,7 +195,6 @@ def test_what_is_taken_is_levels_branches_and_error_points(monkeypatch):
         (3, 7, (20.6, 98, 477, 5330)),  # the others are condensed from 20 or 9 harmonics on
         (3, 2, (27, 145, 255, 1205)),
         (10, 4, (199, 360, 1029, 7350)),
-        (10, 10, (188, 697, 3248, 33800)),
     ],
 )
 def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
@@ -204,7 +204,10 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
     open. Where they stick it is down to half as long.
     """
     sizes = SimpleNamespace(
-        scene=SimpleNamespace(contacts=[None] * contacts), linear=SimpleNamespace(natural=[1.0] * modes)
+        scene=SimpleNamespace(contacts=[None] * contacts),
+        linear=SimpleNamespace(natural=[1.0] * modes),
+        yields=np.full(modes, np.inf),
+        condensing=OPTIONS,
     )
     told = [1e6 * seconds_of(sizes, 1, harmonics) for harmonics in (3, 9, 20, 50)]
     assert np.log(told) == pytest.approx(np.log(taken), abs=np.log(1.3))

@@ -62,8 +62,8 @@ class Stretches:
     ) -> None:
         self.fewer = fewer.harmonics
         self.finer, self.lifted, self.curve, self.options = finer, lifted, curve, options
-        each = seconds_of(finer, 1, len(finer.harmonics))
-        self.left = options.seconds / each  # evaluations
+        self.each = seconds_of(finer, 1, len(finer.harmonics))
+        self.left = options.seconds / self.each  # evaluations
         self.evaluations = 0
         self._front: Front | None = None
 
@@ -107,10 +107,14 @@ class Stretches:
         if lifted.abreast(guess, True):
             return self._found(i)
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])
+        work, before = self.finer.work, self.finer.work.seconds
         try:
-            known = solutions(self.finer, float(z[-1])).solutions
+            with work.up_to(before + max(self.left, 0.0) * self.each):
+                known = solutions(self.finer, float(z[-1])).solutions
         except TooLongError:
             return None
+        finally:
+            self.left -= (work.seconds - before) / self.each
         for one in sorted(known, key=lambda one: float(np.linalg.norm((one - guess) / lifted.newton.scale))):
             if (
                 lifted.abreast(one, False)

@@ -29,8 +29,8 @@ class Work:
     @contextmanager
     def up_to(self, seconds: float) -> Iterator[None]:
         """No more than this, with all that was calculated before."""
-        self.most = seconds
+        before, self.most = self.most, min(self.most, seconds)
         try:
             yield
         finally:
-            self.most = np.inf
+            self.most = before
