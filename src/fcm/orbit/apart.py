@@ -96,10 +96,10 @@ def converged_balance(scene: Scene, apart: bool, look: Look) -> Iterator[Outline
 def every_balance(whole: Scene, look: Look) -> Outline:
     """The response of the balance with as many harmonics as it takes, and every branch; of many contacts
     with one harmonic."""
-    from fcm.branches.search import with_branching, with_isolas
-    from fcm.accuracy.refinement import accurate
-    from fcm.harmonic.reported import reported
     from fcm.accuracy.outline import Outline, outlined
+    from fcm.accuracy.refinement import accurate
+    from fcm.branches.search import with_branching, with_isolas
+    from fcm.harmonic.reported import reported
 
     if len(whole.contacts) >= MANY:
         return outlined(_single(whole, look))
