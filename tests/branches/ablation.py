@@ -1,0 +1,83 @@
+"""Which answers are lost without each mechanism that looks for branches.
+
+usage: python -m tests.branches.ablation [HARMONICS] SCENE...   (files, or numbers of random scenes; HARMONICS
+is a number, or 0 for as many as the accuracy takes)
+
+Each mechanism is switched off in turn, and what changes is printed: peaks, branches, folds, completeness.
+"""
+
+import sys
+from contextlib import contextmanager
+from unittest.mock import patch
+
+import numpy as np
+
+from fcm.response import all_branches, trace
+from fcm.response.trace import traced_curve
+from fcm.response.wanted import Wanted
+from fcm.scene import load_scene
+
+from ..response.random_scenes import random_scene
+
+ACCURACY, SAME = 1e-2, 1e-5
+
+# what is put in the place of what, where it is called
+OFF = {
+    "folds followed": [(all_branches, "with_isolas", lambda system, found: found)],
+    "branch points": [
+        (all_branches, "with_branching", lambda system, found: found),
+        (all_branches, "breaks_symmetry", lambda system, found: False),
+    ],
+    "looks where nothing is stable": [(trace, "with_missed", lambda found, stable, _: (found, list(stable)))],
+    "looks with more harmonics": [(trace, "with_higher", lambda found, stable: (found, False))],
+}
+
+
+@contextmanager
+def without(patches):
+    """Functions of modules replaced."""
+    if not patches:
+        yield
+        return
+    (module, name, other), *rest = patches
+    with patch.object(module, name, other), without(rest):
+        yield
+
+
+def answer(scene, harmonics):
+    """What is compared."""
+    given = tuple(range(1, harmonics + 1)) if harmonics else None
+    curve = traced_curve(scene, Wanted(given, ACCURACY))
+    answers = {f"peak {dof}": peak.amplitude for dof, peak in curve.peaks.items()}
+    answers["branches"] = int(np.isnan(curve.frequency).sum()) + 1
+    return answers | {"folds": len(curve.folds), "complete": curve.complete}
+
+
+def changes(before, after):
+    """Answers that differ, in words."""
+    for name, value in before.items():
+        if abs(float(after[name]) - float(value)) > SAME * abs(float(value)):
+            yield f"{name} {value:.6g} -> {after[name]:.6g}"
+
+
+def compared(scene, harmonics):
+    """Of each mechanism without which something changes, what does."""
+    whole = answer(scene, harmonics)
+    for mechanism, patches in OFF.items():
+        with without(patches):
+            lost = list(changes(whole, answer(scene, harmonics)))
+        if lost:
+            yield mechanism, lost
+
+
+def main(arguments):
+    """Compare all scenes."""
+    harmonics, *names = arguments
+    for name in names:
+        scene = random_scene(int(name)) if name.isdigit() else load_scene(name).each_curve()[0]
+        for mechanism, lost in compared(scene, int(harmonics)):
+            print(f"{name} without {mechanism}: {', '.join(lost)}", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
