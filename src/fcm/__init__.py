@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         periodic_loop,
         planar_forces,
         planar_gradients,
+        planar_loop,
     )
     from fcm.response import respond
     from fcm.scene import load_scene
@@ -40,6 +41,7 @@ _HOME = {
     "periodic_loop": "contact",
     "planar_forces": "contact",
     "planar_gradients": "contact",
+    "planar_loop": "contact",
     "respond": "response",
 }
 
@@ -56,6 +58,7 @@ __all__ = [
     "periodic_loop",
     "planar_forces",
     "planar_gradients",
+    "planar_loop",
     "respond",
 ]
 

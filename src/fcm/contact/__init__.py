@@ -16,12 +16,14 @@ if TYPE_CHECKING:
     from fcm.contact.periodic.coefficients import PeriodicGradients, periodic_forces, periodic_gradients
     from fcm.contact.periodic.loop import PeriodicLoop, periodic_loop
     from fcm.contact.plane.coefficients import PlanarGradients, planar_forces, planar_gradients
+    from fcm.contact.plane.loop import PlanarLoop, planar_loop
 
 __all__ = [
     "Loop",
     "PeriodicGradients",
     "PeriodicLoop",
     "PlanarGradients",
+    "PlanarLoop",
     "fourier_coefficients",
     "fourier_gradients",
     "hysteresis_loop",
@@ -32,6 +34,7 @@ __all__ = [
     "periodic_loop",
     "planar_forces",
     "planar_gradients",
+    "planar_loop",
 ]
 
 _HOME = {
@@ -39,6 +42,7 @@ _HOME = {
     "PeriodicGradients": "periodic.coefficients",
     "PeriodicLoop": "periodic.loop",
     "PlanarGradients": "plane.coefficients",
+    "PlanarLoop": "plane.loop",
     "fourier_coefficients": "fourier",
     "fourier_gradients": "fourier",
     "hysteresis_loop": "loop",
@@ -49,6 +53,7 @@ _HOME = {
     "periodic_loop": "periodic.loop",
     "planar_forces": "plane.coefficients",
     "planar_gradients": "plane.coefficients",
+    "planar_loop": "plane.loop",
 }
 
 __getattr__ = on_demand(__name__, _HOME)

@@ -1,0 +1,245 @@
+"""The loop of a contact that slides in a plane: its states, transitions, directions and forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.plane.coefficients import ComplexArray, FloatArray, one_motion
+from fcm.contact.plane.forces import STAGES, PlanarContact
+from fcm.contact.plane.radau import radau
+
+INVISIBLE = 1e-12  # [rad] a state that is shorter is rounding
+LETTERS = "EPS"  # by the kernel's states
+TOLERANCE = 1e-11  # of the panels, whose polynomials are read between their ends
+PANELS = 1000  # that are recorded at first
+DENSE = 64  # angles to a harmonic at which the greatest force is looked for
+
+
+@dataclass(frozen=True)
+class PlanarLoop:
+    """One steady cycle of a contact in its plane under x(theta) = Re sum_h X_h exp(i h theta).
+
+    Attributes
+    ----------
+    u_x, u_y, v : ndarray, complex, shape (harmonic,) [length]
+        The motion, as given to `planar_loop`, as are mu [-], k_u, k_v [force / length] and n_0 [force].
+    sequence : str
+        The states in order: E stick, P slip, in whatever direction, S separation: 'EPEP', 'EPS', ...
+    angles : ndarray, shape (len(sequence),) or (0,) for a single state [rad]
+        ``angles[i]`` in [0, 2 pi) is where state ``sequence[i]`` begins and the one before it ends.
+    slip_motion : ndarray, shape (max(len(angles), 1), 2) [length]
+        w_x and w_y while the contact sticks, for each state; NaN for the others.
+    dissipation : float
+        Energy that friction takes in a cycle [force length].
+    slip_path : float
+        Way of the slider while it slips, in a cycle [length].
+    greatest_force : float
+        Greatest |f| [force].
+    """
+
+    u_x: ComplexArray
+    u_y: ComplexArray
+    v: ComplexArray
+    mu: float
+    k_u: float
+    k_v: float
+    n_0: float
+    sequence: str
+    angles: FloatArray
+    slip_motion: FloatArray
+    dissipation: float
+    slip_path: float
+    greatest_force: float
+    _since: FloatArray = field(repr=False)  # angles from the first on
+    _panels: FloatArray = field(repr=False)  # (panel, 4 + s): as `Slider.record`
+
+    def displacement(self, theta: npt.ArrayLike) -> FloatArray:
+        """u_x and u_y [length] at each angle theta [rad], (..., 2)."""
+        return np.stack([_values(self.u_x, theta), _values(self.u_y, theta)], axis=-1)
+
+    def normal_load(self, theta: npt.ArrayLike) -> FloatArray:
+        """n = max(n_0 + k_v v, 0) [force] at each angle theta [rad]."""
+        return np.maximum(self.n_0 + self.k_v * _values(self.v, theta), 0.0)
+
+    def slip_limit(self, theta: npt.ArrayLike) -> FloatArray:
+        """mu n [force] at each angle theta [rad]."""
+        return self.mu * self.normal_load(theta)
+
+    def states(self, theta: npt.ArrayLike) -> npt.NDArray[np.str_]:
+        """State letter at each angle theta [rad]."""
+        return np.array(list(self.sequence))[self._piece(np.asarray(theta, dtype=np.float64))]
+
+    def direction(self, theta: npt.ArrayLike) -> FloatArray:
+        """Direction of the slip at each angle theta [rad], (..., 2); NaN while it does not slip."""
+        angle = np.asarray(theta, dtype=np.float64)
+        found = np.full((*angle.shape, 2), np.nan)
+        slips = np.asarray(self.states(angle) == "P")
+        if self._panels.size == 0 or not slips.any():
+            return found
+        begin = self._panels[:, 0]
+        t = begin[0] + np.mod(angle[slips] - begin[0], 2.0 * np.pi)
+        at = np.searchsorted(begin, t, side="right") - 1
+        panel = self._panels[at]
+        tangent = _between(panel[:, 4:], np.clip((t - panel[:, 0]) / panel[:, 1], 0.0, 1.0))
+        turned = np.exp(2j * np.arctan(tangent)) * (panel[:, 2] + 1j * panel[:, 3])
+        found[slips] = np.stack((turned.real, turned.imag), axis=-1)
+        return found
+
+    def force(self, theta: npt.ArrayLike) -> FloatArray:
+        """Friction force f_x and f_y [force] at each angle theta [rad], (..., 2).
+
+        >>> loop = planar_loop([0, 1], [0, -1j], [0], mu=0.5, k_u=1.0, k_v=1.0, n_0=1.0)
+        >>> loop.force(0.0).round(6).tolist()  # r / 2 along u, r sin(60 deg) along its velocity
+        [0.25, 0.433013]
+        """
+        angle = np.asarray(theta, dtype=np.float64)
+        state, limit = np.asarray(self.states(angle))[..., None], self.slip_limit(angle)[..., None]
+        slid = np.nan_to_num(self.slip_motion)[self._piece(angle)]
+        stick = self.k_u * (self.displacement(angle) - slid)
+        slip = np.nan_to_num(self.direction(angle)) * limit
+        return np.select([state == "E", state == "P"], [stick, slip], 0.0)
+
+    def slider(self, theta: npt.ArrayLike) -> FloatArray:
+        """Place of the slider w_x and w_y [length] at each angle theta [rad], (..., 2); k_u is not 0."""
+        return self.displacement(theta) - self.force(theta) / self.k_u
+
+    def _piece(self, theta: FloatArray) -> npt.NDArray[np.intp]:
+        if self._since.size == 0:
+            return np.zeros(theta.shape, dtype=np.intp)
+        since = np.mod(theta - self.angles[0], 2.0 * np.pi)
+        return np.asarray(np.searchsorted(self._since, since, side="right") - 1)
+
+
+def planar_loop(
+    u_x: npt.ArrayLike,
+    u_y: npt.ArrayLike,
+    v: npt.ArrayLike,
+    mu: float,
+    k_u: float,
+    k_v: float,
+    n_0: float,
+    *,
+    start_x: float = 0.0,
+    start_y: float = 0.0,
+) -> PlanarLoop:
+    """The steady loop of one contact that slides in a plane, its events located.
+
+    Parameters
+    ----------
+    u_x, u_y, v : array_like, complex, shape (harmonic,)
+        Coefficients of the displacements, and the other arguments, as in `planar_forces`; numbers.
+
+    Returns
+    -------
+    PlanarLoop
+        With `sequence`, `angles`, and at any angle `force`, `slider`, `direction`, `normal_load`, `states`.
+
+    Raises
+    ------
+    ValueError
+        If mu, k_u or k_v is negative, or a number is not finite.
+    RuntimeError
+        If no steady cycle is found.
+
+    Examples
+    --------
+    >>> loop = planar_loop([0, 1], [0, -0.4j], [0, 0.8j], mu=0.5, k_u=1.0, k_v=1.0, n_0=0.7)
+    >>> loop.sequence
+    'EPSP'
+    """
+    numbers = {"mu": mu, "k_u": k_u, "k_v": k_v, "n_0": n_0, "start_x": start_x, "start_y": start_y}
+    harmonics, x, parameters = one_motion(u_x, u_y, v, **numbers)
+    if not (np.isfinite(x).all() and np.isfinite(parameters).all()):
+        raise ValueError("all coefficients and parameters must be finite numbers")
+    contact = _solved(harmonics, x, parameters)
+    slider, scale = contact.cycle.slider, contact.motion.scale
+    length = scale / k_u if k_u > 0.0 else 0.0
+    regions = _visible(contact)
+    since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
+    angles = np.mod(regions[0][1] + since, 2.0 * np.pi)
+    angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
+    single = len(regions) == 1
+    rest = np.array([place if state == "E" else (np.nan, np.nan) for state, _, place in regions])
+    sequence = "".join(state for state, _, _ in regions)
+    slipped = "P" in sequence
+    loop = PlanarLoop(
+        np.atleast_1d(np.asarray(u_x, np.complex128)),
+        np.atleast_1d(np.asarray(u_y, np.complex128)),
+        np.atleast_1d(np.asarray(v, np.complex128)),
+        float(mu), float(k_u), float(k_v), float(n_0),
+        sequence,
+        angles[:0] if single else angles,
+        x[:2] + length * rest,
+        slider.sums.work * scale * length if slipped else 0.0,
+        slider.sums.path * length if slipped else 0.0,
+        0.0, since[:0] if single else since, np.array(slider.record)[: slider.panels],
+    )  # fmt: skip
+    return replace(loop, greatest_force=_greatest(loop, len(harmonics)))
+
+
+def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> PlanarContact:
+    """The kernel with the steady cycle, all panels of which are recorded."""
+    most = PANELS
+    while True:
+        contact = PlanarContact(harmonics, harmonics, most)
+        contact.cycle.slider.tolerance = TOLERANCE
+        contact.at(x, *parameters)
+        if np.isnan(contact.forces).any():
+            raise RuntimeError("no steady cycle of the motion was found")
+        if contact.cycle.slider.panels <= most:
+            return contact
+        most = contact.cycle.slider.panels
+
+
+def _visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float]]]:
+    """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
+    slider = contact.cycle.slider
+    begin = np.asarray(slider.begin)[: slider.pieces]
+    lengths = np.diff(begin, append=begin[0] + 2.0 * np.pi)
+    regions: list[tuple[str, float, tuple[float, float]]] = []
+    for p in range(slider.pieces):
+        if lengths[p] > INVISIBLE or slider.pieces == 1:
+            state = LETTERS[slider.state[p]]
+            if not regions or regions[-1][0] != state:
+                place = (float(slider.rest_x[p]), float(slider.rest_y[p]))
+                regions.append((state, float(begin[p]), place))
+    if len(regions) > 1 and regions[0][0] == regions[-1][0]:
+        regions = regions[1:]
+    states = [state for state, _, _ in regions]
+    first = next((i for i, state in enumerate(states) if state == "E"), 0)
+    turned = [(state, begin + 2.0 * np.pi, place) for state, begin, place in regions[:first]]
+    return regions[first:] + turned
+
+
+def _greatest(loop: PlanarLoop, harmonics: int) -> float:
+    """The greatest |f|: at a transition, or near the greatest of many angles, by parabolas."""
+    step = 2.0 * np.pi / (DENSE * max(harmonics, 1))
+    theta = np.concatenate((loop.angles, np.arange(0.0, 2.0 * np.pi, step)))
+    size = np.hypot(*np.moveaxis(loop.force(theta), -1, 0))
+    best = theta[np.argmax(size)]
+    near = best + np.linspace(-step, step, 201)
+    return float(max(size.max(), np.hypot(*np.moveaxis(loop.force(near), -1, 0)).max()))
+
+
+def _between(tangent: FloatArray, part: FloatArray) -> FloatArray:
+    """The polynomials of panels (point, s), which are 0 at their start, at a part of each."""
+    rule = radau(STAGES)
+    nodes = np.concatenate(([0.0], rule.nodes))
+    values = np.concatenate((np.zeros((tangent.shape[0], 1)), tangent), axis=1)
+    apart = part[:, None] - nodes
+    hit = apart == 0.0
+    weights = rule.bary / np.where(hit, 1.0, apart)
+    weights = np.where(hit.any(axis=1)[:, None], hit, weights)
+    found: FloatArray = (weights * values).sum(axis=1) / weights.sum(axis=1)
+    return found
+
+
+def _values(X: ComplexArray, theta: npt.ArrayLike) -> FloatArray:
+    """Re sum_h X_h exp(i h theta)."""
+    angle = np.asarray(theta, dtype=np.float64)
+    real = np.concatenate((X[:1].real, X[1:]))
+    values: FloatArray = (np.exp(1j * np.multiply.outer(angle, np.arange(X.size))) @ real).real
+    return values
