@@ -145,7 +145,7 @@ study: $(VENV)/installed  ## bundled and two hundred random scenes: do three ste
 
 calibration: $(VENV)/installed  ## estimated over true errors of hard curves; some minutes
 	@mkdir -p build
-	$(BIN)/python tests/harmonic/calibration.py > build/calibration.partial
+	$(BIN)/python tests/accuracy/calibration.py > build/calibration.partial
 	@mv build/calibration.partial build/calibration.txt; cat build/calibration.txt
 
 published: build/published.json  ## the numbers that others have published, beside those obtained

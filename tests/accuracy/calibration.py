@@ -9,12 +9,14 @@ and high by more than three, the worst low one, and the points where the method 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 import numpy as np
 
 try:
     from ..harmonic.truth import MANY, SAME, Truth, exact, scene
 except ImportError:  # run as a program
+    sys.path.append(str(Path(__file__).parents[1] / "harmonic"))
     from truth import MANY, SAME, Truth, exact, scene
 
 from fcm.accuracy.options import PAIR
