@@ -113,7 +113,7 @@ def test_few_modes_and_the_contacts_themselves_have_the_same_solutions(harmonics
 
 
 def test_modes_that_yield_too_much_to_be_left_out_are_taken_after_all():
-    left_out = CondensedOptions(fewest=1, share=1.0, stiff=1e9, corrections=1)
+    left_out = CondensedOptions(fewest=1, share=1.0, stiff=(1e9,), corrections=1)
     problem, found = stations(left_out, (1,))
     expected = stations(WHOLE, (1,))[1]
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
@@ -125,3 +125,21 @@ def test_many_contacts_make_no_arrays_of_ports_by_ports():
     assert problem.rank == 3 * 7
     assert np.asarray(problem.seen.G_re).size == 0
     assert np.asarray(problem.jacobian).shape == (problem.unknowns, 1)
+
+
+@pytest.mark.parametrize("stiff", [0.3, 1.0])
+def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stiff):
+    """As in a joint, where no mode is stiff beside the contacts."""
+    soft = {"kept": (1.0, 1.6, 2.7), "stiff": (4.7, 5.3, 6.1)}
+    solutions = []
+    for options in (CondensedOptions(fewest=1, share=1.0, stiff=(stiff,)), WHOLE):
+        system = System(strip(**soft), (1, 3), condensing=options)
+        problem, at = system.balance(), (1.0, 1.15, 1.3)
+        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), stations=at)
+        solutions.append(path.z[np.isin(path.parameter, at)])
+        if options is not WHOLE:
+            left_out = system.yields[system.yields <= stiff]
+            assert problem.condensed is not None and problem.condensed.modes < 6 and left_out.max() > 0.05
+    found, expected = solutions
+    assert len(found) == 3
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())

@@ -11,8 +11,8 @@ of the same determinant, and no worse conditioned at a fold.
 
 A mode far above the harmonics is stiff beside the contacts: with modal mass 1 and shapes p on the ports it
 yields sum_p k_p p^2 / (w^2 - (H omega)^2) of what a contact's spring k does. Modes of which that is small are
-left out of the condensed system, which then is solved again for what the whole one, with all modes, leaves.
-Each time that shrinks by about the greatest share left out, so that the solution is that of all modes.
+left out of the condensed system, which then is the preconditioner of the whole one, with all modes: of that
+the solution is, after few iterations, as what is left out changes little.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class CondensedOptions:
 
     fewest: int = 200
     share: float = 0.5
-    stiff: float = 0.03
-    accurate: float = 1e-8
-    corrections: int = 12
+    stiff: tuple[float, ...] = (0.03, 0.3, 1.0)
+    accurate: float = 1e-9
+    corrections: int = 20
 
 
 OPTIONS = CondensedOptions()  # where nothing else is said
@@ -62,14 +62,22 @@ def yielding(
     return np.where(share > 0.0, size, 0.0) * np.where(share > 0.0, share, 1.0)
 
 
+def modes_taken(yields: FloatArray, ports: int, options: CondensedOptions = OPTIONS) -> int:
+    """To how many modes many contacts are condensed; 0 where these are not much fewer than the ports."""
+    for stiff in options.stiff:
+        modes = int((yields > stiff).sum())
+        if modes < options.share * ports:
+            return max(modes, 1)
+    return 0
+
+
 def condensed_size(
     yields: FloatArray, ports: int, harmonics: int, options: CondensedOptions = OPTIONS
 ) -> int:
     """Size of the condensed system; 0 where the system itself is to be solved."""
     parts = 1 + 2 * harmonics
-    rank = int((yields > options.stiff).sum()) * parts
-    unknowns = ports * parts
-    return rank if yields.size and unknowns >= options.fewest and rank < options.share * unknowns else 0
+    many = yields.size > 0 and ports * parts >= options.fewest
+    return modes_taken(yields, ports, options) * parts if many else 0
 
 
 class Condensed:
@@ -93,7 +101,7 @@ class Condensed:
         part = [np.arange(2), *(2 + 4 * j + i + np.array([0, 2]) for j in range(seen.count) for i in (0, 1))]
         self.order = np.concatenate(part)  # of the unknowns of a contact: part by part, u and v
         self.ranking = np.argsort(-yields, kind="stable")
-        self.take(int((yields > options.stiff).sum()))
+        self.take(modes_taken(yields, seen.ports, options))
         self.by, self.row, self.scale = np.empty(0), np.empty(0), np.empty(0)
 
     def take(self, modes: int) -> None:
@@ -139,20 +147,42 @@ class Condensed:
         whole = right.copy()
         whole[:-1] *= self.scale[:-1]
         found = self._condensed(whole)
-        left = whole - self._image(found)
-        count, size = 0, np.abs(found / self.scale).max()
-        while np.isfinite(size) and self.modes < self.ranking.size:
-            change = self._condensed(left)
-            found += change
-            moved, size = np.abs(change / self.scale).max(), np.abs(found / self.scale).max()
-            if not moved > self.options.accurate * size:
+        while self.modes < self.ranking.size and np.isfinite(found).all():
+            change = self._condensed(whole - self._image(found))
+            moved, small = self._corrected(change / self.scale)
+            found += moved * self.scale
+            if small:
                 break
-            count += 1
-            left = whole - self._image(found)
-            if count % self.options.corrections == 0:
-                self.take(2 * self.modes)
-                self._factor()
+            self.take(2 * self.modes)
+            self._factor()
         right[:] = found / self.scale
+
+    def _corrected(self, change: FloatArray) -> tuple[FloatArray, bool]:
+        """What a correction by the condensed system, in units of scale, comes to with all modes.
+
+        By the generalised minimal residuals (Saad and Schultz 1986), and whether these are small enough.
+        """
+        most, size = self.options.corrections, float(np.linalg.norm(change))
+        enough = self.options.accurate * max(1.0, size)
+        if size <= self.options.accurate:
+            return change, True
+        basis, H = np.empty((most + 1, change.size)), np.zeros((most + 1, most))
+        basis[0] = change / size
+        part: FloatArray = np.zeros(0)
+        left = size
+        for k in range(most):
+            new = self._condensed(self._image(basis[k] * self.scale)) / self.scale
+            H[: k + 1, k] = basis[: k + 1] @ new
+            new -= H[: k + 1, k] @ basis[: k + 1]
+            H[k + 1, k] = np.linalg.norm(new)
+            right = np.zeros(k + 2)
+            right[0] = size
+            part, *_ = np.linalg.lstsq(H[: k + 2, : k + 1], right, rcond=None)
+            left = float(np.linalg.norm(right - H[: k + 2, : k + 1] @ part))
+            if not left > enough or H[k + 1, k] == 0.0:
+                break
+            basis[k + 1] = new / H[k + 1, k]
+        return part @ basis[: part.size], not left > enough
 
     def _condensed(self, right: FloatArray) -> FloatArray:
         """The solution with the modes that are condensed to alone."""
