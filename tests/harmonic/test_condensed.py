@@ -143,3 +143,10 @@ def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stif
     found, expected = solutions
     assert len(found) == 3
     np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected[:, :-1]).max())
+
+
+def test_what_is_not_finite_is_refused_without_a_warning():
+    newton = Newton(System(strip(), (1,), condensing=CONDENSED).balance())
+    newton.z[:] = np.append(np.full(newton.problem.unknowns, np.nan), 1.0)
+    newton.row[:] = np.append(np.zeros(newton.problem.unknowns), 1.0)
+    assert not newton.correct(1.0)

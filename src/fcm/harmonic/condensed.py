@@ -117,6 +117,7 @@ class Condensed:
         self.by_port = np.empty((2 * self.contacts, self.parts * self.rank))
         self.on_modes = np.empty((modes, self.parts, self.rank))
 
+    @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def factor(self, row: FloatArray, by: FloatArray, scale: FloatArray) -> float:
         """Of the system closed by a row (unknown + 1,) in units of scale; the sign of its determinant, or 0.
 
@@ -142,6 +143,7 @@ class Condensed:
         matrix[rank, rank] = last - self.row[:-1] @ self.by
         return self.solver.orientation if self.solver.factor() else 0.0
 
+    @np.errstate(invalid="ignore", over="ignore")
     def solve(self, right: FloatArray) -> None:
         """Replace a right side (unknown + 1,) in units of scale by the solution in these."""
         whole = right.copy()
@@ -177,7 +179,7 @@ class Condensed:
             H[k + 1, k] = np.linalg.norm(new)
             right = np.zeros(k + 2)
             right[0] = size
-            part, *_ = np.linalg.lstsq(H[: k + 2, : k + 1], right, rcond=None)
+            part = np.asarray(np.linalg.lstsq(H[: k + 2, : k + 1], right, rcond=None)[0], dtype=np.float64)
             left = float(np.linalg.norm(right - H[: k + 2, : k + 1] @ part))
             if not left > enough or H[k + 1, k] == 0.0:
                 break

@@ -25,6 +25,7 @@ class ModalAnswer:
         rows = [harmonic + 4 * j + i for j in range(seen.count) for i in (0, 1)]
         self.place = np.array([first + port % 2, *rows])
 
+    @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def to(self, force: FloatArray) -> FloatArray:
         """The displacements (unknown, ...) that forces (unknown, ...) take away."""
         q = self._on_modes(force)
@@ -34,6 +35,7 @@ class ModalAnswer:
         self._turn(np.asarray(self.seen.c_re), np.asarray(self.seen.c_im), q, answer)
         return self._on_ports(answer, force)
 
+    @np.errstate(invalid="ignore", over="ignore")
     def rate(self, force: FloatArray) -> FloatArray:
         """Their derivatives by the frequency; the means have none."""
         q = self._on_modes(force)
