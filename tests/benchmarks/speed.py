@@ -19,6 +19,7 @@ from unit import SINE, seconds, sine
 import fcm
 from fcm.contact.cycle import __file__ as kernel
 from fcm.contact.periodic.forces import PeriodicContact
+from fcm.contact.plane.forces import PlanarContact
 from fcm.response import trace
 from fcm.scene.model import Scene
 from fcm.table import Table
@@ -104,6 +105,66 @@ def periodic(count: int = 2000) -> None:
     block("forces of any periodic motion, a motion", rows)
 
 
+def planar(count: int = 300) -> None:
+    """The kernel in a plane beside that on a line, and beside radial return with an error of 1e-4."""
+    rng = np.random.default_rng(2)
+    parameters = np.tile([0.6, 1.0, 1.0, 0.5, 0.0, 0.0], (count, 1))  # mu, k_u, k_v, n_0, start
+    for highest in (1, 3, 9):
+        harmonics = list(range(1, highest + 1))
+        plane, line = PlanarContact(harmonics, harmonics), PeriodicContact(harmonics, harmonics)
+        size = np.concatenate(([0.0, 0.0, 0.0], np.repeat(np.arange(1.0, highest + 1.0) ** -2, 6)))
+        x = rng.standard_normal((count, plane.unknowns)) * size
+        others = [1, *(3 + 6 * k + i for k in range(highest) for i in (2, 3))]
+        along = np.ascontiguousarray(np.delete(x, others, axis=1))
+        forces, jacobians = np.empty((count, plane.equations)), np.empty((count, *plane.jacobian.shape))
+        f, J = np.empty((count, line.equations)), np.empty((count, *line.jacobian.shape))
+        plane.all(x, parameters, forces, jacobians)
+        samples = samples_of_radial_return(x, parameters[0], forces)
+        rows: list[Row] = [
+            ("in a plane", partial(plane.all, x, parameters, forces, jacobians[:0]), count),
+            ("in a plane, derivatives", partial(plane.all, x, parameters, forces, jacobians), count),
+            ("on a line, derivatives", partial(line.all, along, parameters[:, :5].copy(), f, J), count),
+            (f"radial return, {samples} samples", partial(radial_return, x, parameters[0], samples), count),
+        ]
+        block(f"forces of {highest} harmonics as h**-2 in a plane, a motion", rows, repeats=3)
+
+
+def radial_return(x: np.ndarray, parameters: np.ndarray, samples: int) -> np.ndarray:
+    """Coefficients (point, harmonic, 2) of f_x and f_y: trial force, then back to the circle; two cycles."""
+    mu, k_u, k_v, n_0 = parameters[:4]
+    rest = x[:, 3:].copy().view(complex).reshape(len(x), -1, 3)
+    X = np.concatenate((x[:, None, :3] + 0j, rest), axis=1)
+    wave = np.exp(2j * np.pi / samples * np.outer(np.arange(samples), np.arange(X.shape[1])))
+    u_x, u_y, v = (np.ascontiguousarray((wave @ X[:, :, i].T).real) for i in range(3))
+    limit = mu * np.maximum(n_0 + k_v * v, 0.0)
+    u_x, u_y = k_u * u_x, k_u * u_y
+    w_x, w_y, f = np.zeros(len(x)), np.zeros(len(x)), np.empty((2, *u_x.shape))
+    for step in range(2 * samples):
+        i = step % samples
+        f_x, f_y = u_x[i] - w_x, u_y[i] - w_y
+        back = np.minimum(1.0, limit[i] / np.maximum(np.hypot(f_x, f_y), 1e-300))
+        f[0, i], f[1, i] = back * f_x, back * f_y
+        w_x, w_y = u_x[i] - f[0, i], u_y[i] - f[1, i]
+    F: np.ndarray = np.einsum("sh,isp->phi", wave.conj(), f) * (2.0 / samples)
+    F[:, 0] *= 0.5
+    return F
+
+
+def samples_of_radial_return(x: np.ndarray, parameters: np.ndarray, forces: np.ndarray) -> int:
+    """A power of two with which half of the motions err by 1e-4 of their greatest amplitude or less."""
+    exact = np.concatenate(
+        (forces[:, None, :2] + 0j, forces[:, 3:].copy().view(complex).reshape(len(x), -1, 3)[:, :, :2]),
+        axis=1,
+    )
+    samples = 64
+    while samples < 2**17:
+        error = np.abs(radial_return(x, parameters, samples) - exact).max(axis=(1, 2))
+        if np.median(error / np.abs(x).max(axis=1)) <= 1e-4:
+            break
+        samples *= 2
+    return samples
+
+
 def repeat(call: Callable[..., object], arguments: tuple[object, ...], times: int) -> None:
     for _ in range(times):
         call(*arguments)
@@ -158,6 +219,7 @@ def main() -> None:
     print("processor time; the median of 7 runs in turn, one run of the thousand curves")
     coefficients()
     periodic()
+    planar()
     curves()
     many_curves()
 

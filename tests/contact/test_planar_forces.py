@@ -271,3 +271,10 @@ def test_few_harmonics_among_many_are_as_alone():
     np.testing.assert_allclose(few.forces, contact.forces, rtol=0.0, atol=1e-12)
     mine = np.delete(np.asarray(contact.jacobian), range(9, 15), axis=1)
     np.testing.assert_allclose(few.jacobian, mine, rtol=0.0, atol=1e-10)
+
+
+def test_a_circle_whose_slip_limit_is_met_at_one_angle():
+    """The fixed point is double; the load varies by 1e-6, and the force is u but for the root of that."""
+    u_x, u_y, v = [1e12, 1.0, 1e12], [1e12j - 1.0, 0.0, 1e12j], [1e12j, 1.0 + 0.5j, -1.0 - 1.0j]
+    f_x, f_y, _ = planar_forces(u_x, u_y, v, 1.0, 1.0, 1e6, 1e12)
+    np.testing.assert_allclose((f_x[2], f_y[2]), (1e12, 1e12j), rtol=2e-3, atol=0.0)

@@ -30,7 +30,10 @@ UNSOLVED = cython.declare(cython.int, 5)
 
 TWO_PI = cython.declare(cython.double, 6.283185307179586)
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
-PERIODS = cython.declare(cython.int, 200)
+PERIODS = cython.declare(cython.int, 100)
+# Of the radius, by which a slider may be off after a period that nothing improves: at the slip limit itself
+# the fixed point is double, and as uncertain as the square root of the rounding.
+DOUBLE = cython.declare(cython.double, 1e-9)
 CLOSES = cython.declare(cython.int, 0)
 OPENS = cython.declare(cython.int, 1)
 
@@ -153,6 +156,9 @@ class Cycle:
         w_y: float = self.motion.value[SCAN, 1] - r * self.motion.value[SCAN, 4]
         change: float
         before: float = 1e300
+        nearest: float = 1e300
+        nearest_x: float = w_x
+        nearest_y: float = w_y
         fine: float = 1e-14 * min(self.motion.reach, self.motion.size)
         rounding: float = 4.0 * EPSILON * self.motion.size
         self.slider.gathering, self.slider.varying, self.slider.gradient = False, True, False
@@ -162,6 +168,8 @@ class Cycle:
             change = self.period(begin, w_x, w_y)
             if self.slider.failed:
                 return UNSOLVED
+            if change < nearest:
+                nearest, nearest_x, nearest_y = change, w_x, w_y
             x: float = self.slider.w_x - w_x
             y: float = self.slider.w_y - w_y
             if change <= fine + rounding:
@@ -182,7 +190,9 @@ class Cycle:
                 before = 2.0 * change if change < before else 1e300
                 w_x, w_y = self.slider.w_x, self.slider.w_y
         else:
-            return UNSOLVED
+            if nearest > DOUBLE * self.motion.reach:
+                return UNSOLVED
+            w_x, w_y = nearest_x, nearest_y
         self.slider.gathering, self.slider.varying, self.slider.gradient = True, gradient, gradient
         self.slider.derivatives.take(0, self.slider.derivatives.unknowns)
         self.period(begin, w_x, w_y)
