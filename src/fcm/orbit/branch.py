@@ -11,7 +11,7 @@ import numpy as np
 from fcm.continuation import Mark, Path, Status, all_branches, follow
 from fcm.continuation.branches import Branches, Follow
 from fcm.motion.errors import SimulationError
-from fcm.orbit.apart import converged_balance, passes
+from fcm.orbit.apart import ACCURACY, converged_balance, passes
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
@@ -109,7 +109,7 @@ def explore(
         all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step, along=along
     )
     paths = branches(found).paths
-    bounded, lacking = Bounded(look, most), list[tuple[float, float]]()
+    bounded, lacking, lost = Bounded(look, most), list[tuple[float, float]](), list[float]()
     if not sought:
         paths = _with_others(problem, paths, apart, branches, bounded, lacking)
     if _broken(paths) >= BROKEN:
@@ -117,18 +117,21 @@ def explore(
     if not bounded.given_up:
         paths = _with(problem, paths, approached_there(problem, paths, look), branches)
     ends = (end for end in missed if not any((path.parameter == end).any() for path in paths))
-    lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
-    told = [f"a stable branch of the balance at {shown(scene, one)} led to no exact motion" for one in lost]
+    if not bounded.given_up:  # else that is said
+        lost = [omega for omega, height in lacking if not _reaches(problem, paths, omega, height)]
+    told = [
+        f"a stable branch of the balance at {shown(scene, one)} led to no exact motion"
+        for one in dict.fromkeys(lost)
+    ]
     return list(paths), "; ".join([*(missed[end] for end in ends), *told, *bounded.given_up])
 
 
 def _reaches(problem: OrbitProblem, paths: Sequence[Path], omega: float, height: float) -> bool:
-    """Whether a path has motions as high as that where it passes a frequency [rad/s]."""
+    """Whether a path has motions as high as that beside a frequency [rad/s], which is the balance's."""
     for path in paths:
-        off = path.parameter - omega
-        for i in np.flatnonzero(off[:-1] * off[1:] <= 0.0).tolist():
-            if max(height_of(problem, z) for z in path.z[i : i + 2]) >= AS_HIGH * height:
-                return True
+        near = path.z[np.abs(path.parameter / omega - 1.0) < ACCURACY]
+        if any(height_of(problem, z) >= AS_HIGH * height for z in near):
+            return True
     return False
 
 
