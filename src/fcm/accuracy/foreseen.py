@@ -70,7 +70,8 @@ def foreseen(found: Outline, options: RefinementOptions = REFINEMENT, pair: Pair
         change = max(change, float((values / np.append(1.0, size))[place.counts].max(initial=0.0)))
     if motions:
         finer = Further(system.with_harmonics(more))
-        share = _most(finer, np.array(motions), size, ())
+        theirs = _most(finer, np.array(motions), size, ())
+        share = theirs if told else np.maximum(share, theirs)  # where a peak is missed its own spectrum names
     return Foreseen(change, told, share, more)
 
 
