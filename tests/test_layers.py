@@ -76,8 +76,9 @@ def test_continuation_knows_nothing_of_contacts():
 @pytest.mark.parametrize("package", NUMERICS)
 def test_numerics_import_numpy_and_scipy_alone(package):
     outside = {module.split(".")[0] for _, module in imported(package)} - set(sys.stdlib_module_names)
-    faster = {"sksparse"} if package == "structure" else set()  # where it is installed
-    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"} | faster
+    # sparse matrices of structures: factors where sksparse is installed, the order of unknowns by pymetis
+    sparse = {"sksparse", "pymetis"} if package == "structure" else set()
+    assert outside <= {"fcm", "numpy", "scipy", "cython", "libc"} | sparse
 
 
 def test_processes_are_started_by_one_helper():
