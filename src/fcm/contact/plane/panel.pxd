@@ -9,8 +9,8 @@ cdef class Panel:
     cdef double[:, ::1] matrix
     cdef double[::1] right
     cdef int[::1] pivot
-    cdef bint solve(self, double theta, double length, double e_x, double e_y) noexcept nogil
-    cdef bint newton(self) noexcept nogil
+    cdef bint solve(self, double theta, double length, double e_x, double e_y, double rate) noexcept nogil
+    cdef bint newton(self, double start) noexcept nogil
     cdef bint factor(self) noexcept nogil
     cdef void back(self) noexcept nogil
     cdef bint finish(self) noexcept nogil

@@ -34,6 +34,7 @@ from fcm.contact.plane.radau import radau
 EPSILON = cython.declare(cython.double, 2.220446049250313e-16)
 CONVERGED = cython.declare(cython.double, 1e-9)  # a change of t after which the next is rounding
 STEPS = cython.declare(cython.int, 12)  # of Newton's method; where it takes more, the panel is too long
+STEEPEST = cython.declare(cython.double, 0.6)  # t at the end, to begin with
 WIDEST = cython.declare(cython.double, 1.2)  # of t: directions within 100 degrees of the start
 GROWTH = cython.declare(cython.double, 2.0)  # exponent by which directions may part in a panel
 
@@ -67,17 +68,18 @@ class Panel:
         self.matrix, self.pivot = np.zeros((s, s)), np.zeros(s, dtype=np.intc)
         self.theta = self.length = self.start_x = self.start_y = self.noise = 0.0
 
-    def solve(self, theta: float, length: float, e_x: float, e_y: float) -> bool:
-        """Take a panel from a direction on; False if it is too long for that."""
+    def solve(self, theta: float, length: float, e_x: float, e_y: float, rate: float) -> bool:
+        """Take a panel from a direction on, that turns at about a rate; False if it is too long for that."""
         j: cython.int
         self.theta, self.length, self.start_x, self.start_y = theta, length, e_x, e_y
         self.noise = 4.0 * EPSILON * (self.motion.motion_bound[1] + self.motion.reach_bound[1])
         for j in range(self.stages):
             self.motion.place(j + 1, theta + length * self.node[j + 1])
-        return self.newton() and self.finish()
+        slope: float = max(min(0.5 * rate * length, STEEPEST), -STEEPEST)
+        return self.newton(slope) and self.finish()
 
-    def newton(self) -> bool:
-        """The collocated Riccati equation by Newton's method, from t = 0 on."""
+    def newton(self, start: float) -> bool:
+        """The collocated Riccati equation by Newton's method, from a straight line on."""
         i: cython.int
         j: cython.int
         step: cython.int
@@ -89,7 +91,7 @@ class Panel:
         slope: float
         most: float
         for j in range(s + 1):
-            self.tangent[j] = 0.0
+            self.tangent[j] = start * self.node[j]
         for step in range(STEPS):  # noqa: B007
             for i in range(s):
                 x_1: float = self.motion.value[i + 1, 3]

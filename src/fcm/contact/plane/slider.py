@@ -41,7 +41,7 @@ SHORT = cython.declare(cython.double, 10.0)  # times the length, where the load 
 RESOLVED = cython.declare(cython.double, 4.0)  # [rad] of the highest exp(i m theta), integrated to 1e-12
 SHRINK = cython.declare(cython.double, 0.2)  # factors of the next length of a panel
 GROW = cython.declare(cython.double, 2.5)
-SAFETY = cython.declare(cython.double, 0.85)
+SAFETY = cython.declare(cython.double, 0.7)
 
 
 @cython.cclass
@@ -178,6 +178,10 @@ class Slider:
         self.motion.place(SCAN, begin)
         push: float = self.push()
         r: float = self.motion.value[SCAN, 2]
+        rate: float = 0.0
+        if r > NOTHING * self.motion.reach:
+            rate = self.e_x * self.motion.value[SCAN, 4] - self.e_y * self.motion.value[SCAN, 3]
+            rate /= r
         while self.theta < end and not self.failed:
             if r <= NOTHING * self.motion.reach:
                 push = self.realign(push)
@@ -190,7 +194,7 @@ class Slider:
                 length = 0.6 * left
             for tries in range(200):  # noqa: B007
                 rest = 1e300
-                if self.panel.solve(self.theta, length, self.e_x, self.e_y):
+                if self.panel.solve(self.theta, length, self.e_x, self.e_y, rate):
                     rest = self.panel.rest()
                     rest *= max(
                         max(r, self.motion.value[self.panel.stages, 2]) / self.motion.reach,
@@ -209,7 +213,7 @@ class Slider:
             part = self.panel.end_of_slip()
             if part <= 1.0:
                 if part * length > SHORTEST:
-                    if not self.panel.solve(self.theta, part * length, self.e_x, self.e_y):
+                    if not self.panel.solve(self.theta, part * length, self.e_x, self.e_y, rate):
                         self.next_length = 0.5 * part * length
                         continue
                     self.accept()
@@ -219,6 +223,7 @@ class Slider:
                 self.halt()
                 return
             push, r = self.panel.push[self.panel.stages], self.motion.value[self.panel.stages, 2]
+            rate = self.panel.rate[self.panel.stages - 1]
             self.accept()
 
     def realign(self, push: float) -> float:
