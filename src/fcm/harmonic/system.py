@@ -81,7 +81,7 @@ class System:
     def _with(self, **other: object) -> System:
         found = object.__new__(type(self))
         found.__dict__.update(vars(self), **other)
-        for made in ("_workspace", "unit", "normal"):
+        for made in ("_workspace", "unit", "normal", "yields"):
             found.__dict__.pop(made, None)
         return found
 
@@ -149,7 +149,7 @@ class System:
         balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
         return balance
 
-    @property
+    @cached_property
     def yields(self) -> FloatArray:
         """How much each mode (mode,) yields beside the contacts; none of a ring's."""
         linear, highest = self.linear, max(self.harmonics) * self.scene.frequency_range[1]
