@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import Finer, beyond
+from fcm.harmonic.many_monodromy import ManyMonodromy
 from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.multipliers import SMALL, Multipliers, far_above
 from fcm.harmonic.ring_monodromy import RingMonodromy
@@ -97,7 +98,7 @@ class RingMultipliers(Multipliers):
             for numbers in (finer, harmonics)
         }
 
-    def _values(self, monodromy: Monodromy, omega: float) -> list[complex] | None:
+    def _values(self, monodromy: Monodromy | ManyMonodromy, omega: float) -> list[complex] | None:
         """As `Multipliers._values`; None where modes are missing, or there are too many."""
         return None if self.unknown else Multipliers._values(self, monodromy, omega)
 
