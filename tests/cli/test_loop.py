@@ -29,6 +29,7 @@ def undrawn(monkeypatch):
     """The picture is not drawn; what would be is another test's."""
     monkeypatch.setattr("fcm.cli.loop._drawn", lambda *_args: None)
     monkeypatch.setattr("fcm.cli.loop.save_picture", lambda *_args: None)
+    monkeypatch.setattr("fcm.cli.drawing.save_picture", lambda *_args: None)
 
 
 def loops(done):
@@ -74,7 +75,7 @@ def test_a_file_has_the_units_of_its_scene(fcm, tmp_path, monkeypatch):
     write_netcdf(replace(trace(scene), units=("mm", "N")), path)
     drawn = Mock(return_value=Mock())
     monkeypatch.setattr("fcm.plot.loop.draw_loops", drawn)
-    monkeypatch.setattr("fcm.cli.loop.save_picture", lambda *_args: None)
+    monkeypatch.setattr("fcm.cli.drawing.save_picture", lambda *_args: None)
     assert fcm("plot", "loop", path).code == 0
     assert drawn.call_args.args[1].displacement == "Displacement $u$ (mm)"
 

@@ -147,7 +147,7 @@ def test_files_that_hold_no_motion(path):
         data.renameVariable("cycles", "other")
     with pytest.raises(PlotError, match="has no variable cycles; try fcm plot history"):
         read_history(path)
-    with pytest.raises(PlotError, match="not a netCDF file"):
+    with pytest.raises(PlotError, match="is not there"):
         read_history(path.with_name("none.nc"))
 
 

@@ -94,7 +94,7 @@ def save_picture_of(file: Path, drawn: Callable[[], Figure], output: Path) -> No
 def drawable(file: Path) -> Iterator[None]:
     """Where the numbers of a file of results cannot be drawn, `PlotError` says so of it.
 
-    Whatever has written or damaged a file that could be read, they may have no place on an axis.
+    Whatever has written or damaged a file, they may have no place on an axis, though each can be a result.
     """
     from fcm.plot.errors import PlotError
 
@@ -104,6 +104,6 @@ def drawable(file: Path) -> Iterator[None]:
             yield
     except (PlotError, OSError, MemoryError, click.ClickException):
         raise
-    except (ArithmeticError, LookupError, RuntimeError, TypeError, ValueError) as error:
+    except (ArithmeticError, ValueError) as error:  # of an axis without room for them; others are defects
         reason = str(error).partition("\n")[0] or type(error).__name__
         raise PlotError(f"{file}: its numbers cannot be drawn: {reason}") from error

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.read import LARGEST, opened, read
 from fcm.plot.style import house_style, new_figure, plain_ticks
@@ -65,13 +66,15 @@ class Accuracy:
     panels: tuple[Panel, ...]
 
 
+@apart
 def read_accuracy(path: Path, quantity: str = "curve") -> Accuracy:
     """Read what ``fcm respond --compare -o`` has written; PlotError if the file is something else."""
     with opened(path, "a comparison", ()) as file:
         layout, text = getattr(file, "layout", ""), getattr(file, "summary", "{}")
     if not str(layout).startswith("fcm comparison"):
         raise PlotError(f"{path}: not a comparison; `fcm respond SCENE --compare -o FILE.nc` writes one")
-    with read(path, "not a sound comparison"):
+    unsound = (LookupError, TypeError, AttributeError, ValueError)  # of a text that may hold anything
+    with read(path, "not a sound comparison", unsound):
         summary = json.loads(text)
         panels = [_panel(summary, name, quantity) for name in ("exact", "closed form")]
         title = str(summary["title"])

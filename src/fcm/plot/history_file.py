@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
@@ -44,6 +45,7 @@ class DrawnHistory:
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
+@apart
 def read_history(path: Path, dof: str | None = None, axis: str = "cycles") -> DrawnHistory:
     """Read the motion that ``fcm respond -o`` has written; PlotError if the file has none."""
     with opened(path, "the file of a scene with a schedule", _NEEDED) as data:
@@ -71,6 +73,9 @@ def _edges(data: Any, axis: str) -> tuple[FloatArray, FloatArray]:
     else:
         passed = np.cumsum(floats(data["schedule_cycles"]))
         phases, cycles = np.concatenate(([0.0], passed[:-1])), floats(data["cycle_elapsed"])
+    for what, begun in (("phases", phases), ("cycles", cycles)):
+        if not (np.diff(begun, append=end) > 0.0).all():
+            raise ValueError(f"the times of its {what} do not rise")
     return np.concatenate((phases, end)), np.concatenate((cycles, end))
 
 

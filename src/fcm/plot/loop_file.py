@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.apart import apart
 from fcm.plot.errors import PlotError
 from fcm.plot.read import FloatArray, floats, opened, read_response
 
 MOST_NAMES = 10  # contacts that a message lists
 _ENERGY = "dissipated_energy"
+_ALSO = ("contact", "frequency", "stable", _ENERGY, "harmonic", "regime")
 _PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
 
 
@@ -55,10 +57,11 @@ class LoopFile:
     dimensions: tuple[str, str] | None  # units of length and force, if it says both
 
 
+@apart
 def read_loops(path: Path) -> LoopFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file holds no loops."""
     response = read_response(path)
-    with opened(path, "a response file", ()) as data:
+    with opened(path, "a response file", (), (*_PARTS, *_ALSO)) as data:
         missing = [name for name in (*_PARTS, "contact") if name not in data.variables]
         if missing:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
@@ -68,13 +71,13 @@ def read_loops(path: Path) -> LoopFile:
         parts = [floats(data[name]) for name in _PARTS]
         length, force = (str(getattr(data[name], "units", "")) for name in _PARTS[3:])
         energy = floats(data[_ENERGY]) if _ENERGY in data.variables else np.zeros((0, len(contacts)))
-        orders = data["harmonic"][:].tolist() if "harmonic" in data.variables else [1]
+        orders = floats(data["harmonic"]) if "harmonic" in data.variables else np.ones(1)
+        if not orders.size or orders[0] != 1.0 or not (np.diff(orders) > 0.0).all() or (orders % 1.0).any():
+            raise ValueError("its harmonics are not 1 and others above, one after the other")
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
     shape = (*frequency.shape, len(contacts))
-    if any(part.shape != shape for part in parts):
-        raise PlotError(f"{path}: holds no loops: {_PARTS[0]} has shape {parts[0].shape}, not {shape}")
     swept = tuple(curve.parameters for curve in response.curves)
-    if states is None or states.shape != shape:
+    if states is None:
         states = np.full(shape, "", dtype="<U1")
     return LoopFile(
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.apart import apart
 from fcm.plot.curve_names import name_at_side
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label
@@ -42,12 +43,11 @@ class DrawnModes:
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
+@apart
 def read_modes(path: Path) -> DrawnModes:
     """Read what ``fcm respond --mode -o`` has written; PlotError if the file is something else."""
     with opened(path, "a file of nonlinear modes (fcm respond --mode)", _NEEDED) as data:
         frequency, amplitude, damping = (floats(data.variables[name]) for name in _NEEDED)
-        if not frequency.shape == amplitude.shape == damping.shape or frequency.ndim != 2:
-            raise ValueError(f"frequency has shape {frequency.shape}, damping_ratio {damping.shape}")
         swept = swept_values(data.variables)
         found = [
             DrawnMode({key: float(values[i]) for key, values in swept.items()}, *(x[known] for x in one))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.apart import apart
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, staying, symbols, with_unit
@@ -47,19 +48,15 @@ class Peaks:
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
 
 
+@apart
 def read_peaks(path: Path) -> Peaks:
     """Read the peaks of what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED) as data:
+    with opened(path, "a response file", _NEEDED, ("peak_stable",)) as data:
         variables = data.variables
         dofs = tuple(str(name) for name in np.atleast_1d(variables["dof"][:]))
         amplitude, frequency, complete = (floats(variables[name]) for name in _NEEDED[1:])
         swept = swept_values(variables)
-        shape = (len(complete), len(dofs))
-        if amplitude.shape != shape or frequency.shape != shape or complete.shape != shape[:1]:
-            raise ValueError(f"its peaks have shape {amplitude.shape}, not {shape}")
         stable = floats(variables["peak_stable"]) if "peak_stable" in variables else None
-        if stable is not None and stable.shape != shape:
-            raise ValueError(f"peak_stable has shape {stable.shape}, not {shape}")
         unit, length = getattr(data, "frequency_unit", "rad/s"), getattr(variables[_NEEDED[1]], "units", "")
         units = swept_units(variables, swept)
     return Peaks(dofs, str(unit), swept, amplitude, frequency, complete == 1, str(length), stable, units)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label
@@ -36,10 +37,11 @@ class DrawnPoints:
     sweeps: tuple[npt.NDArray[np.str_], ...]
 
 
+@apart
 def read_points(path: Path) -> DrawnPoints:
     """Read what ``fcm respond --method exact -o`` has written; PlotError if the file is something else."""
     response = read_response(path)
-    with opened(path, "a response file", ("frequency",)) as dataset:
+    with opened(path, "a response file", ("frequency",), ("sweep",)) as dataset:
         if "sweep" not in dataset.variables:
             raise PlotError(f"{path}: no exact motions; fcm respond --method exact -o FILE writes them")
         rows = np.asarray(dataset.variables["sweep"][:], dtype=str)

@@ -13,20 +13,25 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.files import NETCDF, no_file
+from fcm.plot.apart import apart
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
+from fcm.plot.layout import check_layout, is_text
 from fcm.units import CF_UNIT
 from fcm.untold import untold
 
 FloatArray = npt.NDArray[np.float64]
 BoolArray = npt.NDArray[np.bool_]
+Failures = tuple[type[Exception], ...]
 
 _WIDE = 30.0  # ratio of frequencies from which their axis is logarithmic
 _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
+_ALSO = ("stable", "table_error", "truncation_error", "regime", "level")
 NO_NETCDF = "Unknown file format"  # what the library says of other files
+UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
 LARGEST = 1e100  # no result is as large, in whatever units: such a number was not written as one
 
 
@@ -74,20 +79,22 @@ def wide(curves: Sequence[DrawnCurve]) -> bool:
     return high > _WIDE * low > 0.0
 
 
+@apart
 def read_response(path: Path) -> DrawnResponse:
     """Read what ``fcm respond -o`` has written; PlotError if the file is something else."""
-    with opened(path, "a response file", _NEEDED) as dataset:
+    with opened(path, "a response file", _NEEDED, _ALSO) as dataset:
         return _response(dataset)
 
 
 @contextmanager
-def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
-    """The open netCDF dataset; PlotError if it has not the variables needed, or they do not fit together."""
+def opened(path: Path, kind: str, needed: Sequence[str], also: Sequence[str] = ()) -> Iterator[Any]:
+    """The open netCDF dataset; PlotError if it has not the variables needed, or if they, or others that are
+    read where they are there, are laid out otherwise."""
     from netCDF4 import Dataset
 
     if what := no_file(path):
         raise PlotError(f"{path}: {what}")
-    with read(path, "not a netCDF file that can be read"):
+    with read(path, "not a netCDF file that can be read", (Exception,)):  # whatever the library comes to
         dataset = Dataset(str(path))
     with dataset:
         missing = [name for name in needed if name not in dataset.variables]
@@ -95,18 +102,19 @@ def opened(path: Path, kind: str, needed: Sequence[str]) -> Iterator[Any]:
             names = ", ".join(missing[:3]) + (", ..." if len(missing) > 3 else "")
             raise PlotError(f"{path}: not {kind}: it has no variable {names}{_hint(dataset)}")
         with read(path, f"not {kind}"):
+            check_layout(dataset.variables, (*needed, *also))
             yield dataset
 
 
 @contextmanager
-def read(path: Path, otherwise: str) -> Iterator[None]:
+def read(path: Path, otherwise: str, of: Failures = UNREAD) -> Iterator[None]:
     """What is read from a file, which may be damaged, or written by anything: `PlotError` says what it is
     otherwise, and why."""
     try:
         yield
     except (PlotError, MemoryError):
         raise
-    except Exception as error:  # the library and what is made of its numbers fail in many ways
+    except of as error:
         if getattr(error, "errno", 0) == errno.ENOMEM:
             raise MemoryError(str(error)) from error
         reason = str(error).partition("\n")[0]
@@ -137,8 +145,6 @@ def _response(dataset: Any) -> DrawnResponse:
     if not dofs:
         raise ValueError("it has no degree of freedom")
     frequency, amplitude = floats(variables["frequency"]), floats(variables["amplitude"])
-    if frequency.ndim != 2 or amplitude.shape != (*frequency.shape, len(dofs)):
-        raise ValueError(f"frequency has shape {frequency.shape}, amplitude {amplitude.shape}")
     stable, *errors = (
         floats(variables[name]) if name in variables else None
         for name in ("stable", "table_error", "truncation_error")
@@ -206,6 +212,7 @@ def _swept(variables: Any) -> dict[str, Any]:
         for name, variable in variables.items()
         if variable.dimensions == ("curve",)
         and str(getattr(variable, "long_name", "")).startswith(_DESCRIBED)
+        and not is_text(variable.dtype)
     }
 
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import staying
-from fcm.plot.read import FloatArray, floats, opened, swept_units, swept_values
+from fcm.plot.read import LARGEST, FloatArray, floats, opened, swept_units, swept_values
 from fcm.plot.style import WIDTH, house_style, new_figure
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ class DrawnSensitivity:
     stable: FloatArray  # (curve, dof) whether the motion at the peak is, 1, 0 or NaN
 
 
+@apart
 def read_sensitivity(path: Path) -> DrawnSensitivity:
     """Read what ``fcm respond --sensitivity -o`` has written; PlotError if the file is something else."""
     with opened(path, "a file with sensitivities (fcm respond --sensitivity)", _NEEDED) as data:
@@ -56,13 +58,17 @@ def read_sensitivity(path: Path) -> DrawnSensitivity:
         swept = swept_values(variables)
         kind = np.atleast_2d(variables["peak_kind"][:])
         with np.errstate(divide="ignore", invalid="ignore"):
-            relative = value[:, None, :] / peak[:, :, None], value[:, None, :] / at[:, :, None]
+            known = [
+                slope * (value[:, None, :] / size[:, :, None])
+                for slope, size in ((height, peak), (frequency, at))
+            ]
+        height, frequency = (np.where(np.abs(one) <= LARGEST, one, np.nan) for one in known)
         return DrawnSensitivity(
             tuple(map(str, np.atleast_1d(variables["dof"][:]))),
             tuple(map(str, np.atleast_1d(variables["number"][:]))),
             tuple({key: float(x[i]) for key, x in swept.items()} for i in range(len(height))),
-            height * relative[0],
-            frequency * relative[1],
+            height,
+            frequency,
             tuple(tuple(map(str, row)) for row in kind),
             swept_units(variables, swept),
             floats(variables["peak_stable"]),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fcm.plot.apart import apart
 from fcm.plot.dof import column_of
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import frequency_label, staying, symbols, with_unit
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _NEEDED = ("tracked_number", "tracked_frequency", "tracked_amplitude", "tracked_turn", "track_what", "dof")
+_ALSO = ("tracked_trough", "tracked_stable")
 _MARK, _SHADE = "#c03020", "#c0d4ea"
 
 
@@ -58,13 +60,14 @@ class DrawnTracking:
     unit: str = ""  # of the number
 
 
+@apart
 def read_tracked(path: Path) -> DrawnTracking | None:
     """Read what ``fcm respond`` has written with --track, or of an [optimum]; None of another file."""
-    with opened(path, "a response file", ()) as data:
+    with opened(path, "a response file", (), (*_NEEDED, *_ALSO)) as data:
         variables = data.variables
         if any(name not in variables for name in _NEEDED):
             return None
-        names = (*_NEEDED[:4], "tracked_trough")
+        names = (*_NEEDED[:4], _ALSO[0])
         number, frequency, amplitude, turn, trough = (floats(variables[name]) for name in names)
         stable = floats(variables["tracked_stable"]) if "tracked_stable" in variables else np.ones_like(turn)
         whats = [str(one) for one in np.atleast_1d(variables["track_what"][:])]

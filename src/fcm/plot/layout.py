@@ -1,0 +1,57 @@
+"""How the variables of a file of results are laid out; a file that is not so is refused at reading."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+_CURVE, _POINT, _CYCLE, _PHASE = ("curve",), ("curve", "point"), ("cycle",), ("schedule_phase",)
+_DOF, _CONTACT, _PEAK = (*_POINT, "dof"), (*_POINT, "contact"), ("curve", "dof")
+_TRACKED, _OF_CYCLE = ("track", "tracked"), ("curve", "cycle", "dof")
+_LAYOUT = {
+    "dof": ("dof",),
+    "contact": ("contact",),
+    "harmonic": ("harmonic",),
+    "number": ("number",),
+    **dict.fromkeys(("frequency", "level", "stable", "table_error", "truncation_error", "sweep"), _POINT),
+    **dict.fromkeys(("modal_amplitude", "damping_ratio"), _POINT),
+    "amplitude": _DOF,
+    **dict.fromkeys(("regime", "n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force"), _CONTACT),
+    "dissipated_energy": _CONTACT,
+    **dict.fromkeys(("peak_amplitude", "peak_frequency", "peak_stable", "peak_kind"), _PEAK),
+    "complete": _CURVE,
+    **dict.fromkeys(("sensitivity", "frequency_sensitivity"), (*_PEAK, "number")),
+    "number_value": ("curve", "number"),
+    **dict.fromkeys(("time", "cycles"), ("instant",)),
+    **dict.fromkeys(("cycle_start", "cycle_elapsed", "cycle_part"), _CYCLE),
+    **dict.fromkeys(("schedule_frequency", "schedule_cycles", "schedule_start"), _PHASE),
+    "displacement": ("curve", "instant", "dof"),
+    **dict.fromkeys(("cycle_mean", "cycle_greatest", "cycle_least"), _OF_CYCLE),
+    "track_what": ("track",),
+    "tracked_amplitude": (*_TRACKED, "dof"),
+    **dict.fromkeys(
+        ("tracked_number", "tracked_frequency", "tracked_turn", "tracked_trough", "tracked_stable"), _TRACKED
+    ),
+}
+_TEXTS = {"dof", "contact", "number", "regime", "sweep", "peak_kind", "track_what"}
+
+
+def check_layout(variables: Any, names: Iterable[str]) -> None:
+    """Raise ValueError of those variables that are there with other dimensions, or of another kind."""
+    for name in names:
+        if name not in variables:
+            continue
+        found, kind = variables[name].dimensions, variables[name].dtype
+        if found != _LAYOUT[name]:
+            raise ValueError(f"{name} is by {_by(found)}, not by {_by(_LAYOUT[name])}")
+        if is_text(kind) != (name in _TEXTS):
+            raise ValueError(f"{name} holds {'text' if is_text(kind) else 'numbers'}")
+
+
+def is_text(kind: Any) -> bool:
+    """Whether a variable of this type holds no numbers."""
+    return kind is str or getattr(kind, "kind", "O") not in "biuf"
+
+
+def _by(dimensions: Iterable[str]) -> str:
+    return "(" + ", ".join(dimensions) + ")"
