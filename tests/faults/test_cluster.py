@@ -1,7 +1,10 @@
 """Sweeps on the workers of a real dask scheduler, and on executors: what is lost with whom."""
 
 import re
+import signal
+import socket
 import subprocess
+import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -35,9 +38,9 @@ asyncio.run(main())
 SLOW = """
 import time, fcm.response, fcm.response.groups as groups
 real = groups.traced_curve
-def slow(*args):
+def slow(*args, **more):
     time.sleep(0.1)
-    return real(*args)
+    return real(*args, **more)
 groups.traced_curve = slow
 """
 OLDER = "import fcm\nfcm.__version__ = '0.0.9'\n"
@@ -99,7 +102,8 @@ def test_a_worker_dies_another_is_refused_and_at_last_the_scheduler_is_lost(prog
     assert re.fullmatch(r"fcm: error: \d+ of 20 curves not complete; .*", said[3]) and len(said) == 4
     counted = FEW + (
         "import fcm.response.groups as groups\nreal = groups.traced_curve\n"
-        "def one(*args):\n    print('traced')\n    return real(*args)\ngroups.traced_curve = one\n"
+        "def one(*args, **more):\n    print('traced')\n    return real(*args, **more)\n"
+        "groups.traced_curve = one\n"
     )
     (program.folder / "a.nc").unlink()
     done = program(*on_cluster[:4], "--resume", "--jobs", "1", before=counted)
@@ -124,6 +128,52 @@ def test_what_stands_in_the_way_of_a_cluster_is_said_in_one_line(program, monkey
         other = program("respond", "one.toml", "--cluster", address, *more.split())
         assert other.returncode == 2 and why in other.err
     assert program.files == ["one.toml", "sweep.toml"]
+
+
+@pytest.mark.parametrize(
+    ("address", "why"),
+    [
+        ("127.0.0.1", "an address is such as tcp://127.0.0.1:8786"),
+        ("http://127.0.0.1:8786", "an address is such as tcp://127.0.0.1:8786"),
+        ("tcp://127.0.0.1:0", "a port is from 1 to 65535, is 0"),
+        ("tcp://127.0.0.1:99999", "a port is from 1 to 65535, is 99999"),
+        ("tcp://127.0.0.300:8786", "each of its four numbers is 255 at most"),
+        ("tcp://255.255.255.255:8786", "is the address of no single host"),
+        ("tcp://[ff02::1]:8786", "is the address of no single host"),
+        ("tcp://no-such-host.invalid:8786", "no-such-host.invalid"),
+        ("tcp://127.0.0.1:9", "nothing listens there"),
+    ],
+)
+def test_addresses_where_no_scheduler_can_be(address, why, monkeypatch):
+    """None is given to distributed, which tries for as long as it is let."""
+    monkeypatch.setattr("fcm.run.cluster._connected", None)
+    with pytest.raises(cluster.ClusterError, match=re.escape(why)), cluster.connected(address):
+        pass
+
+
+@pytest.fixture
+def silent():
+    """The address of what accepts a connection and says nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+
+
+def test_a_port_that_is_silent_is_left_in_the_time_that_is_said(silent, monkeypatch):
+    monkeypatch.setattr(cluster, "ANSWER", 0.5)
+    with pytest.raises(cluster.ClusterError, match=r"within 0\.5 s"), cluster.connected(silent):
+        pass
+
+
+@pytest.mark.parametrize("which", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_the_wait_for_a_port_that_is_silent(program, silent, which):
+    """Long before the ten minutes for which it would be waited for here."""
+    patient = FEW + "import fcm.run.cluster as cluster\ncluster.ANSWER = 600.0\nprint('now', flush=True)\n"
+    run = program.start("respond", "one.toml", "-o", "a.nc", "--cluster", silent, before=patient)
+    assert run.stdout.readline().strip() == "now"
+    time.sleep(2.0)
+    run.send_signal(which)
+    run.out, run.err = run.communicate(timeout=60)
+    assert run.returncode not in (0, 1) and "Traceback" not in run.err and not session(run.pid)
 
 
 def test_a_scheduler_without_a_worker_of_this_fcm(dask, monkeypatch):

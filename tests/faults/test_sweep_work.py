@@ -30,9 +30,9 @@ SLOW = (
     + """
 import fcm.response.groups as groups, time
 real = groups.traced_curve
-def slow(*args):
+def slow(*args, **more):
     time.sleep(0.2)
-    return real(*args)
+    return real(*args, **more)
 groups.traced_curve = slow
 """
 )
@@ -392,7 +392,7 @@ def test_there_is_one_bar_and_it_never_goes_back():
 
 def test_verbose_shows_where_a_curve_was_lost(program):
     lost = "import fcm.response.groups as groups\n" + (
-        "def broken(*_):\n    raise ZeroDivisionError('of zero')\ngroups.traced_curve = broken\n"
+        "def broken(*_, **more):\n    raise ZeroDivisionError('of zero')\ngroups.traced_curve = broken\n"
     )
     quiet = program("respond", "one.toml", before=lost)
     loud = program("respond", "one.toml", "-v", before=lost)

@@ -86,11 +86,11 @@ def test_a_curve_that_fails_loses_no_other(scene, whole, monkeypatch):
 def interrupt_after(monkeypatch, count):
     real, calls = groups.traced_curve, []
 
-    def traced_curve(*args):
+    def traced_curve(*args, **more):
         calls.append(args)
         if len(calls) > count:
             raise KeyboardInterrupt
-        return real(*args)
+        return real(*args, **more)
 
     monkeypatch.setattr(groups, "traced_curve", traced_curve)
     return calls

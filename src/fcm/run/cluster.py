@@ -16,6 +16,8 @@ from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from typing import Any
 
+from fcm.run.address import LATE, answering
+from fcm.run.address import within as _within
 from fcm.run.elsewhere import AHEAD, Elsewhere, Refused, identity, other_fcm, there
 from fcm.run.places import Again, Factory, Gone
 from fcm.run.work import Attempt, Compute
@@ -74,16 +76,22 @@ def _client(address: str) -> Any:
         raise ClusterError(
             "a cluster needs dask.distributed, which is not installed: pip install 'fcm[cluster]'"
         ) from None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of versions that differ: what matters is that it answers
-            client: Any = Client
-            return client(address, timeout=ANSWER, set_as_default=False)
-    except Exception as error:  # of many kinds: no such host, no answer, an answer of something else
-        raise ClusterError(
-            f"no dask scheduler answers at {address!r} ({_first_line(error)}); "
-            "it is started with: dask scheduler"
-        ) from None
+    until = time.monotonic() + ANSWER
+    fault = answering(address, until)
+    if not fault:
+        client, error = _within(lambda: _connected(Client, address, until - time.monotonic()), until)
+        if error is None:
+            return client
+        fault = f"it did not answer within {ANSWER:g} s" if error is LATE else _first_line(error)
+    raise ClusterError(
+        f"no dask scheduler answers at {address!r} ({fault}); it is started with: dask scheduler"
+    ) from None
+
+
+def _connected(client: Any, address: str, timeout: float) -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of versions that differ: what matters is that it answers
+        return client(address, timeout=timeout, set_as_default=False)
 
 
 class Workers:

@@ -1,0 +1,89 @@
+"""Whether there can be a scheduler at an address, and whether anything listens there: told at once.
+
+A host name is looked up and a connection is made in a thread of its own, as neither heeds a signal: the main
+thread waits for it, which a signal ends at once.
+"""
+
+from __future__ import annotations
+
+import ipaddress
+import re
+import socket
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+SCHEMES = ("tcp", "tls", "ucx", "ws", "wss")
+BETWEEN = 0.05  # [s] between two looks at whether there is an answer
+LATE = TimeoutError("no answer in time")
+_FORM = re.compile(r"(?:(?P<scheme>[a-z]+)://)?(?:\[(?P<six>[^\]]+)\]|(?P<host>[^:/@\s]+)):(?P<port>\d{1,9})")
+
+
+def answering(address: str, until: float) -> str:
+    """Why no scheduler can answer at an address; empty where something listens there.
+
+    Parameters
+    ----------
+    until : float
+        The time, of `time.monotonic`, to which it is waited for.
+    """
+    found = _FORM.fullmatch(address.strip().rstrip("/"))
+    if found is None or (found["scheme"] or "tcp") not in SCHEMES:
+        return "an address is such as tcp://127.0.0.1:8786"
+    host, port = found["six"] or found["host"], int(found["port"])
+    if not 0 < port < 65536:
+        return f"a port is from 1 to 65535, is {port}"
+    if fault := unfit_host(host):
+        return fault
+    _, error = within(lambda: _listens(host, port, until), until)
+    if error is LATE:
+        return f"{host} was not reached in time"
+    if isinstance(error, socket.gaierror):
+        return f"there is no host {host}"
+    if isinstance(error, ConnectionRefusedError):
+        return "nothing listens there"
+    return "" if error is None else (getattr(error, "strerror", None) or str(error))
+
+
+def unfit_host(host: str) -> str:
+    """Why no program can listen at a host, by its number alone; empty for names and for all others.
+
+    >>> unfit_host("255.255.255.255"), unfit_host("127.0.0.1"), unfit_host("node7")
+    ('255.255.255.255 is the address of no single host', '', '')
+    >>> unfit_host("127.0.0.300")
+    '127.0.0.300 is no address: each of its four numbers is 255 at most'
+    """
+    if re.fullmatch(r"\d+(\.\d+){3}", host) and any(int(part) > 255 for part in host.split(".")):
+        return f"{host} is no address: each of its four numbers is 255 at most"
+    with suppress(ValueError):
+        number = ipaddress.ip_address(host)
+        if number.is_multicast or number.is_reserved or number == ipaddress.IPv4Address("255.255.255.255"):
+            return f"{host} is the address of no single host"
+    return ""
+
+
+def _listens(host: str, port: int, until: float) -> None:
+    with socket.create_connection((host, port), max(until - time.monotonic(), BETWEEN)):
+        pass
+
+
+def within(call: Callable[[], Any], until: float) -> tuple[Any, BaseException | None]:
+    """What a call in a thread returns, or what it raises; LATE where it has not ended by then.
+
+    The thread is left to itself then, and does not keep the process from its end.
+    """
+    found: list[Any] = [None, LATE]
+
+    def run() -> None:
+        try:
+            found[:] = call(), None
+        except BaseException as error:
+            found[:] = None, error
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    while thread.is_alive() and time.monotonic() < until:
+        thread.join(BETWEEN)
+    return found[0], found[1]
