@@ -69,10 +69,10 @@ def test_two_cores_give_what_one_gives(scene, small_groups):
 def test_a_curve_that_fails_loses_no_other(scene, whole, monkeypatch):
     real = groups.traced_curve
 
-    def traced_curve(curve, *args):
+    def traced_curve(curve, *args, **more):
         if curve.parameters["n_0"] == PRELOADS[3]:
             raise MemoryError("too much")
-        return real(curve, *args)
+        return real(curve, *args, **more)
 
     monkeypatch.setattr(groups, "traced_curve", traced_curve)
     response = trace(scene, "closed-form")
