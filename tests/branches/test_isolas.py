@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fcm.branches.fold_continuation import Ending, folds_from
+from fcm.branches import search
+from fcm.branches.fold_continuation import Ending, Folds, folds_from
 from fcm.branches.isolas import crossings
+from fcm.branches.options import FOLDS
 from fcm.branches.search import every_branch
 from fcm.branches.surface import Surface
 from fcm.continuation import Mark, Status
@@ -80,6 +82,28 @@ def test_a_curve_of_folds_passes_where_the_level_turns_at_other_frequencies():
         assert min(abs(one / level - 1.0) for one in found) < 2e-2
 
 
+def levels_at(curve, omega):
+    """At which levels a curve of folds passes a frequency."""
+    off = curve.frequency - omega
+    return [
+        curve.level[i] + off[i] / (off[i] - off[i + 1]) * (curve.level[i + 1] - curve.level[i])
+        for i in np.flatnonzero(off[:-1] * off[1:] < 0.0)
+    ]
+
+
+@pytest.mark.parametrize("preload", [2.0, 10.0, 20.0])
+def test_where_two_curves_of_folds_touch_the_one_leads_to_the_other(preload):
+    """They come together at 1.27 rad/s, where the level turns no more: below, it does on either."""
+    (one,) = (one for one in load_scene("yang1998").each_curve() if one.contacts[0].n_0 == preload)
+    system = System(one)
+    (omega,) = (w for w in looked_at(system) if any(turn.short for turn in solutions(system, w).turns))
+    (curve,) = (curve for turn, curve in folds_of(system, omega) if turn.short)
+    assert curve is not None and set(curve.endings) == {Ending.LEVEL}
+    turns = sorted(turn.level for turn in solutions(system, 1.255, np.inf).turns)
+    met = np.array(levels_at(curve, 1.255))
+    assert len(turns) == 2 and all(np.abs(met / level - 1.0).min() < 1e-2 for level in turns)
+
+
 def test_folds_in_corners_are_followed_round_a_closed_curve():
     """From a corner, through others, back to it: each of its points has a fold there by its level curve."""
     system = System(scene("closed_two_modes"), (1, 2, 3, 4, 5))
@@ -90,11 +114,7 @@ def test_folds_in_corners_are_followed_round_a_closed_curve():
     )
     assert curve.endings == (Ending.CLOSED, Ending.CLOSED)
     for omega in (1.9, 2.1):
-        off = curve.frequency - omega
-        levels = [
-            curve.level[i] + off[i] / (off[i] - off[i + 1]) * (curve.level[i + 1] - curve.level[i])
-            for i in np.flatnonzero(off[:-1] * off[1:] < 0.0)
-        ]
+        levels = levels_at(curve, omega)
         turns = np.array([turn.level for turn in solutions(system, omega, np.inf).turns])
         assert levels
         for level in levels:
@@ -106,12 +126,49 @@ def test_where_a_curve_of_folds_passes_the_level_one_the_response_has_a_fold():
     system = System(scene("closed_impact"), (1, 2, 3, 4))
     known = traced(system)
     found = crossings(system, known.found, known.branches.paths)
-    assert found.complete and len(found.solutions) == 2
+    assert found.unsure == () and len(found.solutions) == 2
     low, high = sorted(z[-1] for z in found.solutions)
     before = [len(solutions(system, omega, np.inf).solutions) for omega in (low - 0.01, low + 0.01)]
     after = [len(solutions(system, omega, np.inf).solutions) for omega in (high - 0.01, high + 0.01)]
     assert before == [1, 3] and after[0] - after[1] == 2
     assert all(low > omega or omega > high for omega in looked_at(system))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        replace(FOLDS, most=3),  # steps of a curve
+        replace(FOLDS, upright=0.0),  # no fold is found near the start
+        replace(FOLDS, share=0.0, unnoticed=0.0),
+    ],
+)
+def test_where_curves_of_folds_are_not_followed_to_their_end_the_crossings_say_so(options):
+    """Their points or their work come to an end, or they do not begin."""
+    system = System(scene("closed_impact"), (1, 2, 3, 4))
+    known = traced(system)
+    found = crossings(system, known.found, known.branches.paths, options)
+    low, high = system.scene.frequency_range
+    assert found.solutions == () and found.unsure
+    assert all(low <= omega <= high for omega in found.unsure)
+
+
+def test_a_closed_curve_of_folds_has_lost_nothing_and_others_their_open_ends():
+    z = np.array([[0.0, 1.0, 2.0], [0.0, 3.0, 2.0]])
+    assert Folds(z, z, (Ending.STALLED, Ending.LEVEL)).lost == [1.0]
+    assert Folds(z, z, (Ending.RANGE, Ending.LONG)).lost == [3.0]
+    assert Folds(z, z, (Ending.STALLED, Ending.CLOSED)).lost == []
+
+
+def test_where_folds_are_lost_a_response_says_from_where_on(monkeypatch):
+    """And with what is left of them the closed branch is not found."""
+    options = replace(FOLDS, share=0.0, unnoticed=0.0)
+    monkeypatch.setattr(search, "crossings", lambda *args: crossings(*args, options))
+    curve = traced_curve(scene("closed_impact"), Wanted((1, 2, 3, 4), ACCURACY))
+    assert curve.complete and curve.folds_unsure and not curve.unsure
+    assert curve.summary()["folds_unsure_at"] == curve.folds_unsure
+    monkeypatch.undo()
+    curve = traced_curve(scene("closed_impact"), Wanted((1, 2, 3, 4), ACCURACY))
+    assert curve.folds_unsure == [] and "folds_unsure_at" not in curve.summary()
 
 
 KNOWN = Path(__file__).parents[1] / "harmonic/scenes"

@@ -4,8 +4,11 @@ import json
 from pathlib import Path
 
 import netCDF4
+import numpy as np
 import pytest
 
+from fcm.branches import search
+from fcm.branches.isolas import Crossings
 from fcm.cli.doubts import nothing_stable, short_of_accuracy
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene
@@ -65,3 +68,25 @@ def test_nothing_is_said_where_something_is_stable_throughout(curves):
 def test_one_curve_has_and_two_have_not_the_accuracy(short, said):
     curves = [{"short_of_accuracy": "why"}] * short + [{}] * (3 - short)
     assert short_of_accuracy({"curves": curves}).startswith(said)
+
+
+def test_where_folds_of_the_level_were_lost_a_run_says_once_that_branches_may_be_missing(
+    fcm, scene, tmp_path, monkeypatch
+):
+    scene.write_text(scene.read_text() + '[sweep]\n"contact.0.n_0" = [1.0, 2.0, 3.0]\n')
+    lost = {1.0: (1.25, 1.5), 2.0: (), 3.0: (1.0,)}
+    monkeypatch.setattr(
+        search, "crossings", lambda system, *_: Crossings((), lost[system.scene.contacts[0].n_0])
+    )
+    run = fcm("respond", scene, "--harmonics", "1", "--json", "-o", "a.nc")
+    said = (
+        "isolated branches of 2 of 3 curves may be missing: from 1.25 rad/s on "
+        "the folds of the level of the forces were not followed to their end"
+    )
+    assert run.code == 0 and run.err.count(said) == 1 and run.err.count("may be missing") == 1
+    curves = json.loads(run.out)["curves"]
+    assert [curve.get("folds_unsure_at", []) for curve in curves] == [[1.25, 1.5], [], [1.0]]
+    fcm("respond", scene, "--harmonics", "1", "--peaks-only", "-o", "b.nc")
+    with netCDF4.Dataset(tmp_path / "b.nc") as data:
+        kept = np.ma.filled(data["folds_unsure_at"][:], np.nan)
+    assert np.array_equal(kept, [[1.25, 1.5], [np.nan] * 2, [1.0, np.nan]], equal_nan=True)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from fcm.branches.search import every_branch
 from fcm.cli.doubts import tracked_unsure
 from fcm.continuation import Mark
 from fcm.harmonic.record import recorded
@@ -418,11 +419,11 @@ def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be
     assert track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.unsure == []
 
     def stalled(system):
-        curves = traced(system)
+        curves = every_branch(system)
         first, *others = curves.found
         return replace(curves, found=(replace(first, complete=False), *others))
 
-    monkeypatch.setattr(starts, "traced", stalled)
+    monkeypatch.setattr(starts, "every_branch", stalled)
     response = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1)
     lowest = scene.frequency_range[0]
     assert response.tracking.complete and {omega for _, omega in response.tracking.unsure} == {lowest}
@@ -431,3 +432,9 @@ def test_where_ordinary_curves_may_lack_branches_tracked_ones_are_not_said_to_be
     assert tracked_unsure(summary).startswith(
         f"other tracked curves may be missing: with {PRELOAD} = 4 at {lowest:.5g} rad/s"
     )
+
+
+def test_where_a_fold_of_the_level_is_lost_tracked_curves_are_not_said_to_be_all(scene, monkeypatch):
+    monkeypatch.setattr(starts, "every_branch", lambda one: replace(every_branch(one), folds_lost=(1.5,)))
+    unsure = track(scene, "folds", PRELOAD, (4.0, 6.0), harmonics=1).tracking.unsure
+    assert unsure[0] == (4.0, 1.5) and {omega for _, omega in unsure} == {1.5}

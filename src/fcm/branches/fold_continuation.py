@@ -6,7 +6,8 @@ corrector on the surface of all solutions: the zero of g on an arc of a circle a
 (Allgower and Georg, "Introduction to Numerical Continuation Methods", SIAM 2003; Rheinboldt, Numer. Math. 53
 (1988) 165, for the local axes of a surface). Only the sign of g counts, so that nothing is differentiated
 twice, and a fold that lies in a corner of the solutions, where g jumps, is followed like any other. Cusps,
-where two folds meet, are ordinary places of such a curve.
+where two folds meet, are ordinary places of such a curve; where their curves touch on the surface, and the
+strip between them vanishes, the curve goes back on the other side of the strip.
 """
 
 from __future__ import annotations
@@ -55,6 +56,15 @@ class Folds:
     def level(self) -> FloatArray:
         """Of the forces."""
         return self.z[:, -1]
+
+    @property
+    def lost(self) -> list[float]:
+        """Frequencies [rad/s] of those ends from which the curve would go on; none where it is closed."""
+        if Ending.CLOSED in self.endings:
+            return []
+        short = (Ending.STALLED, Ending.LONG)
+        ends = zip(self.endings, self.frequency[[0, -1]].tolist(), strict=True)
+        return [omega for ending, omega in ends if ending in short]
 
 
 def folds_from(
@@ -153,7 +163,8 @@ class _Follower:
         if not surface.recentre(way.along, way.across):
             return [], Ending.STALLED
         points = [(np.array(surface.centre), way.across)]
-        first, step, bend = np.array(surface.centre), options.first, 0.0
+        first, step, bend, turned = np.array(surface.centre), options.first, 0.0, False
+        before, taken, retreats = first, way, options.retreats
         for count in range(options.most):
             found = self._ahead(step, bend, way.left)
             off = 2.0 * options.fine * way.radius
@@ -161,10 +172,18 @@ class _Follower:
                 step, bend = 0.3 * step, 0.0
                 if step < 10.0 * off and self._onto(off, way.left):
                     off *= options.fine
+                if step < options.thin and not turned and self._over(options.thin):
+                    turned, step = True, options.thin
                 found = self._ahead(step, bend, way.left) or self._round(step, way.left)
+            if found is None and retreats and len(points) > 1:  # the last step led to another part
+                retreats, way, step, bend = retreats - 1, taken, 0.3 * way.radius, 0.0
+                points.pop()
+                surface.z[:] = before
+                surface.recentre(way.along, way.across)
+                continue
             if found is None:
                 return points, Ending.STALLED
-            before, way = np.array(surface.centre), found
+            before, taken, way = np.array(surface.centre), way, found
             if not surface.recentre(found.along, found.across):
                 return points, Ending.STALLED
             points.append((np.array(surface.z), self._singular(found.across)))
@@ -265,6 +284,31 @@ class _Follower:
             low, high = (middle, high) if self._side(middle, side).value * here > 0.0 else (low, middle)
         return bool(surface.recentre(axes[0], axes[1]))
 
+    def _over(self, thin: float) -> bool:
+        """Cross the strip beside the curve if it is as thin as that: take for the centre the place of the
+        curve on its other side, with the way back ahead. Whether it is that thin."""
+        surface, axes = self.surface, np.array(self.surface.axes) * np.asarray(self.surface.scale)
+        surface.z[:] = surface.centre
+        one, other = (self._side(thin, side * 0.5 * np.pi).value for side in (1.0, -1.0))
+        if not one * other > 0.0:
+            return False
+        for side in (1.0, -1.0):
+            surface.z[:] = surface.centre
+            high, low = thin, thin
+            while low > self.options.fine * self.options.fine * thin:
+                low *= 0.7
+                if self._side(low, side * 0.5 * np.pi).value * one < 0.0:
+                    break
+                high = low
+            else:
+                continue
+            while high - low > self.options.fine * low:
+                middle = 0.5 * (low + high)
+                inside = self._side(middle, side * 0.5 * np.pi).value * one < 0.0
+                low, high = (middle, high) if inside else (low, middle)
+            return bool(surface.recentre(-axes[0], axes[1]))
+        return False
+
     def _round(self, step: float, left: float) -> _Way | None:
         """The way nearest ahead with the same sign on its left, on all of a circle but the way back."""
         ways = [way for way in self._around(step, left) if abs(way.angle) < 0.8 * np.pi]
@@ -288,7 +332,7 @@ class _Follower:
     def _ended(self, z: FloatArray) -> Ending | None:
         if not self.span[0] <= z[-2] <= self.span[1]:
             return Ending.RANGE
-        return None if self.options.lowest < z[-1] < self.options.highest else Ending.LEVEL
+        return None if self.options.within(z[-1]) else Ending.LEVEL
 
 
 def _passes(first: FloatArray, before: FloatArray, after: FloatArray, scale: FloatArray) -> bool:

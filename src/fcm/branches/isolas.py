@@ -30,11 +30,12 @@ from fcm.scene.model import FloatArray
 
 @dataclass(frozen=True)
 class Crossings:
-    """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to, and whether all
-    of these curves were followed as far as they are looked at."""
+    """Solutions (unknown + 1,) beside the folds at the level 1 that curves of folds come to; and the
+    frequencies [rad/s] from where folds were not followed as far as they are looked at, so that others may be
+    missing."""
 
     solutions: tuple[FloatArray, ...]
-    complete: bool
+    unsure: tuple[float, ...]
 
 
 def crossings(
@@ -54,43 +55,57 @@ def crossings(
     """
     few = system.with_harmonics(system.harmonics[: few_of(system)])
     solutions, span = list[FloatArray](), system.scene.frequency_range
+    turns = [turn.padded(one.harmonics, few.harmonics) for one in found for turn in one.turns]
+    curves = _Curves(few, [turn for turn in turns if turn.short and options.within(turn.level)], options)
     seconds = max(options.share * system.work.seconds, options.unnoticed)
     try:
         with system.work.up_to(system.work.seconds + seconds):
-            for curve in _curves(few, found, span, options):
+            for curve in curves:
                 for z in _at_level_one(few, system, curve):
                     known = any(contains(path, z, system.afresh()) for path in paths)
                     if span[0] <= z[-1] <= span[1] and not known:
                         solutions.append(z)
     except TooLongError:
-        return Crossings(tuple(solutions), False)
-    return Crossings(tuple(solutions), True)
+        pass  # the folds from where none was followed are left
+    return Crossings(tuple(solutions), tuple(dict.fromkeys(curves.unsure)))
 
 
-def _curves(
-    few: System, found: Sequence[Found], span: tuple[float, float], options: FoldOptions
-) -> Iterator[Folds]:
-    """The curves of the folds that are short of the level 1, each once."""
-    turns = [turn.padded(one.harmonics, few.harmonics) for one in found for turn in one.turns]
-    turns = [turn for turn in turns if turn.short and options.lowest < turn.level < options.highest]
-    if not turns:
-        return
-    surface, known = Surface(few.balance()), list[Folds]()  # of its own: others are followed meanwhile
-    paid = 0
+class _Curves:
+    """The curves of folds, each once."""
 
-    def pay() -> None:
-        nonlocal paid
-        new, paid = surface.evaluations - paid, surface.evaluations
-        few.work.take(seconds_of(few, new, len(few.harmonics)))
+    def __init__(self, few: System, turns: Sequence[Turn], options: FoldOptions) -> None:
+        self.few, self.options, self.left = few, options, list(turns)
+        self.lost = list[float]()  # frequencies at which curves were lost
 
-    for turn in turns:
-        if any(_has(curve, turn, surface, options) for curve in known):
-            continue
-        start = np.append(turn.z, turn.level)
-        curve = folds_from(surface, start, turn.directions, span, options, pay)
-        if curve is not None:
-            known.append(curve)
-            yield curve
+    @property
+    def unsure(self) -> tuple[float, ...]:
+        """Frequencies of what was lost, and of what is left to be followed."""
+        return *self.lost, *(float(turn.z[-1]) for turn in self.left)
+
+    def __iter__(self) -> Iterator[Folds]:
+        if not self.left:
+            return
+        few, options, span = self.few, self.options, self.few.scene.frequency_range
+        surface, known = Surface(few.balance()), list[Folds]()  # of its own: others are followed meanwhile
+        paid = 0
+
+        def pay() -> None:
+            nonlocal paid
+            new, paid = surface.evaluations - paid, surface.evaluations
+            few.work.take(seconds_of(few, new, len(few.harmonics)))
+
+        while self.left:
+            turn = self.left[0]
+            if not any(_has(curve, turn, surface, options) for curve in known):
+                start = np.append(turn.z, turn.level)
+                curve = folds_from(surface, start, turn.directions, span, options, pay)
+                if curve is None:
+                    self.lost.append(float(turn.z[-1]))
+                else:
+                    self.lost += curve.lost
+                    known.append(curve)
+                    yield curve
+            del self.left[0]
 
 
 def _has(curve: Folds, turn: Turn, surface: Surface, options: FoldOptions) -> bool:

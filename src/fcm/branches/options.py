@@ -18,6 +18,7 @@ class FoldOptions:
     first: float = 0.01  # step,
     longest: float = 0.3
     shortest: float = 1e-4  # with which no fold was found any more
+    thin: float = 3e-3  # strip between two curves of folds that meet
     turn: float = 0.25  # [rad] by which the chord of a step is to leave the tangent,
     most_turn: float = 0.9  # and by which it may at most
     fine: float = 0.02  # [rad] to which the direction of the chord is found
@@ -25,10 +26,15 @@ class FoldOptions:
     wider: tuple[float, ...] = (1.0, 5.0, 25.0)  # times the first step: circles about a start beside a fold
     circle: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
     most: int = 400  # steps of a curve
+    retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one
     report: int = 16  # steps after which it is told what they took
     near: float = 0.3  # of a step: a known fold this near to a curve is on it
     share: float = 0.5  # of the work before, that all curves may take,
     unnoticed: float = 0.2  # and seconds of work that they may in any case
+
+    def within(self, level: float) -> bool:
+        """Whether folds at a level are looked at."""
+        return self.lowest < level < self.highest
 
 
 FOLDS = FoldOptions()

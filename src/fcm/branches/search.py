@@ -22,8 +22,10 @@ def every_branch(system: System) -> Traced:
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
-    """With the isolated branches that curves of folds come to."""
+    """With the isolated branches that curves of folds come to, and where these curves were lost."""
     met = crossings(system, found.found, found.branches.paths)
+    if met.unsure != found.folds_lost:
+        found = replace(found, folds_lost=met.unsure)
     return with_further(system, found, (), met.solutions) if met.solutions else found
 
 

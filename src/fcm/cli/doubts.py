@@ -20,15 +20,24 @@ def short_of_accuracy(summary: Mapping[str, Any]) -> str:
 
 def branches_unsure(summary: Mapping[str, Any]) -> str:
     """Where solutions were not looked for to the end, so that branches may be missing; empty if nowhere."""
-    unsure = [curve["branches_unsure_at"] for curve in summary["curves"] if curve.get("branches_unsure_at")]
+    why = "the level of the forces was not followed to its end"
+    return _may_be_missing(summary, "branches_unsure_at", "other branches", f"at {{}} {why}")
+
+
+def folds_unsure(summary: Mapping[str, Any]) -> str:
+    """Where folds of the level were not followed to their end: branches may be missing; empty if nowhere."""
+    why = "the folds of the level of the forces were not followed to their end"
+    return _may_be_missing(summary, "folds_unsure_at", "isolated branches", f"from {{}} on {why}")
+
+
+def _may_be_missing(summary: Mapping[str, Any], key: str, what: str, where: str) -> str:
+    unsure = [curve[key] for curve in summary["curves"] if curve.get(key)]
     if not unsure:
         return ""
     count = len(summary["curves"])
     which = "" if count == 1 else f"of {len(unsure)} of {count} curves "
     at = f"{unsure[0][0]:.5g} {summary['frequency_unit']}"
-    return (
-        f"other branches {which}may be missing: at {at} the level of the forces was not followed to its end"
-    )
+    return f"{what} {which}may be missing: {where.format(at)}"
 
 
 def mirrored(summary: Mapping[str, Any]) -> str:
@@ -56,7 +65,8 @@ def tracked_unsure(summary: Mapping[str, Any]) -> str:
         return ""
     number, frequency = unsure[0]
     at = f"with {tracked['over']} = {number:.6g} at {frequency:.5g} {summary['frequency_unit']}"
-    return f"other tracked curves may be missing: {at} the level of the forces was not followed to its end"
+    why = "the level of the forces, or a fold of it, was not followed to its end"
+    return f"other tracked curves may be missing: {at} {why}"
 
 
 def nothing_stable(summary: Mapping[str, Any]) -> str:

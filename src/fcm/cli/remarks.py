@@ -10,6 +10,7 @@ from fcm.cli import schedule, track
 from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.doubts import (
     branches_unsure,
+    folds_unsure,
     looked_at,
     maybe_not_unique,
     mirrored,
@@ -60,7 +61,7 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.info(nothing)
     if short := short_of_accuracy(result):
         messages.warning(short)
-    for unsure in filter(None, (branches_unsure(result), tracked_unsure(result))):
+    for unsure in filter(None, (branches_unsure(result), folds_unsure(result), tracked_unsure(result))):
         messages.warning(unsure)
     histories = result.get("histories", [])
     if histories:

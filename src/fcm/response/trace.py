@@ -199,6 +199,7 @@ def _curve(followed: _Followed) -> Curve:
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
         loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
+        folds_unsure=list(found.traced.folds_lost),
         levels=[one.omega for one in found.traced.found],
         digits=bool(rounding.any()),
         folds_between=(FOLDS.lowest, FOLDS.highest) if scene.contacts else None,

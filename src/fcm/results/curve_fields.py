@@ -48,6 +48,10 @@ def _doubts(response: Response, gists: Sequence[Gist]) -> dict[str, Field]:
         meaning = "frequencies at which solutions were not looked for to the end: branches may be missing"
         unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.unsure), unit))
         out["branches_unsure_at"] = Field(("curve", "unsure"), unsure, {"long_name": meaning} | in_file)
+    if any(curve.folds_unsure for curve in curves):
+        meaning = "frequencies from where folds of the force level were lost: branches may be missing"
+        unsure = by_fold(curves, lambda curve: in_unit(np.array(curve.folds_unsure), unit))
+        out["folds_unsure_at"] = Field(("curve", "lost_fold"), unsure, {"long_name": meaning} | in_file)
     if any(gist.unstable for gist in gists):
         meaning = "from and to which frequency no stable motion was found"
         most = max(len(gist.unstable) for gist in gists)

@@ -24,7 +24,8 @@ LOWEST = 1e-3  # of the greatest amplitude of a degree of freedom: lower peaks a
 
 class Special(NamedTuple):
     """Points z (unknown + 1,) at which conditions nearly hold; what is wrong with their curves; and
-    at which frequencies [rad/s] the level was not followed to its end, so that branches may be missing."""
+    at which frequencies [rad/s] the level, or a fold of it, was not followed to its end, so that branches may
+    be missing."""
 
     points: list[tuple[Condition, FloatArray]]
     wrong: str
@@ -45,7 +46,8 @@ def special_points(system: System, conditions: list[Condition]) -> Special:
     Conditions that differ in which degree of freedom are sought one by one; onsets of every contact.
     """
     curves = every_branch(system)
-    branches, unsure = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
+    branches, levels = curves.branches, tuple(one.omega for one in curves.found if not one.complete)
+    unsure = (*levels, *curves.folds_lost)
     found = []
     amplitudes = _amplitudes(system, branches.paths, conditions)
     for path, amplitude in zip(branches.paths, amplitudes, strict=True):
