@@ -130,7 +130,7 @@ def test_what_has_peaks_only_is_drawn_by_them(fcm, scene):
 def test_why_a_curve_is_not_complete_is_in_the_file(fcm, scene):
     scene.write_text(scene.read_text() + SWEEP)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fcm.response.groups.traced_curve", lambda *_: 1 / 0)
+        patch.setattr("fcm.response.groups.traced_curve", lambda *_, **more: 1 / 0)
         done = fcm("respond", scene, "-o", "only.nc", "--peaks-only", "--jobs", 1)
     assert done.code == 1
     with netCDF4.Dataset("only.nc") as file:

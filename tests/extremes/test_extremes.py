@@ -25,7 +25,7 @@ SAMPLE = (
     "no-tangential-motion",
     "b-one-opposed",
     "equal-modes",
-    "stiff-tangential",
+    "stiff-and-soft",
     "force-1e-9",
     "friction-100",
 )

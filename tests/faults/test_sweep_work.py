@@ -218,7 +218,7 @@ def test_a_plain_rerun_moves_aside_what_was_kept_and_says_so(program):
 
 
 def test_records_are_appended_and_damage_is_passed_over(tmp_path):
-    path, mark = tmp_path / "kept", bytes(32)
+    path, mark = tmp_path / "kept", bytes(range(32))
     with Checkpoint(path) as kept:
         for number in range(3):
             kept.append(mark, number, [float(number)])
@@ -406,10 +406,10 @@ def test_a_schedule_that_is_interrupted_keeps_the_curves(program):
     stopped = (
         ALONE
         + """
-import sys, fcm.motion.histories
+import fcm.response.scheduled
 def stop(*_):
     raise KeyboardInterrupt
-sys.modules["fcm.motion.histories"].histories = stop
+fcm.response.scheduled.histories = stop
 """
     )
     former = program.folder / "a.csv"

@@ -171,7 +171,9 @@ def same(light, full, rel=1e-9):
         assert one.complete and other.complete
         assert one.folds == pytest.approx(other.folds, rel=rel)
         for dof, peak in other.peaks.items():
-            assert one.peaks[dof][:2] == pytest.approx(peak[:2], rel=rel)
+            assert one.peaks[dof][:2] == pytest.approx(
+                peak[:2], rel=rel, nan_ok=True
+            )  # none where nothing moves
 
 
 def test_friction_is_computed_only_where_there_is_any():

@@ -58,9 +58,11 @@ def errors_along(
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     share, met = _spectrum(system, path, shown, special, size, options)
     more = partner_of(system.harmonics, share, len(system.scene.contacts), options)
-    if shown.linear.all() or more == system.harmonics or not share.any():
-        none = np.zeros_like(shown.amplitude)
-        return Errors(none, none[:, 0], none[0], size, np.zeros(len(folds)), share, system.harmonics)
+    nothing = not share.any() and max(system.harmonics) < HIGHEST  # beyond that it is not looked at
+    if shown.linear.all() or nothing or more == system.harmonics:
+        none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
+        of_folds = np.full(len(folds), none[0, 0])
+        return Errors(none, none[:, 0], none[0], size, of_folds, share, system.harmonics)
     partner = PartnerCurve(system, path, shown, more, options)
     change = partner.everywhere(np.union1d(special, met))
     followed = partner.followed(change)

@@ -44,7 +44,7 @@ def partner_of(
     total = float(share.sum())
     order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.share * total]
     highest = min(options.times * count, count + options.most)
-    low = range(1, min(max(highest, options.least), MOST_HARMONICS) + 1)
+    low = range(1, min(max(highest, options.least), MOST_HARMONICS + options.most) + 1)
     named = [h for h in order if h not in low][: options.named]
     # where not all can be had what matters most comes first, then the lowest
     wanted = dict.fromkeys((*order[:1], *low, *named))

@@ -86,7 +86,7 @@ def _solved(
         if not newton.look():
             return None
         off = np.asarray(newton.problem.residual) / np.asarray(newton.scale)[:-1]
-        if np.abs(off).max() > options.driven:
+        if np.abs(off).max(initial=0.0) > options.driven:
             return None
         orientation[i] = newton.orientation
     return replace(path, z=z, direction=direction, orientation=orientation)

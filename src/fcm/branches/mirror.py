@@ -46,7 +46,7 @@ def mirrors(
         balance.measure(image)
         scale = np.asarray(balance.scale)
         balance.probe(image)
-        off = np.abs(np.asarray(balance.residual) / scale[:-1]).max()
+        off = np.abs(np.asarray(balance.residual) / scale[:-1]).max(initial=0.0)
         if off < options.alike and np.linalg.norm((image - other) / scale) > options.alike:
             yield mirror
 
@@ -58,7 +58,7 @@ def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -
     harmonics = np.repeat([0, *system.harmonics], [2, *[4] * len(system.harmonics)])
     turned = (-1.0) ** harmonics if later else np.ones(harmonics.size)
     tangential = np.concatenate(([True, False], np.tile([True, True, False, False], len(system.harmonics))))
-    size = np.abs(blocks).max()
+    size = np.abs(blocks).max(initial=0.0)
     partner, factor = np.full(len(contacts), -1), np.ones(blocks.shape)
     for i in range(len(contacts)):
         if partner[i] >= 0:

@@ -14,7 +14,6 @@ import click
 from fcm.cli.files import check_not_read, check_output, output_option
 from fcm.cli.messages import Messages
 from fcm.files import replacing
-from fcm.scene.errors import choices
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -77,6 +76,8 @@ def save_picture(figure: Figure, output: Path) -> None:
     from fcm.plot.style import lacking, save
 
     if letters := lacking(figure):
+        from fcm.scene.errors import choices  # which takes numpy
+
         context = click.get_current_context(silent=True)
         messages = (context and context.find_object(Messages)) or Messages()
         messages.warning(f"{output}: the fonts lack {choices(letters)}, which are boxes in the picture")
