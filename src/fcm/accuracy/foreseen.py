@@ -83,7 +83,7 @@ def needed(
     share[np.array(harmonics) - 1] = 0.0
     order = np.argsort(-share, kind="stable")
     left = share.sum() - np.cumsum(share[order])
-    new = [h - 1 for h in ahead.partner if h not in harmonics]
+    new = [h - 1 for h in ahead.partner if h not in harmonics and h <= HIGHEST]
     known = ahead.told and ahead.change > accuracy and share[new].any()
     gain = max(ahead.change / share[new].sum(), 1.0) if known else options.unknown
     count = 1 + int(np.count_nonzero(gain * left > options.spare * accuracy))
@@ -127,5 +127,5 @@ def _most(
     further: Further, z: FloatArray, size: FloatArray, known: tuple[int, ...] | None = None
 ) -> FloatArray:
     """What each harmonic (harmonic,) but the known ones has at most at motions z (place, unknown + 1)."""
-    share: FloatArray = further.shares(z, np.tile(size, (len(z), 1)), known).max(axis=0)
+    share: FloatArray = further.shares(z, np.tile(size, (len(z), 1)), known).max(axis=0, initial=0.0)
     return share[:HIGHEST]
