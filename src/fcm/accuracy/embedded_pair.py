@@ -102,8 +102,7 @@ def _spectrum(
     system: System, path: Path, shown: Reported, special: Indices, size: FloatArray, options: PairOptions
 ) -> tuple[FloatArray, Indices]:
     """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
-    special
-    points and where one that is left out meets a mode and leads there; and these."""
+    special points and where one that is left out meets a mode and leads there; and these."""
     further = Further(system)
     met: Indices = further.meetings(path.z, shown.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)

@@ -66,8 +66,8 @@ class PartnerCurve:
 
     def everywhere(self, special: Indices) -> FloatArray:
         """Displacements (point, 1 + dof): found at special points, at every so many, next to linear
-        parts, and
-        between two of these where the middle one is not what they lead to expect; interpolated elsewhere."""
+        parts, and between two of these where the middle one is not what they lead to expect; interpolated
+        elsewhere."""
         count = len(self.known)
         changes = np.flatnonzero(np.diff(self.linear))
         even = np.arange(0, count, self.options.every)
@@ -102,8 +102,8 @@ class PartnerCurve:
         )  # fmt: skip
 
     def left_out(self, i: int) -> FloatArray:
-        """By how much (dof,) the harmonics that the partner lacks would change its amplitudes beside a
-        point."""
+        """By how much (dof,) the harmonics that the partner lacks would change its amplitudes beside
+        a point."""
         lifted, path = self.finding.lifted, self.path
         if self.linear[i]:
             return np.zeros(self.amplitude.shape[1])
@@ -114,9 +114,8 @@ class PartnerCurve:
         return left_out(self.stretches.finer, np.array(lifted.newton.z), self.options)
 
     def abreast(self, i: int) -> FloatArray | None:
-        """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method
-        finds none that
-        is as even."""
+        """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
+        none that is as even."""
         lifted, path = self.finding.lifted, self.path
         if self.linear[i] or not lifted.abreast(self._padded(i), True):
             return None
@@ -146,8 +145,8 @@ class PartnerCurve:
         return more.view(np.bool_)
 
     def followed(self, change: FloatArray) -> list[Followed]:
-        """The stretches without displacements, with the pieces of the partner there; the highest are
-        first."""
+        """The stretches without displacements, with the pieces of the partner there; the highest
+        are first."""
         missed: Mask = np.any(np.isnan(change), axis=1)
         found = runs(missed)
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
@@ -155,8 +154,7 @@ class PartnerCurve:
 
     def shifts(self, change: FloatArray, followed: list[Followed]) -> FloatArray:
         """Differences (point, dof) of the amplitudes at the same frequency, in their unit; NaN where
-        the partner
-        does not come to that."""
+        the partner does not come to that."""
         path, growth = self.path, self.shown.growth
         shift = shifted(self.place, path.z, path.direction, self.amplitude, growth, self.unit, change)
         shift[np.isnan(change).any(axis=1)] = np.nan
@@ -166,8 +164,7 @@ class PartnerCurve:
 
     def _by_pieces(self, one: Followed, change: FloatArray, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into
-        it: by the
-        pieces, else by the partner before and behind them."""
+        it: by the pieces, else by the partner before and behind them."""
         first, end = one.first, one.end
         missing: Mask = np.any(np.isnan(shift), axis=1)
         while first > 0 and missing[first - 1]:
@@ -210,8 +207,8 @@ class PartnerCurve:
 
     def _numbers(self, one: Followed, rows: Indices) -> npt.NDArray[np.intc]:
         """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
-        their order
-        where both have as many, the nearest (-1) where the partner has more, none (-2) where it has fewer."""
+        their order where both have as many, the nearest (-1) where the partner has more, none (-2) where it
+        has fewer."""
         own = self.path.parameter[max(rows[0] - 1, 0) : rows[-1] + 2]
         theirs = [piece.path.parameter for piece in one.pieces]
         number = np.full(len(rows), -1, dtype=np.intc)
