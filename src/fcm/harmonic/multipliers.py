@@ -19,7 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.eigenvalues import Eigenvalues
+from fcm.harmonic.eigenvalues import eigenvalues
 from fcm.harmonic.finer import PORTS, Finer, beyond
 from fcm.harmonic.many_monodromy import ManyMonodromy
 from fcm.harmonic.monodromy import Monodromy
@@ -32,7 +32,6 @@ from fcm.harmonic.transitions import Transitions
 from fcm.scene.model import FloatArray
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
-SMALL = 60  # rows of a matrix up to which LAPACK, called from Python, takes longer for its eigenvalues
 MANY_CONTACTS = 12  # from which on a change of one's state is followed as that
 STIFF = 1e-3  # part of the contacts' displacement that a far mode gives, below which it is left out
 FAR, FURTHER = 6.0, 1.5  # times the excitation, and times the highest harmonic
@@ -68,7 +67,6 @@ class Multipliers:
         self.finer = Finer(seen, contact, harmonics)
         followed = Transitions(contact, finer), Transitions(contact, harmonics)
         self.fine, self.plain = _many(system, far, contact, followed) or _few(system, far, contact, followed)
-        self.eigenvalues = Eigenvalues(SMALL)
         self.further: tuple[Refined, Multipliers] | None = None
         self.take(system)
 
@@ -191,7 +189,7 @@ class Multipliers:
     def _values(self, monodromy: Monodromy | ManyMonodromy, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
         monodromy.follow(omega)
-        found = self._eigenvalues(monodromy.matrix())
+        found = eigenvalues(monodromy.matrix())
         if found is None:
             return None
         values = self.of_period(found)
@@ -200,16 +198,6 @@ class Multipliers:
             if _from_one(nearest) < NEUTRAL:
                 values.remove(nearest)
         return values
-
-    def _eigenvalues(self, matrix: FloatArray) -> list[complex] | None:
-        """None where they are not found, as where a number is not finite."""
-        if len(matrix) <= SMALL:
-            return self.eigenvalues.of(matrix)
-        try:
-            found: list[complex] = np.linalg.eigvals(matrix).astype(np.complex128).tolist()
-        except np.linalg.LinAlgError:
-            return None
-        return found
 
     def _resting(self, omega: float) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""

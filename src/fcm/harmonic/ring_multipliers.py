@@ -14,11 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.harmonic.finer import Finer, beyond
 from fcm.harmonic.many_monodromy import ManyMonodromy
 from fcm.harmonic.monodromy import Monodromy
-from fcm.harmonic.multipliers import SMALL, Multipliers, far_above
+from fcm.harmonic.multipliers import Multipliers, far_above
 from fcm.harmonic.ring_monodromy import RingMonodromy
 from fcm.harmonic.spectrum import Verdict
 from fcm.harmonic.stiffness import Stiffness
@@ -86,7 +85,6 @@ class RingMultipliers(Multipliers):
         stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
         source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
         self.adrift = int(np.count_nonzero(linear.adrift))
-        self.eigenvalues = Eigenvalues(SMALL)
         self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), of_one, harmonics)
         self.fine, self.plain = (
             RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.renumber, source)

@@ -7,7 +7,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.eigenvalues import Eigenvalues
 from fcm.motion.cycle import Cycle
 from fcm.motion.matrices import has_friction
 from fcm.motion.measure import Displaced, Scanned, displaced, scanned
@@ -20,7 +19,6 @@ from fcm.orbit.residual_friction import Choice, choices, overshoots, resting, st
 from fcm.scene.model import FloatArray, Scene
 
 LEAST = 1e-100  # part of the greatest scale, of those that matrices are balanced by: others overflow
-SMALL = 16  # rows of a matrix, of which LAPACK finds the eigenvalues later
 
 
 class Shot:
@@ -151,7 +149,7 @@ class Shot:
             rest[system.f.start + np.array(closed)] = False
             by_state, scale = by_state[rest][:, rest], scale[rest]
         scale = np.maximum(scale, LEAST * scale.max(initial=0.0))
-        return _eigenvalues(by_state * (scale / scale[:, None]))
+        return np.linalg.eigvals(by_state * (scale / scale[:, None])).astype(np.complex128)
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
@@ -160,12 +158,6 @@ class Shot:
         if values.size < self.x.size:
             values = np.append(values, np.ones(self.x.size - values.size))
         return values[np.argsort(-np.abs(values), kind="stable")]
-
-
-def _eigenvalues(matrix: FloatArray) -> npt.NDArray[np.complex128]:
-    """Of a small matrix without the way to LAPACK, which takes longer than they do."""
-    found = Eigenvalues(len(matrix)).of(matrix) if len(matrix) <= SMALL else None
-    return np.linalg.eigvals(matrix).astype(np.complex128) if found is None else np.array(found)
 
 
 class Shooting:
