@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import estimated
-from fcm.harmonic.further import Further, padded
+from fcm.harmonic.further import Further
 from fcm.harmonic.system import System
 
 from .truth import scene
@@ -16,12 +16,13 @@ def response():
 
 
 def test_padding_keeps_the_motion(response):
-    """The balance of more harmonics has the same amplitudes at the padded unknowns."""
+    """The balance of more harmonics has the same amplitudes at the extended unknowns."""
     (path,) = response.traced.branches.paths
     more = (1, 2, 3, 5, 9)
-    problem = response.system.with_harmonics(more).balance()
+    wider = response.system.with_harmonics(more)
+    problem = wider.balance()
     z = path.z[len(path.z) // 2]
-    wide = padded(z, (1, 2, 3), more)
+    wide = wider.extended(z, (1, 2, 3))
     problem.evaluate(wide)
     residual = np.asarray(problem.residual).reshape(1, -1)
     assert np.abs(residual[0, :14]).max() < 1e-8 * np.abs(z[:-1]).max()

@@ -14,7 +14,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.continuation import Path
 from fcm.harmonic.floquet import multipliers_of
-from fcm.harmonic.further import Further, padded
+from fcm.harmonic.further import Further
 from fcm.harmonic.record import recorded_at_levels
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -56,7 +56,7 @@ def errors_at_levels(
     if not bent.size:
         return error
     share = further.shares(z[bent], amplitude[bent]).max(axis=0)
-    more = partner_of(system.harmonics, share, len(system.scene.contacts), options)
+    more = partner_of(system.harmonics, share, system.layout.ports, options)
     if more == system.harmonics:
         return error
     there = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
@@ -77,7 +77,7 @@ def _balanced(
     known = np.zeros(len(z), dtype=np.bool_)
     for i, one in enumerate(z):
         raised.begin(float(one[-1]))
-        newton.z[:] = padded(one, system.harmonics, finer.harmonics)
+        newton.z[:] = finer.extended(one, system.harmonics)
         newton.z[-1] = level[i]
         raised.measure(newton.z)
         newton.scale[:] = raised.scale

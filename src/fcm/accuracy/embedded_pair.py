@@ -57,7 +57,7 @@ def errors_along(
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
     special = np.unique(np.concatenate((folds, path.where(Mark.PEAK), tops)))
     share, met = _spectrum(system, path, shown, special, size, options)
-    more = partner_of(system.harmonics, share, len(system.scene.contacts), options)
+    more = partner_of(system.harmonics, share, system.layout.ports, options)
     nothing = not share.any() and max(system.harmonics) < HIGHEST  # beyond that it is not looked at
     if shown.linear.all() or nothing or more == system.harmonics:
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)

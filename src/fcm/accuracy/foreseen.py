@@ -57,7 +57,7 @@ def foreseen(found: Outline, options: RefinementOptions = REFINEMENT, pair: Pair
     size = np.where(height > options.nothing * height.max(), height, np.inf)
     places = list(_places(found.traced.branches.paths, amplitudes, height, options))
     share = _most(Further(system), np.array([one.path.z[one.tries[0]] for one in places]), size)
-    more = partner_of(system.harmonics, share, len(system.scene.contacts), pair)
+    more = partner_of(system.harmonics, share, system.layout.ports, pair)
     if not share.any() or more == system.harmonics:
         return Foreseen(0.0, True, share, system.harmonics)
     lifted, motions, change, told = lifted_of(system, more), [], 0.0, True

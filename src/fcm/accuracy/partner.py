@@ -19,7 +19,7 @@ MOST = 8  # balances that are kept for the next curve
 
 
 def partner_of(
-    harmonics: Sequence[int], share: FloatArray, contacts: int, options: PairOptions = PAIR
+    harmonics: Sequence[int], share: FloatArray, ports: int, options: PairOptions = PAIR
 ) -> tuple[int, ...]:
     """Harmonics of the partner of a curve that has some, as of `PairOptions`.
 
@@ -28,19 +28,21 @@ def partner_of(
     share : array (harmonic,)
         What each would do that is left out, from the first on: the spectrum of the exact forces times the
         receptance, of the points that matter.
+    ports : int
+        Directions in which all contacts move.
 
     Examples
     --------
     >>> import numpy as np
-    >>> partner_of((1,), np.zeros(50), 1)
+    >>> partner_of((1,), np.zeros(50), 2)
     (1, 2, 3, 4, 5)
     >>> named = np.zeros(50)
     >>> named[11] = 0.01
-    >>> partner_of((1, 2), named, 1)
+    >>> partner_of((1, 2), named, 2)
     (1, 2, 3, 4, 5, 6, 7, 8, 12)
     """
     has, count = set(harmonics), len(harmonics)
-    allowed = max(options.unknowns // (4 * max(contacts, 1)) - count, options.fewest)
+    allowed = max(options.unknowns // (2 * max(ports, 1)) - count, options.fewest)
     total = float(share.sum())
     order = [int(k) + 1 for k in np.argsort(-share, kind="stable") if share[k] > options.share * total]
     highest = min(options.times * count, count + options.most)

@@ -18,7 +18,7 @@ from fcm.accuracy.same_frequency import OtherCurve, shifted
 from fcm.accuracy.stretch import Piece, Stretches
 from fcm.continuation import Mark, Path
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.further import LEAST_AMPLITUDE, padded
+from fcm.harmonic.further import LEAST_AMPLITUDE
 from fcm.harmonic.reported import Reported
 from fcm.harmonic.runs import runs
 from fcm.harmonic.system import System
@@ -126,7 +126,7 @@ class PartnerCurve:
 
     def _padded(self, i: int) -> FloatArray:
         """A point as a guess for the partner."""
-        return padded(self.path.z[i], self.fewer, self.stretches.finer.harmonics)
+        return self.stretches.finer.extended(self.path.z[i], self.fewer)
 
     def interpolated(self, points: Indices) -> FloatArray:
         """Displacements (point, 1 + dof) by cubics through those that are known, with slopes from them."""

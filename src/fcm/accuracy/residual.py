@@ -11,13 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.accuracy.options import PairOptions
-from fcm.contact.periodic.workspace import periodic_contact
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
 ComplexArray = npt.NDArray[np.complex128]
-NO_GRADIENT = np.empty((0, 0, 0))
 
 
 def left_out(system: System, z: FloatArray, options: PairOptions) -> FloatArray:
@@ -54,12 +52,10 @@ def _reach(system: System, omega: float, options: PairOptions) -> int:
 
 def _moved(system: System, z: FloatArray, others: tuple[int, ...]) -> ComplexArray:
     """What the forces of other harmonics displace (harmonic, dof)."""
-    contacts = system.scene.contacts
-    laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0, 0.0) for c in contacts])
-    force = np.empty((len(contacts), 2 + 4 * len(others)))
-    kernel = periodic_contact(system.harmonics, others)
-    kernel.all(np.ascontiguousarray(z[:-1]).reshape(len(contacts), -1), laws, force, NO_GRADIENT)
-    F = force[:, 2:].reshape(len(contacts), len(others), 2, 2)
-    ports = (F[..., 0] + 1j * F[..., 1]).transpose(1, 0, 2).reshape(1, len(others), -1)
+    motion, forces = np.ascontiguousarray(z), []
+    for i, law in enumerate(system.exact_laws(others)):
+        law.probe(motion, i * law.width)
+        forces.append(np.array(law.force))
+    ports = system.layout_of(others).complex_ports(np.concatenate(forces))[:, 1:].T[None]
     found: ComplexArray = system.linear.displacements(np.array(others, dtype=np.float64), z[-1:], ports)[0]
     return found

@@ -71,7 +71,7 @@ def _lost(
     z, direction = one.z[None], one.direction[None]
     amplitude = reported_at(system, z, direction).amplitude[0]
     share = Further(system).shares(z, amplitude[None])[0]
-    more = partner_of(system.harmonics, share, len(system.scene.contacts))
+    more = partner_of(system.harmonics, share, system.layout.ports)
     if more == system.harmonics:  # nothing is left out
         return Lost(one.frequency, 0.0, more)
     if more not in known:

@@ -16,7 +16,6 @@ from fcm.continuation import Path, Status
 from fcm.continuation.follower import Follower
 from fcm.continuation.front import Front
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.further import padded
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.start import solutions
@@ -103,7 +102,7 @@ class Stretches:
         """At the frequency of a point: what its motion leads to, or the nearest that the level of the forces
         passes with an odd or even number of real multipliers above 1 as it has."""
         z, lifted, curve = self.curve.z[i], self.lifted, self.curve
-        guess = padded(z, self.fewer, self.finer.harmonics)
+        guess = self.finer.extended(z, self.fewer)
         if lifted.abreast(guess, True):
             return self._found(i)
         even = curve.orientation[i] * np.sign(curve.direction[i, -1])

@@ -26,7 +26,6 @@ from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Between, Path
 from fcm.continuation.branches import contains
 from fcm.continuation.newton import Newton
-from fcm.harmonic.further import padded
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
@@ -58,7 +57,7 @@ def branch_points(
         whole = path
         if tuple(harmonics) != system.harmonics:
             newton = newton or Newton(balance)
-            solved = _solved(newton, path, harmonics, system.harmonics, options)
+            solved = _solved(system, newton, path, tuple(harmonics), options)
             if solved is None:
                 continue
             whole = solved
@@ -71,12 +70,12 @@ def branch_points(
 
 
 def _solved(
-    newton: Newton, path: Path, fewer: Sequence[int], more: Sequence[int], options: BranchingOptions
+    system: System, newton: Newton, path: Path, fewer: tuple[int, ...], options: BranchingOptions
 ) -> Path | None:
-    """A path of fewer harmonics with the orientations that more give it; None if they are no solutions with
+    """A path of fewer harmonics with the orientations that all give it; None if they are no solutions with
     nothing of the others, as where these are driven."""
-    z = np.array([padded(one, fewer, more) for one in path.z])
-    direction = np.array([padded(one, fewer, more) for one in path.direction])
+    z = np.array([system.extended(one, fewer) for one in path.z])
+    direction = np.array([system.extended(one, fewer) for one in path.direction])
     orientation = np.empty(len(z))
     for i, (one, way) in enumerate(zip(z, direction, strict=True)):
         newton.problem.measure(one)

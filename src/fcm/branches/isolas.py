@@ -19,7 +19,6 @@ from fcm.branches.surface import Surface
 from fcm.continuation import Path
 from fcm.continuation.branches import contains
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.further import padded
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.start import Found, few_of
 from fcm.harmonic.system import System
@@ -55,7 +54,7 @@ def crossings(
     """
     few = system.with_harmonics(system.harmonics[: few_of(system)])
     solutions, span = list[FloatArray](), system.scene.frequency_range
-    turns = [turn.padded(one.harmonics, few.harmonics) for one in found for turn in one.turns]
+    turns = [turn.extended(few, one.harmonics) for one in found for turn in one.turns]
     curves = _Curves(few, [turn for turn in turns if turn.short and options.within(turn.level)], options)
     seconds = max(options.share * system.work.seconds, options.unnoticed)
     try:
@@ -151,4 +150,4 @@ def _led(few: System, system: System, z: FloatArray, way: FloatArray) -> FloatAr
     lifted = Lifted(system.balance(), list(few.harmonics), list(system.harmonics), 1e-6)
     if not lifted.beside(z, way):
         return None
-    return _in_its_plane(system, np.array(lifted.newton.z), padded(way, few.harmonics, system.harmonics))
+    return _in_its_plane(system, np.array(lifted.newton.z), system.extended(way, few.harmonics))

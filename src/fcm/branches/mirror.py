@@ -55,9 +55,9 @@ def _of(system: System, z: FloatArray, later: bool, options: BranchingOptions) -
     contacts = system.scene.contacts
     laws = [(c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
     blocks = z[:-1].reshape(len(contacts), -1)
-    harmonics = np.repeat([0, *system.harmonics], [2, *[4] * len(system.harmonics)])
+    harmonics = system.layout.harmonic_of(system.harmonics)
     turned = (-1.0) ** harmonics if later else np.ones(harmonics.size)
-    tangential = np.concatenate(([True, False], np.tile([True, True, False, False], len(system.harmonics))))
+    tangential = ~system.layout.of_normal
     size = np.abs(blocks).max(initial=0.0)
     partner, factor = np.full(len(contacts), -1), np.ones(blocks.shape)
     for i in range(len(contacts)):

@@ -132,9 +132,8 @@ class Surface:
             for j in range(n + 1):
                 self.solver.matrix[i, j] = jacobian[i, j] * (self.scale[j] * unit)
             self.solver.matrix[i, n + 1] = 0.0
-        first: cython.Py_ssize_t = 2 + 4 * b.seen.driven
-        for p in range(2 * b.contacts):
-            i = (p // 2) * b.width + first + 2 * (p % 2)
+        for p in range(b.ports):
+            i = b.seen.wave_at[p] + b.seen.stride * b.seen.driven
             unit = self.scale[n + 1] / self.scale[i]
             self.solver.matrix[i, n + 1] = -b.seen.X_re[p] * unit
             self.solver.matrix[i + 1, n + 1] = -b.seen.X_im[p] * unit

@@ -8,7 +8,10 @@ cdef class Balance(Problem):
     cdef public Displacements shown
     cdef public list laws
     cdef public object condensed
+    cdef public object layout
     cdef public int contacts
+    cdef public int directions
+    cdef public int ports
     cdef public int width
     cdef public double span
     cdef public double load

@@ -18,6 +18,7 @@ from cython.cimports.libc.math import sqrt
 
 from fcm.harmonic.condensed import Condensed
 from fcm.harmonic.displacement import Displacements
+from fcm.structure.layout import Layout
 from fcm.structure.receptance import Receptance
 
 if cython.compiled:
@@ -35,28 +36,30 @@ OTHER_FLOOR = cython.declare(cython.double, 1e-6)  # and of the greatest
 
 @cython.cclass
 class Balance(Problem):
-    """The balance of laws (contact,) on a structure; unknowns as in `law`, contact after contact."""
+    """The balance of laws (contact,) on a structure; unknowns laid out as in `fcm.structure.layout`."""
 
     def __init__(
         self,
         seen: Receptance,
+        layout: Layout,
         laws: list[Law],
         shown: Displacements,
         counted: npt.NDArray[np.float64],
         span: cython.double,
         rank: cython.int = 0,
     ) -> None:
-        width: cython.int = 2 + 4 * seen.count
-        Problem.__init__(self, width * len(laws), sum(law.margins for law in laws), shown.dofs, rank)
+        width: cython.int = layout.width
+        Problem.__init__(self, layout.unknowns, sum(law.margins for law in laws), shown.dofs, rank)
         self.seen, self.shown, self.laws, self.contacts, self.width = seen, shown, laws, len(laws), width
+        self.layout, self.directions, self.ports = layout, layout.directions, layout.ports
         self.group = laws[0].margins if laws else 0  # all contacts have as many
         self.counted, self.span, self.load, self.share = np.array(counted), span, 1.0, 1.0
-        self.rest = np.zeros(2 * len(laws))
+        self.rest = np.zeros(layout.ports)
         self.force, self.now, self.rate, self.by_frequency = np.zeros((4, self.unknowns))
         self.evaluated = np.zeros(self.unknowns + 1)
         self.tangent = np.zeros((len(laws), width, width))
         self.condensed: Condensed | None = None  # of the rank, whoever gives that
-        self.largest, self.size = np.zeros(2 * len(laws)), np.zeros(2 * len(laws))
+        self.largest, self.size = np.zeros(layout.ports), np.zeros(layout.ports)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -90,10 +93,9 @@ class Balance(Problem):
             times_forces(self.seen, self.force, self.residual)
         else:
             np.asarray(self.residual)[:] = self.condensed.answer.to(np.asarray(self.force))
-        for p in range(2 * self.contacts):
-            first = (p // 2) * self.width + p % 2
-            self.residual[first] -= self.share * self.rest[p]
-            first += 2 + 4 * self.seen.driven + p % 2
+        for p in range(self.ports):
+            self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
+            first = self.seen.wave_at[p] + self.seen.stride * self.seen.driven
             self.residual[first] -= self.load * self.seen.X_re[p]
             self.residual[first + 1] -= self.load * self.seen.X_im[p]
         for i in range(self.unknowns):
@@ -112,8 +114,8 @@ class Balance(Problem):
             slope(self.seen, self.force, self.load, self.by_frequency)
             return 0
         np.asarray(self.by_frequency)[:] = self.condensed.answer.rate(np.asarray(self.force))
-        for p in range(2 * self.contacts):
-            row = (p // 2) * self.width + 2 + 4 * self.seen.driven + 2 * (p % 2)
+        for p in range(self.ports):
+            row = self.seen.wave_at[p] + self.seen.stride * self.seen.driven
             self.by_frequency[row] -= self.load * self.seen.dX_re[p]
             self.by_frequency[row + 1] -= self.load * self.seen.dX_im[p]
         return 0
@@ -126,6 +128,7 @@ class Balance(Problem):
         i: cython.Py_ssize_t
         k: cython.Py_ssize_t
         first: cython.Py_ssize_t
+        normal: cython.Py_ssize_t = self.directions - 1
         for c in range(self.contacts):
             law: Law = self.laws[c]
             first = c * self.width
@@ -136,37 +139,36 @@ class Balance(Problem):
                 for i in range(self.width):
                     for k in range(self.width):
                         self.tangent[c, i, k] = law.tangent[i, k]
-                self.tangent[c, 1, 1] -= self.counted[c]
+                self.tangent[c, normal, normal] -= self.counted[c]
             for i in range(self.width):
                 self.force[first + i] = law.force[i]
-            self.force[first + 1] -= self.counted[c] * z[first + 1]
+            self.force[first + normal] -= self.counted[c] * z[first + normal]
         return 0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def measure(self, z: cython.double[::1]) -> cython.int:
-        """Displacements by their present size, tangential and normal of each contact; the frequency by its
-        range."""
-        w: cython.Py_ssize_t = self.width
+        """Displacements by their present size, in each direction of a contact; the frequency by its range."""
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         overall: cython.double = 0.0
-        for p in range(2 * self.contacts):
-            k: cython.Py_ssize_t = (p // 2) * w + p % 2
+        for p in range(self.ports):
+            k = self.seen.mean_at[p]
             total: cython.double = z[k] * z[k]
             for i in range(self.seen.count):
-                k = (p // 2) * w + 2 + 4 * i + 2 * (p % 2)
+                k = self.seen.wave_at[p] + self.seen.stride * i
                 total += z[k] * z[k] + z[k + 1] * z[k + 1]
             self.size[p] = sqrt(total)
             self.largest[p] = max(self.largest[p], self.size[p])
             overall = max(overall, self.largest[p])
-        many: cython.double = sqrt(2.0 * self.contacts)
-        for p in range(2 * self.contacts):
+        many: cython.double = sqrt(cython.cast(cython.double, self.ports))
+        for p in range(self.ports):
             unit: cython.double = max(self.size[p], max(OWN_FLOOR * self.largest[p], OTHER_FLOOR * overall))
             unit = unit * many if unit > 0.0 else many
-            self.scale[(p // 2) * w + p % 2] = unit
+            self.scale[self.seen.mean_at[p]] = unit
             for i in range(self.seen.count):
-                k = (p // 2) * w + 2 + 4 * i + 2 * (p % 2)
+                k = self.seen.wave_at[p] + self.seen.stride * i
                 self.scale[k] = self.scale[k + 1] = unit
         self.scale[self.unknowns] = self.span
         return 0

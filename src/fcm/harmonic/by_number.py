@@ -25,6 +25,7 @@ from fcm.harmonic.system import System
 from fcm.harmonic.whole import places
 from fcm.scene.draft import Number, number_of
 from fcm.scene.model import FloatArray, Scene
+from fcm.structure.layout import Layout
 from fcm.structure.linear import Linear, linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
@@ -56,8 +57,9 @@ class Rates:
         """As `at`, where the balance was evaluated last."""
         if self._of_forces:
             return self._at_forces(balance, z[-1])
-        force = self._layout(np.asarray(balance.force))
-        d_force = self._layout(self._forces(balance, z))
+        layout = balance.layout
+        force = layout.complex_ports(np.asarray(balance.force))
+        d_force = layout.complex_ports(self._forces(balance, z))
         if not balance.contacts:
             force = d_force = np.zeros((0, 1 + len(self.system.harmonics)), dtype=np.complex128)
         structure, rate, seen = self.system.linear, self.linear, balance.seen
@@ -78,7 +80,7 @@ class Rates:
             of_ports = np.asarray(balance.shown.attached).T @ (rate.ports.T @ a)
             apart = np.asarray(balance.shown.apart) > 0
             shown[j] = rate.dofs.T @ a + np.where(apart, structure.dofs.T @ da, -of_ports)
-        return self._flat(rows), shown
+        return layout.flat(rows), shown
 
     @cached_property
     def _of_forces(self) -> bool:
@@ -107,38 +109,24 @@ class Rates:
 
     def _forces(self, balance: Balance, z: FloatArray) -> FloatArray:
         """Rates of the contacts' forces (unknown,), without those counted to the structure."""
-        found = np.zeros(balance.unknowns)
+        found, normal = np.zeros(balance.unknowns), balance.directions - 1
         for i, rate in enumerate(self.contact):
             first = i * balance.width
             block = z[first : first + balance.width]
             if rate.any():
                 found[first : first + balance.width] = rate @ law_rates(balance.laws[i], block)
-            found[first + 1] -= self.linear.counted[i] * block[1]
+            found[first + normal] -= self.linear.counted[i] * block[normal]
         return found
-
-    def _layout(self, x: FloatArray) -> ComplexArray:
-        """Numbers laid out as the unknowns by port, (port, 1 + harmonic)."""
-        blocks = x.reshape(len(self.contact), -1)
-        pairs = blocks[:, 2:].reshape(len(self.contact), -1, 2, 2).transpose(0, 2, 1, 3)
-        complex_ones = pairs[..., 0] + 1j * pairs[..., 1]
-        return np.concatenate((blocks[:, :2, None], complex_ones), axis=2).reshape(2 * len(blocks), -1)
-
-    def _flat(self, ports: ComplexArray) -> FloatArray:
-        """The numbers of ports laid out as the unknowns."""
-        each = ports.reshape(len(self.contact), 2, -1)
-        parts = np.stack((each[:, :, 1:].real, each[:, :, 1:].imag), axis=-1).transpose(0, 2, 1, 3)
-        blocks = np.concatenate((each[:, :, 0].real, parts.reshape(len(each), -1)), axis=1)
-        return blocks.ravel()
 
 
 def law_rates(law: Law, x: FloatArray) -> FloatArray:
     """Derivatives of a contact's forces by mu, k_u, k_v, n_0, (4, width), at its unknowns x (width,)."""
     mu, k_u, k_v, n_0 = law.mu, law.k_u, law.k_v, law.n_0
-    normal = np.zeros(x.size, dtype=bool)
-    normal[1], normal[4::4], normal[5::4] = True, True, True
+    layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
+    normal, mean = layout.of_normal, law.directions - 1
     unit = np.ascontiguousarray(np.where(normal, k_v, k_u) * x)  # with stiffnesses of 1
     load = unit * normal
-    load[1] += n_0
+    load[mean] += n_0
     law.k_u, law.k_v, law.mu = 1.0, 1.0, mu or LEAST_MU
     law.evaluate(unit, 0)
     slope, force = np.array(law.tangent), np.array(law.force)
@@ -150,8 +138,8 @@ def law_rates(law: Law, x: FloatArray) -> FloatArray:
     else:
         by_mu = slope @ load / mu
     law.k_u, law.k_v = k_u, k_v
-    by_n_0 = slope[:, 1].copy()
-    by_n_0[1] -= float(n_0 > 0.0)  # the preload that the structure at rest is in equilibrium with
+    by_n_0 = slope[:, mean].copy()
+    by_n_0[mean] -= float(n_0 > 0.0)  # the preload that the structure at rest is in equilibrium with
     return np.stack((np.where(normal, 0.0, by_mu), slope @ (x * ~normal), slope @ (x * normal), by_n_0))
 
 

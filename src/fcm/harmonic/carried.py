@@ -18,7 +18,6 @@ import numpy as np
 
 from fcm.continuation import Path, Status, follow
 from fcm.harmonic.balance import Balance
-from fcm.harmonic.further import padded
 from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.nearby import lowest_of, turns_near
 from fcm.harmonic.replaced import Replaced
@@ -58,11 +57,11 @@ def carried(system: System, before: Found) -> Found | None:
         return None
     known: list[FloatArray] = []
     for z in before.solutions:
-        there = at_its_frequency(system, padded(z, before.harmonics, system.harmonics), CLOSE)
+        there = at_its_frequency(system, system.extended(z, before.harmonics), CLOSE)
         if there is None or any(same(there, other) for other in known):
             return None
         known.append(there)
-    turns = tuple(turn.padded(before.harmonics, system.harmonics) for turn in before.turns)
+    turns = tuple(turn.extended(system, before.harmonics) for turn in before.turns)
     return replace(before, harmonics=system.harmonics, solutions=tuple(known), turns=turns)
 
 
@@ -70,19 +69,19 @@ def _with_led(system: System, found: Found, before: Found) -> Found:
     """With the solutions that those of fewer harmonics lead to and the level does not."""
     known = list(found.solutions)
     for z in before.solutions:
-        there = led_to(system, padded(z, before.harmonics, system.harmonics))
+        there = led_to(system, system.extended(z, before.harmonics))
         if there is not None and not any(same(there, other) for other in known):
             known.append(there)
     return replace(found, solutions=tuple(known))
 
 
 def led(
-    system: System, fewer: Sequence[int], paths: Sequence[Path], frequencies: Sequence[float]
+    system: System, fewer: tuple[int, ...], paths: Sequence[Path], frequencies: Sequence[float]
 ) -> Iterator[FloatArray]:
     """Solutions that the points of paths of fewer harmonics at some frequencies lead to."""
     for path in paths:
         for z in path.z[np.isin(path.parameter, frequencies)]:
-            there = led_to(system, padded(z, fewer, system.harmonics))
+            there = led_to(system, system.extended(z, fewer))
             if there is not None:
                 yield there
 

@@ -98,8 +98,8 @@ class Condensed:
         self.answer, self.tangent, self.options = ModalAnswer(seen, flexibility), tangent, options
         self.seen, self.flexibility, self.parts = seen, flexibility, 1 + 2 * seen.count
         self.contacts, self.width = tangent.shape[0], tangent.shape[1]
-        part = [np.arange(2), *(2 + 4 * j + i + np.array([0, 2]) for j in range(seen.count) for i in (0, 1))]
-        self.order = np.concatenate(part)  # of the unknowns of a contact: part by part, u and v
+        self.each = seen.ports // self.contacts
+        self.order = self.answer.place[:, : self.each].ravel()  # of a contact's unknowns: part by part
         self.ranking = np.argsort(-yields, kind="stable")
         self.take(modes_taken(yields, seen.ports, options))
         self.by, self.row, self.scale = np.empty(0), np.empty(0), np.empty(0)
@@ -110,11 +110,11 @@ class Condensed:
         self.rank, chosen = self.parts * modes, np.sort(self.ranking[:modes])
         self.chosen, self.shapes = chosen, np.ascontiguousarray(self.answer.shapes[chosen])
         self.mean = self.flexibility[np.ix_(chosen, chosen)]
-        self.pairs = np.ascontiguousarray(self.shapes.T.reshape(self.contacts, 2, modes))
+        self.along = np.ascontiguousarray(self.shapes.T.reshape(self.contacts, self.each, modes))
         self.solver = Solver(self.rank + 1)
         # forces on ports by modes: by contact (part port part, mode), by port; and on the modes
-        self.by_mode = np.empty((self.contacts, 2 * self.parts**2, modes))
-        self.by_port = np.empty((2 * self.contacts, self.parts * self.rank))
+        self.by_mode = np.empty((self.contacts, self.each * self.parts**2, modes))
+        self.by_port = np.empty((self.seen.ports, self.parts * self.rank))
         self.on_modes = np.empty((modes, self.parts, self.rank))
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
@@ -129,9 +129,11 @@ class Condensed:
 
     def _factor(self) -> float:
         rank, matrix = self.rank, np.asarray(self.solver.matrix)
-        np.matmul(self.ordered.reshape(self.contacts, -1, 2), self.pairs, out=self.by_mode)
-        sorted_by_port = self.by_mode.reshape(self.contacts, self.parts, 2, rank).transpose(0, 2, 1, 3)
-        self.by_port.reshape(self.contacts, 2, self.parts, rank)[:] = sorted_by_port
+        np.matmul(self.ordered.reshape(self.contacts, -1, self.each), self.along, out=self.by_mode)
+        sorted_by_port = self.by_mode.reshape(self.contacts, self.parts, self.each, rank).transpose(
+            0, 2, 1, 3
+        )
+        self.by_port.reshape(self.contacts, self.each, self.parts, rank)[:] = sorted_by_port
         np.matmul(self.shapes, self.by_port, out=self.on_modes.reshape(self.modes, -1))
         self._answered(self.on_modes, matrix)
         matrix[np.arange(rank), np.arange(rank)] += 1.0

@@ -14,6 +14,7 @@ from fcm.continuation.front import Front
 from fcm.harmonic.condensed import condensed_size
 from fcm.harmonic.system import System
 from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
+from fcm.structure.layout import Layout
 
 PATIENCE = 30.0  # seconds that all rounds of more and more harmonics may take: levels, branches, errors
 AGAIN = 3.0  # where they are followed a dozen times, as in a search, or with one harmonic more each time
@@ -27,9 +28,9 @@ def seconds_of(system: System, evaluations: int, harmonics: int) -> float:
 
     A condensed matrix is formed first, see `condensed`, by 2 multiplications for each mode and entry.
     """
-    contacts, width = len(system.scene.contacts), 2 + 4 * harmonics
-    unknowns = contacts * width
-    rank = condensed_size(system.yields, 2 * contacts, harmonics, system.condensing)
+    layout = Layout(len(system.scene.contacts), system.scene.directions_of_contact, harmonics)
+    contacts, width, unknowns = layout.contacts, layout.width, layout.unknowns
+    rank = condensed_size(system.yields, layout.ports, harmonics, system.condensing)
     solved = rank or unknowns
     cubes = float(solved) ** 3 + 6.0 * rank / (1 + 2 * harmonics) * unknowns * rank
     each = CYCLE * contacts * (1 + harmonics) + ENTRY * unknowns * (solved + width) + SYSTEM * cubes

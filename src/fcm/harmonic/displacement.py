@@ -47,11 +47,10 @@ class Displacements(Extremes):
         j: cython.int
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
         for d in range(self.dofs):
             total: cython.double = self.rest[d]
             for p in range(self.seen.ports):
-                total -= self.static[d, p] * force[(p // 2) * w + p % 2]
+                total -= self.static[d, p] * force[self.seen.mean_at[p]]
             self.mean[d] = total
         for j in range(self.seen.count):
             self.harmonic(j, load, force, d_force, direction[direction.shape[0] - 1])
@@ -74,7 +73,6 @@ class Displacements(Extremes):
     ) -> cython.int:
         """Amplitudes of the modes in one harmonic."""
         n: cython.Py_ssize_t = self.seen.count
-        w: cython.Py_ssize_t = 2 + 4 * n
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -85,7 +83,7 @@ class Displacements(Extremes):
             g_re: cython.double = driven * d_omega * self.seen.slope_re[i]
             g_im: cython.double = driven * d_omega * self.seen.slope_im[i]
             for p in range(self.seen.ports):
-                k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                k = self.seen.wave_at[p] + self.seen.stride * j
                 f_re -= self.seen.shapes[i, p] * force[k]
                 f_im -= self.seen.shapes[i, p] * force[k + 1]
                 g_re -= self.seen.shapes[i, p] * d_force[k]
@@ -142,7 +140,6 @@ class Displacements(Extremes):
         self, d: cython.Py_ssize_t, z: cython.double[::1], direction: cython.double[::1]
     ) -> cython.void:
         """A combination of the contacts' displacements."""
-        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
         j: cython.int
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
@@ -152,9 +149,9 @@ class Displacements(Extremes):
         for p in range(self.seen.ports):
             share: cython.double = self.attached[p, d]
             if share != 0.0:
-                self.mean[d] += share * z[(p // 2) * w + p % 2]
+                self.mean[d] += share * z[self.seen.mean_at[p]]
                 for j in range(self.seen.count):
-                    k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                    k = self.seen.wave_at[p] + self.seen.stride * j
                     self.re[j, d] += share * z[k]
                     self.im[j, d] += share * z[k + 1]
                     self.d_re[j, d] += share * direction[k]

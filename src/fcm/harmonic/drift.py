@@ -30,18 +30,19 @@ def undetermined(system: System, z: FloatArray, force: FloatArray) -> dict[str, 
     """
     if system.linear.natural.size == 0 or system.linear.natural.min() > 0.0:
         return {}
-    count = len(system.scene.contacts)
-    shape = (z.shape[0], count, 2 + 4 * len(system.harmonics))
-    blocks, forces = z[:, :-1].reshape(shape), force.reshape(shape)
+    blocks, forces = system.layout.blocks(z), system.layout.blocks(force)
     return {"pushed": _pushed(system, forces), "floating": _floating(system, blocks, forces)}
 
 
 def _pushed(system: System, force: FloatArray) -> BoolArray:
     """Whether the mean friction on a mode adrift is not 0; force (point, contact, width)."""
-    ports = system.linear.ports[:, 0::2]  # tangential
-    first = 2 + 4 * system.harmonics.index(1)
-    mean = force[:, :, 0] @ ports.T
-    size = np.hypot(force[:, :, first], force[:, :, first + 1]) @ np.abs(ports).T
+    layout = system.layout
+    d, first = layout.directions, layout.directions + layout.stride * system.harmonics.index(1)
+    mean, size = np.zeros((2, len(force), system.linear.natural.size))
+    for along in range(d - 1):
+        ports, at = system.linear.ports[:, along::d], first + 2 * along
+        mean += force[:, :, along] @ ports.T
+        size += np.hypot(force[:, :, at], force[:, :, at + 1]) @ np.abs(ports).T
     pushed: BoolArray = np.any(system.linear.adrift & (np.abs(mean) > BALANCED * size), axis=1)
     return pushed
 
@@ -51,10 +52,12 @@ def _floating(system: System, x: FloatArray, force: FloatArray) -> BoolArray:
     contacts, linear = system.scene.contacts, system.linear
     k_v, n_0 = np.array([c.k_v for c in contacts]), np.array([c.n_0 for c in contacts])
     held = (linear.natural == 0.0) & ~linear.adrift
-    ports = np.where(held[:, None], linear.ports[:, 1::2], 0.0) * (k_v > 0.0)
-    first = 4 + 4 * system.harmonics.index(1)
-    glued = np.abs(n_0) + k_v * (np.hypot(x[:, :, first], x[:, :, first + 1]) + np.abs(x[:, :, 1]))
-    normal = force[:, :, 1] + linear.counted * x[:, :, 1] + np.maximum(n_0, 0.0)
+    ports = np.where(held[:, None], linear.normal, 0.0) * (k_v > 0.0)
+    layout, j = system.layout, system.harmonics.index(1)
+    mean = layout.directions - 1
+    first = layout.directions + layout.stride * j + 2 * mean
+    glued = np.abs(n_0) + k_v * (np.hypot(x[:, :, first], x[:, :, first + 1]) + np.abs(x[:, :, mean]))
+    normal = force[:, :, mean] + linear.counted * x[:, :, mean] + np.maximum(n_0, 0.0)
     carrying = normal > CARRYING * glued
     size = np.linalg.svd(ports[None] * carrying[:, None, :], compute_uv=False)
     largest = size.max(axis=1, initial=0.0, keepdims=True)

@@ -1,19 +1,16 @@
-from fcm.contact.periodic.forces cimport PeriodicContact
 from fcm.structure.forced_modes cimport ForcedModes
 
 cdef class Further:
     cdef readonly object system
-    cdef readonly int highest, contacts, width
+    cdef readonly int highest, contacts, width, directions
     cdef readonly double[::1] share
-    cdef PeriodicContact kernel
+    cdef list laws
     cdef ForcedModes modes
-    cdef double[:, ::1] laws
     cdef Py_ssize_t[::1] others
     cdef double[::1] natural
     cdef double least
     cdef double[:, :, ::1] force
     cdef double[::1] size
-    cdef int made(self, double[::1] z, Py_ssize_t c) except -1
     cpdef int at(self, double[::1] z, double[::1] amplitude) except -1
     cdef int of_many(self, double omega) except -1
     cdef bint leads(self, double[::1] z, double[::1] amplitude, Py_ssize_t h) except -1

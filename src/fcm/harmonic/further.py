@@ -17,15 +17,10 @@ import numpy as np
 import numpy.typing as npt
 from cython.cimports.libc.math import fabs, floor
 
-from fcm.contact.periodic.workspace import periodic_contact
+from fcm.harmonic.law import Law
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.structure.forced_modes import ForcedModes
-
-if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.motion import MIXED
-else:
-    from fcm.contact.periodic.motion import MIXED
 
 HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
@@ -45,21 +40,21 @@ class Further:
 
     def __init__(self, system: System) -> None:
         linear, self.highest = system.linear, highest(system)
-        self.contacts, self.width = len(system.scene.contacts), 2 + 4 * len(system.harmonics)
-        self.kernel = periodic_contact(system.harmonics, tuple(range(1, self.highest + 1)))
+        self.contacts, self.width = len(system.scene.contacts), system.layout.width
+        self.directions = system.layout.directions
         few = system.scene.ring is None and linear.ports.size <= FEW
         own = linear.natural, linear.damping, linear.ports, linear.dofs
         self.modes = ForcedModes(*own) if few else None
         self.natural = np.array(linear.natural)
         self.others, self.least = self._without(system.harmonics), LEAST_AMPLITUDE
-        self.force = np.zeros((self.highest, 2 * self.contacts, 2))
+        self.force = np.zeros((self.highest, system.layout.ports, 2))
         self.share, self.size = np.zeros(self.highest), np.zeros(linear.dofs.shape[1])
         self.take(system)
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         self.system = system
-        self.laws = np.array([(c.mu, c.k_u, c.k_v, c.n_0) for c in system.scene.contacts]).reshape(-1, 4)
+        self.laws = system.exact_laws(tuple(range(1, self.highest + 1)))
 
     def _without(self, harmonics: Sequence[int]) -> npt.NDArray[np.intp]:
         """The other harmonics."""
@@ -120,16 +115,10 @@ class Further:
         """Whether no contact slips or separates, so that the forces have no further harmonic, (point,)."""
         linear = np.ones(len(z), dtype=np.bool_)
         for i in range(len(z)):
-            for c in range(self.contacts):
-                linear[i] &= self.made(z[i], c) != MIXED
+            for c, law in enumerate(self.laws):
+                law.probe(z[i], c * self.width)
+                linear[i] &= not law.mixed
         return linear
-
-    @cython.cfunc
-    @cython.exceptval(-1, check=False)
-    def made(self, z: cython.double[::1], c: cython.Py_ssize_t) -> cython.int:
-        """What a contact does, whose forces the kernel then has."""
-        law: cython.double[::1] = self.laws[c]
-        return self.kernel.evaluate(z, c * self.width, law[0], law[1], law[2], law[3], 0.0, False)
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -138,12 +127,16 @@ class Further:
         c: cython.Py_ssize_t
         h: cython.Py_ssize_t
         k: cython.Py_ssize_t
+        at: cython.Py_ssize_t
         most: cython.double = 0.0
         for c in range(self.contacts):
-            self.made(z, c)
+            law: Law = self.laws[c]
+            law.probe(z, c * self.width)
             for h in range(self.highest):
-                for k in range(4):
-                    self.force[h, 2 * c + k // 2, k % 2] = self.kernel.forces[2 + 4 * h + k]
+                for k in range(self.directions):
+                    at = self.directions * (1 + 2 * h) + 2 * k
+                    self.force[h, c * self.directions + k, 0] = law.force[at]
+                    self.force[h, c * self.directions + k, 1] = law.force[at + 1]
         for k in range(self.size.shape[0]):
             most = max(most, amplitude[k])
         for k in range(self.size.shape[0]):
@@ -163,16 +156,3 @@ class Further:
         displaced = np.abs(linear.displacements(others.astype(np.float64), at, force))[0]
         np.asarray(self.share)[others - 1] = (displaced / np.where(size > 0.0, size, np.inf)).max(axis=1)
         return 0
-
-
-def padded(z: FloatArray, harmonics: Sequence[int], more: Sequence[int]) -> FloatArray:
-    """Unknowns (unknown + 1,) of a balance as those of one with other harmonics: what it lacks is zero."""
-    width, wide = 2 + 4 * len(harmonics), 2 + 4 * len(more)
-    contacts = (len(z) - 1) // width
-    blocks, old = np.zeros((contacts, wide)), z[: contacts * width].reshape(contacts, width)
-    blocks[:, :2] = old[:, :2]
-    for j, h in enumerate(harmonics):
-        if h in more:
-            at = 2 + 4 * more.index(h)
-            blocks[:, at : at + 4] = old[:, 2 + 4 * j : 6 + 4 * j]
-    return np.append(blocks, z[contacts * width])

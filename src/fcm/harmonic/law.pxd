@@ -2,6 +2,7 @@ cdef int KINDS
 
 cdef class Law:
     cdef public int width
+    cdef public int directions
     cdef public int margins
     cdef public double mu
     cdef public double k_u
@@ -10,10 +11,16 @@ cdef class Law:
     cdef public bint mixed
     cdef public double[::1] force
     cdef public double[:, ::1] tangent
+    cdef public double[:, ::1] resistance
     cdef public double[::1] margin
     cdef public int[::1] kind
     cdef public double[::1] angle
+    cdef public int pieces
+    cdef public int[::1] state
+    cdef public double[::1] borne
     cpdef int evaluate(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int probe(self, double[::1] x, Py_ssize_t first) except -1
     cpdef int refine(self, bint exact) except -1
     cpdef int bound(self, double[::1] x, Py_ssize_t first) except -1
+    cpdef int resist(self) except -1
+    cpdef int cycle(self, double[::1] x, Py_ssize_t first) except -1

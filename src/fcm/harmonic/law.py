@@ -1,12 +1,12 @@
 """What a contact is to the balance: forces, their tangent, and margins, from its block of the unknowns.
 
-Of one contact with the harmonics h_1 < h_2 < ... of the balance the unknowns are
+Of one contact the unknowns are the mean and amplitudes of its displacement along each of its directions, the
+last of which is its normal, laid out as in `fcm.structure.layout`. Its forces on the structure are laid out
+alike: the friction along its tangential directions, and the normal force, which is that beyond the preload,
+n - max(n_0, 0), in equilibrium with the structure at rest.
 
-    u_0, v_0, Re U_1, Im U_1, Re V_1, Im V_1, Re U_2, ...      u = u_0 + Re sum_j U_j exp(i h_j theta)
-
-the mean and amplitudes of its tangential displacement u and its normal displacement v. Its forces on the
-structure, friction f and normal force n, are laid out alike. The normal force is that beyond the preload,
-n - max(n_0, 0), which is in equilibrium with the structure at rest.
+How many directions there are, which harmonics its forces have, and where they are not smooth is for the law
+to say; nothing else knows.
 """
 
 from __future__ import annotations
@@ -24,25 +24,47 @@ KINDS = cython.declare(cython.int, 9)  # of margins, at most
 
 @cython.cclass
 class Law:
-    """A contact; force (width,) and tangent (width, width) by `evaluate`; margin, kind and angle
-    (margins,) by `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1; mixed by `evaluate`:
-    whether it slips or separates within the cycle, so that its forces have harmonics that its motion has
-    not."""
+    """A contact with so many directions, whose forces may have more harmonics than its motion.
+
+    Attributes
+    ----------
+    force (equation,), tangent (equation, width)
+        By `evaluate`.
+    mixed
+        By `evaluate`: whether it slips or separates within the cycle, so that its forces have harmonics that
+        its motion has not.
+    margin, kind, angle (margins,)
+        By `bound`, as those of a `Problem`, with kinds from 0 to KINDS - 1.
+    resistance (direction, direction)
+        By `resist`: derivatives of the forces by the displacements, in the mean over the cycle.
+    pieces, state (piece,)
+        By `cycle`: the states that follow one another, 0 stick, 1 slip, -1 slip the other way, 2 separation.
+    borne (4,)
+        By `cycle`: greatest normal force, greatest friction force, way of the slip, and the energy that
+        friction takes.
+    """
 
     def __init__(
         self,
         width: cython.int,
+        directions: cython.int,
         margins: cython.int,
         mu: cython.double,
         k_u: cython.double,
         k_v: cython.double,
         n_0: cython.double,
     ) -> None:
-        self.width, self.margins = width, margins
+        self.width, self.directions, self.margins = width, directions, margins
         self.mu, self.k_u, self.k_v, self.n_0, self.mixed = mu, k_u, k_v, n_0, False
         self.force, self.tangent = np.zeros(width), np.zeros((width, width))
         self.margin, self.angle = np.ones(margins), np.zeros(margins)
         self.kind = np.arange(margins, dtype=np.intc)
+        self.resistance, self.borne = np.zeros((directions, directions)), np.zeros(4)
+        self.pieces, self.state = 0, np.zeros(0, dtype=np.intc)
+
+    def put(self, mu: float, k_u: float, k_v: float, n_0: float) -> None:
+        """Take other numbers."""
+        self.mu, self.k_u, self.k_v, self.n_0 = mu, k_u, k_v, n_0
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
@@ -66,6 +88,18 @@ class Law:
     @cython.exceptval(-1, check=False)
     def refine(self, exact: cython.bint) -> cython.int:
         """Evaluate the law itself from now on, or an approximation of it if it has one."""
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def resist(self) -> cython.int:
+        """Fill `resistance`, of the motion that was evaluated last."""
+        return 0
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def cycle(self, x: cython.double[::1], first: cython.Py_ssize_t) -> cython.int:
+        """Go through the cycle of a motion, for its states and what it bears."""
         return 0
 
 

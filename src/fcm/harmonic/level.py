@@ -38,7 +38,6 @@ class Level(Problem):
     def evaluate(self, z: cython.double[::1]) -> cython.int:
         b: Balance = self.balance
         n: cython.Py_ssize_t = self.unknowns
-        j: cython.Py_ssize_t = 2 + 4 * b.seen.driven
         last: cython.Py_ssize_t = 0 if self.rank else n
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -47,8 +46,8 @@ class Level(Problem):
         b.evaluate(self.z)
         for i in range(n):
             self.jacobian[i, last] = 0.0
-        for p in range(2 * b.contacts):
-            row = (p // 2) * b.width + j + 2 * (p % 2)
+        for p in range(b.ports):
+            row = b.seen.wave_at[p] + b.seen.stride * b.seen.driven
             self.jacobian[row, last] = -b.seen.X_re[p]
             self.jacobian[row + 1, last] = -b.seen.X_im[p]
         return 0

@@ -51,9 +51,9 @@ class Lifted:
         if fewer == self.fewer:
             return
         self.fewer = fewer
-        contacts, wide = self.balance.contacts, 2 + 4 * len(self.more)
-        block = [0, 1, *(2 + 4 * self.more.index(h) + i for h in fewer for i in range(4))]
-        place = np.arange(0, contacts * wide, wide)[:, None] + np.array(block)
+        layout = self.balance.layout
+        block = np.flatnonzero(np.isin(layout.harmonic_of(self.more), [0, *fewer]))
+        place = np.arange(0, layout.unknowns, layout.width)[:, None] + block
         self.place = np.append(place, self.balance.unknowns).astype(np.intc)
         self.guess[:], self.row[:] = 0.0, 0.0
 
@@ -61,7 +61,7 @@ class Lifted:
         """Points of those harmonics, contacts with other mu, k_u, k_v, n_0, as if nothing were known yet."""
         self.put(fewer)
         for law, numbers in zip(self.balance.laws, contacts, strict=True):
-            law.mu, law.k_u, law.k_v, law.n_0 = numbers
+            law.put(*numbers)
         self.balance.largest[:] = 0.0
         self.newton.evaluations = 0
 

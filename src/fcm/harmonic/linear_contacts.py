@@ -35,7 +35,7 @@ _KNOWN = _Known()
 def linear_responses(system: System, omega: float, level: float) -> Iterator[FloatArray]:
     """Unknowns about rest with the contacts as they are there, then all stuck, then all open."""
     for ports in _on_ports(system, omega):
-        yield _unknowns(system.rest, level * ports, len(system.harmonics), system.harmonics.index(1))
+        yield _unknowns(system, level * ports)
 
 
 def _on_ports(system: System, omega: float) -> ComplexArray:
@@ -73,21 +73,21 @@ def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray
 
 def loads_at_rest(system: System) -> list[float]:
     """Normal loads of the contacts at rest, negative where one is open."""
-    contacts, normal = system.scene.contacts, system.rest[1::2].tolist()
+    d = system.layout.directions
+    contacts, normal = system.scene.contacts, system.rest[d - 1 :: d].tolist()
     return [c.n_0 + c.k_v * displacement for c, displacement in zip(contacts, normal, strict=True)]
 
 
 def closed_at_rest(system: System) -> npt.NDArray[np.bool_]:
     """Whether the contact of each port (port,) is closed at rest."""
-    return np.repeat([load > 0.0 for load in loads_at_rest(system)], 2)
+    return np.repeat([load > 0.0 for load in loads_at_rest(system)], system.layout.directions)
 
 
-def _unknowns(rest: FloatArray, ports: ComplexArray, harmonics: int, driven: int) -> FloatArray:
-    x = np.zeros((ports.size // 2, 2 + 4 * harmonics))
-    x[:, :2] = rest.reshape(-1, 2)
-    first = 2 + 4 * driven
-    x[:, first : first + 4] = ports.view(np.float64).reshape(-1, 4)
-    return x.ravel()
+def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
+    x, layout = np.zeros(system.layout.unknowns), system.layout
+    driven = layout.waves_at[system.harmonics.index(1)]
+    x[layout.mean_at], x[driven], x[driven + 1] = system.rest, ports.real, ports.imag
+    return x
 
 
 def highest(system: System, omega: float) -> float:
@@ -114,6 +114,8 @@ def least(system: System, omega: float) -> float:
 
 def _motions(system: System, ports: ComplexArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
     """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
-    for contact, (U, V) in zip(system.scene.contacts, ports.reshape(-1, 2).tolist(), strict=True):
-        along, across = contact.k_u * U, contact.mu * contact.k_v * V
-        yield contact.k_v * abs(V), (abs(along - across), abs(along + across)), contact
+    each = ports.reshape(-1, system.layout.directions).tolist()
+    for contact, (*along, V) in zip(system.scene.contacts, each, strict=True):
+        across = contact.mu * contact.k_v * V
+        pairs = [(abs(contact.k_u * U - across), abs(contact.k_u * U + across)) for U in along]
+        yield contact.k_v * abs(V), max(pairs, key=sum), contact

@@ -9,7 +9,7 @@ from fcm.structure.receptance import Receptance
 
 
 class ModalAnswer:
-    """Of a receptance at the frequency that it was put to last; forces are laid out as unknowns, see `law`.
+    """Of a receptance at the frequency that it was put to last; forces are laid out as unknowns.
 
     flexibility (mode, mode): displacements under mean forces. place (part, port): where the mean and the real
     and imaginary part of each harmonic of a port are among the unknowns.
@@ -19,11 +19,9 @@ class ModalAnswer:
         self.seen, self.flexibility, self.shapes = seen, flexibility, np.asarray(seen.shapes)
         diagonal = flexibility.diagonal()
         self.diagonal = None if np.any(flexibility != np.diag(diagonal)) else diagonal[:, None]
-        port = np.arange(seen.ports)
-        first = (port // 2) * (2 + 4 * seen.count)
-        harmonic = first + 2 + 2 * (port % 2)
-        rows = [harmonic + 4 * j + i for j in range(seen.count) for i in (0, 1)]
-        self.place = np.array([first + port % 2, *rows])
+        mean, wave = np.asarray(seen.mean_at), np.asarray(seen.wave_at)
+        rows = [wave + seen.stride * j + i for j in range(seen.count) for i in (0, 1)]
+        self.place = np.array([mean, *rows])
 
     @np.errstate(invalid="ignore", over="ignore")  # where Newton's method has gone astray
     def to(self, force: FloatArray) -> FloatArray:

@@ -137,7 +137,8 @@ def linear_modes(system: System, number: int) -> list[Guess]:
     """The mode at very small amplitude; where a contact just touches, and may open, three guesses."""
     linear, contacts = system.linear, system.scene.contacts
     touching = any(contact.n_0 == 0.0 for contact in contacts)
-    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], 2) for half in HALVES[: 1 + 2 * touching]]
+    d = system.layout.directions
+    shares = [np.repeat([_closed(c.n_0, half) for c in contacts], d) for half in HALVES[: 1 + 2 * touching]]
     squares, _ = _squares(system, shares[0])
     elastic = np.flatnonzero(squares > RIGID * squares.max(initial=0.0))
     if not 1 <= number <= elastic.size:

@@ -64,7 +64,7 @@ class Multipliers:
         self.adrift = int(np.count_nonzero(linear.adrift))
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
-        self.finer = Finer(seen, contact, harmonics)
+        self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
         followed = Transitions(contact, finer), Transitions(contact, harmonics)
         self.fine, self.plain = _many(system, far, contact, followed) or _few(system, far, contact, followed)
         self.further: tuple[Refined, Multipliers] | None = None
@@ -76,6 +76,8 @@ class Multipliers:
         self.system, self.further = system, self.further if same else None
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
+        for law, c in zip(self.finer.laws, system.scene.contacts, strict=True):
+            law.put(c.mu, c.k_u, c.k_v, c.n_0)
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""

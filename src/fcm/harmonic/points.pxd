@@ -1,5 +1,3 @@
-from fcm.contact.periodic.forces cimport PeriodicContact
-from fcm.contact.periodic.measures cimport Measures
 from fcm.harmonic.balance cimport Balance
 from fcm.harmonic.law cimport Law
 

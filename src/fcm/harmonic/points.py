@@ -5,8 +5,6 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from fcm.contact.periodic.forces import PeriodicContact
-from fcm.contact.periodic.measures import Measures
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.law import Law
 
@@ -58,26 +56,21 @@ class Points:
 
 
 def cycles_of(
-    kernel: PeriodicContact,
-    measures: Measures,
+    law: Law,
     x: cython.double[:, ::1],
     first: cython.Py_ssize_t,
-    contact: cython.double[::1],
     state: cython.int[:, ::1],
     borne: cython.double[:, ::1],
 ) -> None:
-    """The cycles of a contact mu, k_u, k_v, n_0 whose motions begin at x[:, first].
+    """The cycles of a contact whose motions begin at x[:, first].
 
-    state (point, piece): beyond the last as before. borne (point, 4): greatest normal and friction force, way
-    of the slip and energy.
+    state (point, piece): beyond the last as before. borne (point, 4): see `Law`.
     """
     i: cython.Py_ssize_t
     p: cython.int
     for i in range(x.shape[0]):
-        kernel.cycle.take(x[i], first, contact[0], contact[1], contact[2], contact[3], 0.0)
-        for p in range(kernel.cycle.pieces):
-            state[i, p] = kernel.cycle.state[p]
-        measures.bear(contact[1])
-        borne[i, 0] = max(measures.greatest_load, 0.0)
-        borne[i, 1], borne[i, 2] = measures.greatest_friction, measures.slip_path
-        borne[i, 3] = measures.dissipation
+        law.cycle(x[i], first)
+        for p in range(law.pieces):
+            state[i, p] = law.state[p]
+        for p in range(4):
+            borne[i, p] = law.borne[p]

@@ -10,8 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.loop import sequences
-from fcm.contact.periodic.measures import Measures
-from fcm.contact.periodic.workspace import periodic_contact
 from fcm.continuation import Path
 from fcm.harmonic.points import Points, cycles_of
 from fcm.harmonic.reported import Reported, reported
@@ -54,7 +52,7 @@ def recorded(system: System, paths: Sequence[Path], shown: Sequence[Reported] | 
     names = ("mark", "direction", "orientation", "shift")
     mark, tangent, orientation, shift = (np.concatenate([getattr(p, name) for p in paths]) for name in names)
     # a unit of the unknowns is their size times the root of their number
-    shift = shift * np.sqrt(2.0 * len(system.scene.contacts))
+    shift = shift * np.sqrt(system.layout.ports)
     return Record(number, z, mark, X, mean, amplitude, force, tangent, orientation, shift)
 
 
@@ -81,14 +79,19 @@ def recorded_at_levels(
 
 def loops(system: System, z: FloatArray) -> FloatArray:
     """(point, contact, 5): n0_bar, b_bar, phi of the fundamental's loop, its a, and the force k_u a."""
-    first = 2 + 4 * system.harmonics.index(1)
+    layout, j = system.layout, system.harmonics.index(1)
+    normal = layout.directions - 1
+    first = layout.directions + layout.stride * j
     out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
     for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
-        U, V = x[:, first] + 1j * x[:, first + 1], x[:, first + 2] + 1j * x[:, first + 3]
+        U, V = (
+            x[:, first] + 1j * x[:, first + 1],
+            x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1],
+        )
         a = np.abs(U)
         stiffness = contact.k_u if contact.k_u > 0.0 else 1.0
         ratio = contact.mu / (stiffness * np.maximum(a, SMALLEST))
-        out[:, i, 0] = ratio * (contact.n_0 + contact.k_v * x[:, 1])
+        out[:, i, 0] = ratio * (contact.n_0 + contact.k_v * x[:, normal])
         out[:, i, 1] = ratio * contact.k_v * np.abs(V)
         out[:, i, 2] = np.angle(V * np.conj(U))
         out[:, i, 3], out[:, i, 4] = a, contact.k_u * a
@@ -103,14 +106,14 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     takes. loop: theirs, as of `loops`.
     """
     contacts, harmonics = system.scene.contacts, system.harmonics
-    kernel, z = periodic_contact(harmonics, harmonics), np.ascontiguousarray(z)
-    measures, words = Measures(kernel.cycle), []
-    state = np.empty((z.shape[0], kernel.cycle.state.shape[0]), dtype=np.intc)
+    laws, z = system.exact_laws(harmonics), np.ascontiguousarray(z)
+    words = []
+    most = max((law.state.shape[0] for law in laws), default=0)
+    state = np.empty((z.shape[0], most), dtype=np.intc)
     borne = np.zeros((len(contacts), z.shape[0], 4))
     for i, (c, x) in enumerate(zip(contacts, _blocks(system, z), strict=True)):
-        law, first = np.array([c.mu, c.k_u, c.k_v, c.n_0]), i * (2 + 4 * len(harmonics))
         state[:] = NONE
-        cycles_of(kernel, measures, z, first, law, state, borne[i])
+        cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
         if harmonics != (1,):
             words.append(_spelt(state))
         elif c.mu * c.k_u == 0.0:
@@ -137,5 +140,4 @@ def _without_friction(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
 
 def _blocks(system: System, z: FloatArray) -> FloatArray:
     """Unknowns of each contact, (contact, point, width)."""
-    blocks = z[:, :-1].reshape(z.shape[0], len(system.scene.contacts), 2 + 4 * len(system.harmonics))
-    return blocks.swapaxes(0, 1)
+    return system.layout.blocks(z).swapaxes(0, 1)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from fcm.continuation.newton import Newton, settle
-from fcm.harmonic.further import padded
 from fcm.harmonic.homotopy import Homotopy
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -28,7 +27,7 @@ class Refined:
         self.homotopy.taken = 1.0
         self.newton = Newton(self.homotopy)
         self.newton.row[:] = np.eye(self.balance.unknowns + 1)[-1]  # holds the frequency
-        balanced = np.isin(np.repeat([0, *self.more], [2, *[4] * len(self.more)]), [0, *self.harmonics])
+        balanced = np.isin(self.system.layout.harmonic_of(self.more), [0, *self.harmonics])
         self.balanced = np.tile(balanced, len(system.scene.contacts))
 
     def take(self, system: System) -> None:
@@ -43,7 +42,7 @@ class Refined:
         The forces are those of z, whatever their level: what the harmonics balanced there lack is kept. None
         where Newton's method finds nothing near; nor, if it is persistent, by parts from z itself.
         """
-        here = padded(z, self.harmonics, self.more)
+        here = self.system.extended(z, self.harmonics)
         self.balance.measure(here)
         self.balance.probe(here)
         newton, lack = self.newton, np.array(self.balance.residual)

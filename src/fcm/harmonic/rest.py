@@ -23,7 +23,6 @@ from fcm.structure.rigid import HELD
 LEAST = 1e-3  # share of the loads to begin with
 STEP = 0.2  # longest, along the curve of the share
 SMALL = 0.1  # shares are measured by themselves, and below this by this
-WIDTH = 6  # unknowns of a contact: u_0, v_0, and those of one harmonic
 ADRIFT = (
     "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
     "it does not come to rest; hold it by a contact along its normal, or by a small frequency of that mode"
@@ -42,8 +41,7 @@ class Share(Problem):
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.balance, self.at_omega = balance, np.full(balance.unknowns + 1, omega)
         self.by_share = np.zeros(balance.unknowns)
-        for p, displacement in enumerate(balance.rest):
-            self.by_share[(p // 2) * WIDTH + p % 2] = -displacement
+        self.by_share[balance.layout.mean_at] = -np.asarray(balance.rest)
         balance.load = 0.0
 
     def evaluate(self, z: FloatArray) -> int:
@@ -92,7 +90,7 @@ def at_rest(system: System) -> FloatArray:
     RestError
         If there is no equilibrium.
     """
-    linear, ports = system.linear, 2 * len(system.scene.contacts)
+    linear, ports = system.linear, system.layout.ports
     if pushed_adrift(linear):
         raise RestError(ADRIFT)
     if not linear.load.any() or not ports:
@@ -103,7 +101,7 @@ def at_rest(system: System) -> FloatArray:
         problem = Share(single.balance(), omega)
         path = follow(problem, np.append(guess, LEAST), (LEAST, 1.0), True, STEP)
         if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
-            return _means(path.z[-1])
+            return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):
         newton = Newton(Share(single.balance(), omega))
         z = np.append(guess, 1.0)
@@ -111,7 +109,7 @@ def at_rest(system: System) -> FloatArray:
         newton.scale[:], newton.z[:] = newton.problem.scale, z
         newton.row[:] = np.eye(z.size)[-1]
         if newton.correct(1.0):
-            return _means(np.asarray(newton.z))
+            return np.asarray(newton.z)[single.layout.mean_at]
     raise RestError(NONE)
 
 
@@ -121,28 +119,24 @@ def pushed_adrift(linear: Linear) -> bool:
     return bool((size[linear.adrift] > HELD * size.max(initial=0.0)).any())
 
 
-def _means(z: FloatArray) -> FloatArray:
-    means: FloatArray = z[:-1].reshape(-1, WIDTH)[:, :2].ravel()
-    return means
-
-
 def _linear(system: System, share: float) -> Iterator[FloatArray]:
     """Unknowns with the contacts as they are without the loads, then all stuck, then all open."""
-    contacts, balance = system.scene.contacts, system.balance()
+    contacts, balance, layout = system.scene.contacts, system.balance(), system.layout
+    d = layout.directions
     n_0 = np.array([c.n_0 for c in contacts])
     static, rest = np.asarray(balance.seen.static), share * np.asarray(balance.rest)
     for closed in (n_0 > 0.0, np.ones(n_0.size, dtype=bool), np.zeros(n_0.size, dtype=bool)):
-        stiffness = system.springs(stuck=True) * np.repeat(closed, 2)
-        stiffness[1::2] -= system.linear.counted
+        stiffness = system.springs(stuck=True) * np.repeat(closed, d)
+        stiffness[d - 1 :: d] -= system.linear.counted
         force = np.zeros(rest.size)  # of the normal springs where v = 0
-        force[1::2] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
+        force[d - 1 :: d] = np.where(closed, np.minimum(n_0, 0.0), -np.maximum(n_0, 0.0))
         try:
             ports = np.linalg.solve(np.eye(rest.size) + static * stiffness, rest - static @ force)
         except np.linalg.LinAlgError:  # nothing holds a rigid-body mode
             continue
-        x = np.zeros((n_0.size, WIDTH))
-        x[:, :2] = ports.reshape(-1, 2)
-        yield x.ravel()
+        x = np.zeros(layout.unknowns)
+        x[layout.mean_at] = ports
+        yield x
 
 
 def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
@@ -158,12 +152,12 @@ def rest_of(scene: Scene) -> tuple[FloatArray, FloatArray]:
     balance, linear, modal = system.balance(), system.linear, scene.modal
     balance.load = 0.0
     z = np.zeros(balance.unknowns + 1)
-    z[:-1].reshape(-1, WIDTH)[:, :2], z[-1] = ports.reshape(-1, 2), 1.0
+    z[balance.layout.mean_at], z[-1] = ports, 1.0
     balance.evaluate(z)
-    force = np.asarray(balance.force).reshape(-1, WIDTH)[:, :2]
-    q = linear.flexibility @ (linear.load - linear.ports @ force.ravel())  # of mass 1, rigid ones turned
+    force = np.asarray(balance.force)[balance.layout.mean_at]
+    q = linear.flexibility @ (linear.load - linear.ports @ force)  # of mass 1, rigid ones turned
     moved, rigid = q / np.sqrt(modal.mass), linear.natural == 0.0
     if rigid.any():
         shown = linear.dofs[rigid].T @ q[rigid]
         moved[rigid] = np.linalg.lstsq(modal.shapes[rigid].T, shown, rcond=None)[0]
-    return moved, force[:, 0].copy()
+    return moved, force[:: balance.directions].copy()

@@ -34,7 +34,8 @@ def too_stiff(system: System, moves: bool = False) -> str:
     most, enough = (TOO_QUICK, SLOW) if moves else (TOO_STIFF, ENOUGH)
     if not ratio > most:
         return ""
-    contact, key = system.scene.contacts[worst // 2], ("k_u", "k_v")[worst % 2]
+    at, along = divmod(worst, system.layout.directions)
+    contact, key = system.scene.contacts[at], "k_v" if along == system.layout.directions - 1 else "k_u"
     instead = enough / receptance[worst]
     why = "rounding decides when it slips or opens"
     if moves:

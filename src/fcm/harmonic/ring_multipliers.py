@@ -85,7 +85,8 @@ class RingMultipliers(Multipliers):
         stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
         source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
         self.adrift = int(np.count_nonzero(linear.adrift))
-        self.finer = Finer(linear.receptance(np.array(finer, dtype=np.float64)), of_one, harmonics)
+        seen = linear.receptance(np.array(finer, dtype=np.float64))
+        self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
         self.fine, self.plain = (
             RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.renumber, source)
             for numbers in (finer, harmonics)

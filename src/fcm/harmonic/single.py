@@ -34,7 +34,7 @@ class SingleHarmonic(Law):
         k_v: cython.double,
         n_0: cython.double,
     ) -> None:
-        Law.__init__(self, 6, 5, mu, k_u, k_v, n_0)
+        Law.__init__(self, 6, 2, 5, mu, k_u, k_v, n_0)
         self.exact, self.coarse, self.coefficients = exact, coarse, exact
         self.numbers, self.slopes = np.zeros(12), np.zeros((3, 6))
         self.least, self.most = 0.0, 0.0  # see `limits`

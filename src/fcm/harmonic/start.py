@@ -137,8 +137,9 @@ def _lost(path: Path, stations: tuple[float, ...]) -> bool:
 
 def few_of(system: System) -> int:
     """How many harmonics tell how far the level of more is to be followed."""
-    contacts = max(len(system.scene.contacts), 1)
-    return min(max((UNKNOWNS // contacts - 2) // 4, 1), FEW)
+    layout = system.layout
+    means, each = layout.directions, layout.stride
+    return min(max((UNKNOWNS // max(layout.contacts, 1) - means) // each, 1), FEW)
 
 
 def _reach(system: System, status: Status, levels: FloatArray) -> float:

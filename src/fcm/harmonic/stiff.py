@@ -114,7 +114,7 @@ class _Forces:
 
     def __init__(self, system: System) -> None:
         scene = system.scene
-        ports = [direction for c in scene.contacts for direction in (c.tangential, c.normal)]
+        ports = scene.directions_of_contacts()
         self.along: list[tuple[int, float, Force]] = []
         others: list[Force] = []
         for force in scene.forces:
@@ -216,22 +216,22 @@ def _moved(balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArr
 
 def _places(balance: Balance) -> npt.NDArray[np.intp]:
     """Of the real part of each port's fundamental among the unknowns."""
-    p = np.arange(2 * balance.contacts, dtype=np.intp)
-    places: npt.NDArray[np.intp] = (p // 2) * balance.width + 2 + 4 * balance.seen.driven + 2 * (p % 2)
+    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.driven]
     return places
 
 
 def _held(balance: Balance, springs: FloatArray) -> FloatArray | None:
     """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
-    j = 2 + 4 * balance.seen.driven
+    d, stride = balance.directions, balance.seen.stride
+    j = d + stride * balance.seen.driven
     held = np.empty(springs.size)
     for c, tangent in enumerate(np.asarray(balance.tangent)):
-        own = tangent[j : j + 4, 2:].copy()
-        pairs = own.diagonal(j - 2)
-        held[2 * c : 2 * c + 2] = pairs[::2]
-        whole = (pairs[::2] == springs[2 * c : 2 * c + 2]) | (pairs[::2] == 0.0)
+        own, here = tangent[j : j + stride, d:].copy(), slice(c * d, (c + 1) * d)
+        pairs = own.diagonal(j - d)
+        held[here] = pairs[::2]
+        whole = (pairs[::2] == springs[here]) | (pairs[::2] == 0.0)
         equal = np.array_equal(pairs[::2], pairs[1::2])
-        own[np.arange(4), j - 2 + np.arange(4)] = 0.0
+        own[np.arange(stride), j - d + np.arange(stride)] = 0.0
         if own.any() or not whole.all() or not equal:
             return None
     return held

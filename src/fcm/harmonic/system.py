@@ -26,6 +26,7 @@ from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
 from fcm.scene.model import FloatArray, Scene
+from fcm.structure.layout import Layout
 from fcm.structure.linear import ComplexArray, Linear, linear_of
 from fcm.structure.receptance import Receptance
 from fcm.structure.ring import RingLinear
@@ -85,6 +86,19 @@ class System:
             found.__dict__.pop(made, None)
         return found
 
+    @property
+    def layout(self) -> Layout:
+        """Where the contacts' displacements are among the unknowns."""
+        return self.layout_of(self.harmonics)
+
+    def layout_of(self, harmonics: tuple[int, ...]) -> Layout:
+        """The same with other harmonics."""
+        return Layout(len(self.scene.contacts), self.scene.directions_of_contact, len(harmonics))
+
+    def extended(self, z: FloatArray, harmonics: tuple[int, ...]) -> FloatArray:
+        """Unknowns with other harmonics, and what follows them, as those of this: what these lack is zero."""
+        return self.layout_of(harmonics).with_harmonics(z, harmonics, self.harmonics)
+
     @cached_property
     def rest(self) -> FloatArray:
         """Displacements (port,) at rest under the static loads; see `fcm.harmonic.rest.at_rest`."""
@@ -139,7 +153,7 @@ class System:
         rank = condensed_size(yields, linear.ports.shape[1], len(self.harmonics), self.condensing)
         seen = linear.receptance(np.array(self.harmonics, dtype=np.float64), not rank)
         shown = _displacements(linear, seen)
-        balance = Balance(seen, self.laws(), shown, linear.counted, high - low, rank)
+        balance = Balance(seen, self.layout, self.laws(), shown, linear.counted, high - low, rank)
         if rank:
             tangent, options = np.asarray(balance.tangent), self.condensing
             balance.condensed = Condensed(seen, linear.flexibility, tangent, yields, options)
@@ -159,18 +173,23 @@ class System:
         return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
     def laws(self) -> list[Law]:
-        """The contacts."""
-        contacts = self.scene.contacts
+        """The contacts; those of one harmonic in closed form, or by the table."""
         if self.harmonics != (1,):
-            kernel = periodic_contact(self.harmonics, self.harmonics)
-            return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+            return self.exact_laws(self.harmonics)
         exact = ClosedForm() if self.corrected else self.coarse
+        contacts = self.scene.contacts
         return [SingleHarmonic(exact, self.coarse, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
+
+    def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
+        """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
+        kernel = periodic_contact(self.harmonics, outputs)
+        return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
 
     def springs(self, stuck: bool) -> FloatArray:
         """Stiffnesses of all contacts, (port,): all stuck, or all open."""
-        k = [k for c in self.scene.contacts for k in (c.k_u if c.mu > 0.0 else 0.0, c.k_v)]
-        return np.array(k) * float(stuck)
+        along = self.scene.directions_of_contact - 1
+        each = [(*[c.k_u if c.mu > 0.0 else 0.0] * along, c.k_v) for c in self.scene.contacts]
+        return np.array(each).ravel() * float(stuck)
 
 
 class _Workspace:

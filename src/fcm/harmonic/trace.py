@@ -56,7 +56,7 @@ def traced(
 
 def traced_from(
     system: System,
-    fewer: Sequence[int],
+    fewer: tuple[int, ...],
     before: Traced,
     near: Sequence[FloatArray],
     progress: Progress | None = None,

@@ -40,7 +40,6 @@ class TravellingDisplacements(Displacements):
         """Amplitudes of one harmonic, mode by mode."""
         wave: Receptance = self.waves[j]
         n: cython.Py_ssize_t = self.seen.ports
-        w: cython.Py_ssize_t = 2 + 4 * self.seen.count
         i: cython.Py_ssize_t
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
@@ -53,7 +52,7 @@ class TravellingDisplacements(Displacements):
             g_re: cython.double = driven * d_omega * wave.slope_re[i]
             g_im: cython.double = driven * d_omega * wave.slope_im[i]
             for p in range(n):
-                k = (p // 2) * w + 2 + 4 * j + 2 * (p % 2)
+                k = self.seen.wave_at[p] + self.seen.stride * j
                 a: cython.double = wave.shapes[i, p]
                 b: cython.double = wave.shapes[i, n + p]
                 f_re -= a * force[k] + b * force[k + 1]

@@ -8,16 +8,17 @@ the frequencies at which the level was followed, and that none of them tells of 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
 from fcm.continuation import Mark, Path
 from fcm.continuation.newton import Newton
-from fcm.harmonic.further import padded
 from fcm.scene.model import FloatArray
+
+if TYPE_CHECKING:
+    from fcm.harmonic.system import System
 
 SHORT = 4.0  # times 1, and that part of it: between these a turn may come to 1 within a range,
 STAGE = 1.25  # by stages, each of so many times the level,
@@ -63,13 +64,11 @@ class Turn(NamedTuple):
         """Whether the level may be 1 at a turn like this one within a range."""
         return self.short and 1.0 / SHORT < self.level < SHORT
 
-    def padded(self, harmonics: Sequence[int], more: Sequence[int]) -> Turn:
-        """That of a balance with some harmonics as one of more."""
-        before, after = (
-            np.append(padded(one[:-1], harmonics, more), one[-1]) for one in (self.before, self.after)
-        )
+    def extended(self, system: System, harmonics: tuple[int, ...]) -> Turn:
+        """That of a balance with some harmonics as one of a system with more."""
+        before, after = (system.extended(one, harmonics) for one in (self.before, self.after))
         after = before if self.before is self.after else after
-        return self._replace(z=padded(self.z, harmonics, more), before=before, after=after)
+        return self._replace(z=system.extended(self.z, harmonics), before=before, after=after)
 
 
 def turns_of(path: Path, omega: float, unit: float = 1.0) -> tuple[Turn, ...]:

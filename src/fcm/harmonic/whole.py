@@ -45,9 +45,7 @@ def answer(balance: Balance, force: FloatArray) -> FloatArray:
 
 def places(balance: Balance) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
     """Where the mean (port,) and the real part of each harmonic (harmonic, port) are among the unknowns."""
-    p = np.arange(2 * balance.contacts)
-    first = (p // 2) * balance.width
-    return first + p % 2, first + 2 + 2 * (p % 2) + 4 * np.arange(balance.seen.count)[:, None]
+    return balance.layout.mean_at, balance.layout.waves_at
 
 
 class Amplitude:

@@ -162,14 +162,14 @@ def _corrected_states(scene: Scene, omega: float, look: Look) -> Iterator[State]
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
         return
-    from fcm.harmonic.further import padded
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
-    one, newton = Balanced(whole, ONE), Newton(Balanced(whole, MORE).balance())
+    one, more = Balanced(whole, ONE), Balanced(whole, MORE)
+    newton = Newton(more.balance())
     one.work.look = look
     for solution in solutions(one, omega).solutions:
-        z = padded(solution, ONE, MORE)
+        z = more.extended(solution, ONE)
         yield computed_state(scene, MORE, np.array(newton.z) if held(newton, z) else z)
 
 

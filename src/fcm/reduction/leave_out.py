@@ -99,7 +99,7 @@ def _different(curves: tuple[Scene, ...]) -> list[Scene]:
     """One scene for each structure with directions of its contacts and forces."""
 
     def key(s: Scene) -> tuple[int | bytes, ...]:
-        along = [d.tobytes() for c in s.contacts for d in (c.tangential, c.normal)]
+        along = [d.tobytes() for d in s.directions_of_contacts()]
         return (id(s.modal), *along, *(direction.tobytes() for direction in s.pushes()))
 
     return list({key(s): s for s in curves}.values())

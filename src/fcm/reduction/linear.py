@@ -14,8 +14,9 @@ BESIDE = 1e-7  # relative distance from a resonance, where nothing is infinite
 
 
 def all_springs(scene: Scene) -> FloatArray:
-    """Stiffnesses of all contacts, (2 contacts,): k_u, k_v of the first, ..."""
-    return np.array([k for c in scene.contacts for k in (c.k_u, c.k_v)])
+    """Stiffnesses of all contacts, (port,), along their directions."""
+    along = scene.directions_of_contact - 1
+    return np.array([(*[c.k_u] * along, c.k_v) for c in scene.contacts]).ravel()
 
 
 def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
@@ -26,12 +27,12 @@ def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
 
 
 def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
-    """Natural frequencies with springs (2 contacts,) for contacts."""
+    """Natural frequencies with springs (port,) for contacts."""
     return linear_of(scene).stiffened(springs)
 
 
 def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> ComplexArray:
-    """Amplitudes (frequency, dof) with springs (2 contacts,) for contacts."""
+    """Amplitudes (frequency, dof) with springs (port,) for contacts."""
     linear = linear_of(scene)
     natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
     w = omega[:, None]

@@ -11,6 +11,7 @@ from fcm.harmonic.system import System
 from fcm.reduction.leave_out import Lighter
 from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray, Scene
+from fcm.structure.layout import Layout
 
 IntArray = npt.NDArray[np.intp]
 MOST_CHECKED = 200  # points at which the response is compared with that of all modes
@@ -66,13 +67,13 @@ def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:
 def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...]) -> FloatArray:
     """z (point, unknown + 1) of all contacts at points of a curve, from its displacements."""
     X = _amplitudes(curve, at)[:, : len(harmonics)]
-    x = np.empty((at.size, len(scene.contacts), 2 + 4 * len(harmonics)))
-    for i, contact in enumerate(scene.contacts):
-        for part, direction in enumerate((contact.tangential, contact.normal)):
-            amplitude = X @ direction
-            x[:, i, part] = curve.mean[at] @ direction
-            x[:, i, 2 + 2 * part :: 4], x[:, i, 3 + 2 * part :: 4] = amplitude.real, amplitude.imag
-    return np.column_stack((x.reshape(at.size, -1), curve.frequency[at]))
+    layout = Layout(len(scene.contacts), scene.directions_of_contact, len(harmonics))
+    x = np.empty((at.size, layout.unknowns))
+    for port, direction in enumerate(scene.directions_of_contacts()):
+        amplitude, rows = X @ direction, layout.waves_at[:, port]
+        x[:, layout.mean_at[port]] = curve.mean[at] @ direction
+        x[:, rows], x[:, rows + 1] = amplitude.real, amplitude.imag
+    return np.column_stack((x, curve.frequency[at]))
 
 
 def _sample(curve: Curve, count: int) -> IntArray:

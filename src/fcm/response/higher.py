@@ -15,7 +15,6 @@ import numpy as np
 
 from fcm.accuracy.refinement import Accurate
 from fcm.harmonic.carried import led_to
-from fcm.harmonic.further import padded
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
 from fcm.harmonic.unstable import Stretch, stretches_of
@@ -39,7 +38,7 @@ def with_higher(found: Accurate, stable: Sequence[FloatArray]) -> tuple[Accurate
     higher = _higher(system.with_harmonics(more), stretches, _most(found))
     if not higher:
         return found, False
-    guesses = (padded(z, more, system.harmonics) for z, _ in higher)
+    guesses = (system.extended(z, more) for z, _ in higher)
     starts = [z for z in (led_to(system, guess) for guess in guesses) if z is not None]
     found = with_branches(found, (), starts, np.inf) if starts else found
     most = _most(found)

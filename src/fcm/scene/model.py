@@ -196,10 +196,18 @@ class Scene:
         curves = tuple(replace(curve._at(used, modals), draft=draft) for curve in self.curves)
         return replace(self._at(used, modals), curves=curves, draft=draft)
 
+    @property
+    def directions_of_contact(self) -> int:
+        """In how many directions each contact moves: along itself, and along its normal."""
+        return 2
+
     def directions(self) -> list[FloatArray]:
         """The directions of all contacts, forces and loads, each (dof,)."""
-        of_contacts = [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
-        return [*of_contacts, *self.pushes()]
+        return [*self.directions_of_contacts(), *self.pushes()]
+
+    def directions_of_contacts(self) -> list[FloatArray]:
+        """Those of the contacts, each (dof,), as many of each as `directions_of_contact`."""
+        return [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
 
     def pushes(self) -> list[FloatArray]:
         """The directions of all forces and loads, each (dof,)."""

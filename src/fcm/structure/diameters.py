@@ -29,9 +29,11 @@ def nodal_diameters(scene: Scene) -> list[Diameter]:
     """
     ring = scene.ring
     assert ring is not None
-    rows = [direction for one in scene.contacts for direction in (one.tangential, one.normal)]
+    rows = scene.directions_of_contacts()
     directions = np.array(rows).reshape(len(rows), len(scene.modal.dofs)).T
-    springs = np.array([k for one in scene.contacts for k in (one.k_u if one.mu > 0.0 else 0.0, one.k_v)])
+    along = scene.directions_of_contact - 1
+    each = [(*[one.k_u if one.mu > 0.0 else 0.0] * along, one.k_v) for one in scene.contacts]
+    springs = np.array(each).ravel()
     found = []
     for number in sorted(set(ring.diameter.tolist())):
         which = ring.diameter == number

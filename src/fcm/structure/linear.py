@@ -24,7 +24,7 @@ FROM_SINE = np.exp(-0.5j * np.pi)  # from Im(X exp(i omega t)) to Re
 
 @dataclass(frozen=True)
 class Linear:
-    """The structure without its contacts; ports are u_1, v_1, u_2, v_2, ... of the contacts."""
+    """The structure without its contacts; ports are the directions of each, the last of them its normal."""
 
     natural: FloatArray  # (mode,) [rad/s]
     damping: FloatArray  # (mode,) ratio
@@ -40,9 +40,19 @@ class Linear:
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """The structure seen from its ports at some harmonics, with the sums over its modes or without."""
         ends = self.force, self.static, harmonics, summed
-        seen = Receptance(self.ports, self.natural, self.damping, *ends)
+        seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size)
         seen.grows(self.square)
         return seen
+
+    @property
+    def directions_of_contact(self) -> int:
+        """Ports of each contact, the last of which is along its normal."""
+        return self.ports.shape[1] // self.counted.size if self.counted.size else 0
+
+    @property
+    def normal(self) -> FloatArray:
+        """Shapes along the contacts' normals (mode, contact)."""
+        return self.ports[:, self.directions_of_contact - 1 :: self.directions_of_contact or 1]
 
     @cached_property
     def static(self) -> FloatArray:
@@ -165,7 +175,7 @@ def linear_of(scene: Scene) -> Linear:
 def _made(scene: Scene) -> Linear:
     modal, adrift = settled(scene)
     unit = 1.0 / np.sqrt(modal.mass)[:, None]
-    directions = [d for c in scene.contacts for d in (c.tangential, c.normal)]
+    directions = scene.directions_of_contacts()
     along = np.array(directions, dtype=np.float64).reshape(len(directions), len(modal.dofs)).T
     ports = modal.shapes @ along
     loads = loads_of(scene)
@@ -180,7 +190,12 @@ def _made(scene: Scene) -> Linear:
         force=FROM_SINE * (modal.shapes @ loads.constant) * unit[:, 0],
         square=FROM_SINE * (modal.shapes @ loads.square) * unit[:, 0],
         load=(modal.shapes @ loads.static) * unit[:, 0],
-        flexibility=_flexibility(modal.frequency, ports, k_v, adrift),
+        flexibility=_flexibility(
+            modal.frequency,
+            ports[:, scene.directions_of_contact - 1 :: scene.directions_of_contact],
+            k_v,
+            adrift,
+        ),
         counted=k_v,
         adrift=adrift,
     )
@@ -193,7 +208,7 @@ def _made(scene: Scene) -> Linear:
 
 
 def _flexibility(
-    natural: FloatArray, ports: FloatArray, k_v: FloatArray, adrift: npt.NDArray[np.bool_]
+    natural: FloatArray, normal: FloatArray, k_v: FloatArray, adrift: npt.NDArray[np.bool_]
 ) -> FloatArray:
     """Of the modes with the normal springs that are counted to them; modes adrift stay where they are.
 
@@ -203,7 +218,7 @@ def _flexibility(
     """
     if not (natural == 0.0).any():
         return np.diag(natural**-2)
-    normal = np.where(adrift[:, None], 0.0, ports[:, 1::2])
+    normal = np.where(adrift[:, None], 0.0, normal)
     matrix = np.diag(natural**2) + (normal * k_v) @ normal.T
     at = np.flatnonzero(adrift)
     matrix[at, at] = 1.0

@@ -2,6 +2,9 @@ cdef class Receptance:
     cdef public int modes
     cdef public int ports
     cdef public int count
+    cdef public int stride
+    cdef public Py_ssize_t[::1] mean_at
+    cdef public Py_ssize_t[::1] wave_at
     cdef public double omega
     cdef public double[::1] harmonics
     cdef public double[::1] natural

@@ -1,6 +1,6 @@
 r"""The structure seen from its contacts: receptances at every harmonic of a frequency, modes summed out.
 
-With modes of mass 1, shapes P on the ports (u_1, v_1, u_2, v_2, ...) and x = Re(X exp(i h omega t)),
+With modes of mass 1, shapes P on the ports, those of the first contact first, and x = Re(X exp(i h omega t)),
 
     G(h omega) = sum_i P_i P_i^T c_i,    c_i = 1 / (w_i^2 - (h omega)^2 + 2 i zeta_i w_i h omega)
 
@@ -12,6 +12,8 @@ from __future__ import annotations
 import cython
 import numpy as np
 import numpy.typing as npt
+
+from fcm.structure.layout import Layout
 
 LARGE = cython.declare(cython.int, 4000)  # products of a sum over the modes from which on BLAS is faster
 MANY = cython.declare(cython.int, 4)  # ports from which on the sums of all their pairs go on side by side
@@ -25,7 +27,11 @@ class Receptance:
     external forces, which act at the harmonic number `driven` of the list; c, s (harmonic, mode) the
     compliances of the modes and their derivatives; static (port, port) for mean forces; force_re, force_im,
     slope_re, slope_im (mode,) the external forces at omega and their derivatives. Without summed, for many
-    ports, none of G is made: what asks for answers to forces goes by the modes."""
+    ports, none of G is made: what asks for answers to forces goes by the modes.
+
+    mean_at, wave_at (port,), stride : where the mean of a port and the real part of its first harmonic are
+    among numbers laid out as the unknowns of a balance, and how far on that of each next one is: see
+    `fcm.structure.layout`. contacts says of how many the ports are."""
 
     def __init__(
         self,
@@ -36,10 +42,13 @@ class Receptance:
         static: npt.NDArray[np.float64],
         harmonics: npt.NDArray[np.float64],
         summed: cython.bint = True,
+        contacts: cython.int = 0,
     ) -> None:
         modes, ports = shapes.shape
         count = len(harmonics)
         self.modes, self.ports, self.count = modes, ports, count
+        layout = Layout(contacts, ports // contacts if contacts else 0, count)
+        self.mean_at, self.wave_at, self.stride = layout.mean_at, layout.wave_at, layout.stride
         self.harmonics = np.array(harmonics, dtype=np.float64)
         self.natural, self.rate = np.array(natural), 2.0 * np.asarray(damping) * natural
         self.shapes, self.static = np.ascontiguousarray(shapes), np.ascontiguousarray(static)

@@ -55,7 +55,7 @@ class RingLinear(Linear):
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """The sector seen from its ports at some harmonics."""
         waves = [self._real(int(h)) for h in harmonics]
-        return TravellingReceptance(waves, self.static, harmonics)
+        return TravellingReceptance(waves, self.static, harmonics, self.counted.size)
 
     def _real(self, harmonic: int) -> Receptance:
         """The receptance of one harmonic on ports with the real and those with the imaginary parts."""

@@ -1,7 +1,7 @@
 r"""The receptance of one sector of a ring in which a wave travels: one structure for each harmonic.
 
 Harmonic h of the motion of sector k is X_h exp(i h k phi), so it meets the modes of one nodal diameter, with
-complex shapes P on the ports (u_1, v_1, u_2, v_2, ...), in which the next sector counts exp(i h phi) times:
+complex shapes P on the ports, in which the next sector counts exp(i h phi) times:
 
     G(h omega) = sum_i P_i P_i^H c_i = A + B + i (D - D^T),    P = a + i b
 
@@ -27,10 +27,11 @@ class TravellingReceptance(Receptance):
         waves: list[Receptance],
         static: npt.NDArray[np.float64],
         harmonics: npt.NDArray[np.float64],
+        contacts: cython.int,
     ) -> None:
         ports = len(static)
         none, push = np.zeros(0), np.zeros(0, dtype=np.complex128)
-        Receptance.__init__(self, np.zeros((0, ports)), none, none, push, static, harmonics)
+        Receptance.__init__(self, np.zeros((0, ports)), none, none, push, static, harmonics, True, contacts)
         self.waves = waves
 
     @cython.ccall

@@ -16,7 +16,6 @@ from fcm.accuracy.partner import partner_of
 from fcm.harmonic.further import Further
 from fcm.track.curve import Track
 from fcm.track.follow import follow, land
-from fcm.track.lowest import lifted
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved
 from fcm.track.top import is_top
@@ -102,14 +101,12 @@ def _more(found: _Found) -> tuple[int, ...]:
     problem.measure(z)
     amplitude = problem.along(z)[1]
     share = further.shares(y, amplitude[None])[0]
-    return partner_of(system.harmonics, share, len(system.scene.contacts))
+    return partner_of(system.harmonics, share, system.layout.ports)
 
 
 def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: bool) -> _Found | None:
     """The point with more harmonics: that beside the start, or the turn that follows it."""
-    old, new = start.way.system.harmonics, wider.system.harmonics
-    contacts = len(wider.system.scene.contacts)
-    beside = land(wider, condition, lifted(start.spot.z, contacts, old, new))
+    beside = land(wider, condition, wider.system.extended(start.spot.z, start.way.system.harmonics))
     if beside is None or not _same(wider, condition, beside, start):
         return None
     if not turns:

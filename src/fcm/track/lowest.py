@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from fcm.at_rest import at_rest
 from fcm.continuation.follow import Progress
@@ -175,19 +174,7 @@ class Search:
         """Follow curves found with fewer harmonics from both their ends and their middle."""
         for curve in known.curves:
             for i in sorted({0, len(curve.spots) // 2, len(curve.spots) - 1}):
-                contacts = len(self.system.scene.contacts)
-                z = lifted(curve.spots[i].z, contacts, known.harmonics, self.system.harmonics)
+                z = self.system.extended(curve.spots[i].z, known.harmonics)
                 spot = land(self.way, curve.condition, z) if curve.greatest[i] else None
                 if spot is not None:
                     self.follow(curve.condition, spot)
-
-
-def lifted(
-    z: npt.NDArray[np.float64], contacts: int, old: tuple[int, ...], new: tuple[int, ...]
-) -> FloatArray:
-    """Unknowns with more harmonics, which are 0, and what follows the unknowns."""
-    fewer, more = (2 + 4 * len(one) for one in (old, new))
-    found = np.zeros((contacts, more))
-    at = [0, 1, *(2 + 4 * new.index(h) + i for h in old for i in range(4))]
-    found[:, at] = z[: contacts * fewer].reshape(contacts, fewer)
-    return np.concatenate((found.ravel(), z[contacts * fewer :]))

@@ -22,9 +22,11 @@ import numpy.typing as npt
 
 from fcm.harmonic.law import Law
 from fcm.scene.model import FloatArray
+from fcm.structure.layout import Layout
 
 KINDS = ("separation", "closing", "slip")
 LIMITS = ("upper limit", "lower limit")
+NORMAL = -1  # of the directions of a contact
 SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
 REFINED = 4  # Newton steps from there
 
@@ -41,10 +43,10 @@ class Onset(NamedTuple):
 
 def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
     """One of KINDS or LIMITS of a contact at its unknowns."""
-    load = _polynomial(x, 1) * law.k_v
+    load = _polynomial(x, law, NORMAL) * law.k_v
     load[0] += law.n_0
     if kind == "slip" or kind in LIMITS:
-        push = _polynomial(x, 0) * law.k_u
+        push = _polynomial(x, law, 0) * law.k_u
         upper = _least(push + law.mu * load, harmonics)
         lower = _least(law.mu * load - push, harmonics)
         parts = [(upper, 1.0, law.mu), (lower, -1.0, law.mu)]
@@ -57,9 +59,10 @@ def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Ons
     for (least, theta), of_push, of_load in parts:
         value += sign * least
         at = _waves(theta, harmonics)  # of a displacement's own numbers, at the extreme
-        slope[_places(x.size, 0)] += sign * of_push * law.k_u * at
-        slope[_places(x.size, 1)] += sign * of_load * law.k_v * at
-        u, v = x[_places(x.size, 0)] @ at, x[_places(x.size, 1)] @ at
+        along, across = _places(law, x, 0), _places(law, x, NORMAL)
+        slope[along] += sign * of_push * law.k_u * at
+        slope[across] += sign * of_load * law.k_v * at
+        u, v = x[along] @ at, x[across] @ at
         numbers[1] += sign * of_push * u
         numbers[2] += sign * of_load * v
         numbers[3] += sign * of_load
@@ -79,7 +82,10 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
     numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
     mu, k_u, k_v, n_0 = numbers.T
-    u, v = (np.array([_polynomial(block, part) for block in blocks]) for part in (0, 1))
+    u, v = (
+        np.array([_polynomial(block, law, part) for block, law in zip(blocks, laws, strict=True)])
+        for part in (0, NORMAL)
+    )
     load, push = v * k_v[:, None], u * k_u[:, None]
     load[:, 0] += n_0
     limit = mu[:, None] * load
@@ -112,15 +118,15 @@ def kinds_of(law: Law) -> tuple[str, ...]:
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
 
 
-def _places(width: int, part: int) -> npt.NDArray[np.intp]:
-    """Where the numbers of u (0) or v (1) are among the unknowns: mean, then Re, Im of each harmonic."""
-    pairs = np.arange(2 + 2 * part, width, 4)
-    return np.concatenate(([part], np.stack((pairs, pairs + 1), axis=1).ravel()))
+def _places(law: Law, x: FloatArray, direction: int) -> npt.NDArray[np.intp]:
+    """Where the numbers of a displacement are among the unknowns: mean, then Re, Im of each harmonic."""
+    layout = Layout(1, law.directions, (x.size // law.directions - 1) // 2)
+    return np.flatnonzero(layout.along(direction % law.directions))
 
 
-def _polynomial(x: FloatArray, part: int) -> ComplexArray:
-    """Mean and complex amplitudes of u or v."""
-    numbers = x[_places(x.size, part)]
+def _polynomial(x: FloatArray, law: Law, direction: int) -> ComplexArray:
+    """Mean and complex amplitudes of the displacement along a direction."""
+    numbers = x[_places(law, x, direction)]
     found: ComplexArray = np.concatenate((numbers[:1], numbers[1::2] + 1j * numbers[2::2]))
     return found
 

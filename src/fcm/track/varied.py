@@ -138,14 +138,15 @@ class Varied:
     def _forces_by_s(self, z: FloatArray) -> FloatArray:
         """Rates of the contacts' forces, (unknown,); of a preload alone they are those of a mean load."""
         balance, w, rates = self.balance, self.balance.width, self.contact_rates()
+        normal = balance.directions - 1
         found = np.zeros(balance.unknowns)
         for c, (rate, law) in enumerate(zip(rates, balance.laws, strict=True)):
             here = slice(c * w, (c + 1) * w)
             if rate.any() and not rate[:3].any() and law.k_v > 0.0:
-                by_load = np.array(balance.tangent[c, :, 1])
-                by_load[1] += balance.counted[c]
+                by_load = np.array(balance.tangent[c, :, normal])
+                by_load[normal] += balance.counted[c]
                 by_load /= law.k_v
-                by_load[1] -= float(law.n_0 > 0.0)  # what the structure at rest is in equilibrium with
+                by_load[normal] -= float(law.n_0 > 0.0)  # what the structure at rest is in equilibrium with
                 found[here] = rate[3] * by_load
             elif rate.any():
                 found[here] = rate @ law_rates(law, z[here])

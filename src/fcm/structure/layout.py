@@ -1,0 +1,114 @@
+"""Where the displacements of contacts, and the forces along them, are among the unknowns of a balance.
+
+Contact after contact the means of its displacements along each of its directions, then for each harmonic the
+real and imaginary part of each of them:
+
+    x_0, y_0, ..., Re X_1, Im X_1, Re Y_1, Im Y_1, ..., Re X_2, ...
+    x = x_0 + Re sum_j X_j exp(i h_j theta)
+
+The last direction of a contact is its normal. A port is a direction of a contact; ports are counted through.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+IntArray = npt.NDArray[np.intp]
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Of contacts with so many directions each, and so many harmonics.
+
+    >>> Layout(2, 2, 1).mean_at.tolist(), Layout(2, 2, 1).wave_at.tolist()
+    ([0, 1, 6, 7], [2, 4, 8, 10])
+    """
+
+    contacts: int
+    directions: int
+    harmonics: int
+
+    @property
+    def ports(self) -> int:
+        """Directions of all contacts."""
+        return self.contacts * self.directions
+
+    @property
+    def width(self) -> int:
+        """Unknowns of a contact."""
+        return self.directions * (1 + 2 * self.harmonics)
+
+    @property
+    def unknowns(self) -> int:
+        """Of all contacts."""
+        return self.contacts * self.width
+
+    @property
+    def stride(self) -> int:
+        """Unknowns of a contact in one harmonic."""
+        return 2 * self.directions
+
+    @cached_property
+    def mean_at(self) -> IntArray:
+        """Where the mean of each port is, (port,)."""
+        port = np.arange(self.ports)
+        return (port // max(self.directions, 1)) * self.width + port % max(self.directions, 1)
+
+    @cached_property
+    def wave_at(self) -> IntArray:
+        """Where the real part of each port's first harmonic is, (port,)."""
+        port = np.arange(self.ports)
+        along = port % max(self.directions, 1)
+        return (port // max(self.directions, 1)) * self.width + self.directions + 2 * along
+
+    @cached_property
+    def waves_at(self) -> IntArray:
+        """The same of every harmonic, (harmonic, port)."""
+        return self.wave_at + self.stride * np.arange(self.harmonics)[:, None]
+
+    @cached_property
+    def of_normal(self) -> npt.NDArray[np.bool_]:
+        """Whether an unknown of a contact is of its normal displacement, (width,)."""
+        return self.along(self.directions - 1)
+
+    def along(self, direction: int) -> npt.NDArray[np.bool_]:
+        """Whether an unknown of a contact is of its displacement along a direction, (width,)."""
+        means = np.arange(self.directions) == direction
+        found: npt.NDArray[np.bool_] = np.concatenate((means, np.tile(np.repeat(means, 2), self.harmonics)))
+        return found
+
+    def harmonic_of(self, harmonics: Sequence[int]) -> IntArray:
+        """Which of the harmonics an unknown of a contact is of, 0 for the means, (width,)."""
+        each = [self.directions, *[self.stride] * self.harmonics]
+        return np.repeat([0, *harmonics], each).astype(np.intp)
+
+    def blocks(self, x: FloatArray) -> FloatArray:
+        """Unknowns (..., unknown or more) by contact, (..., contact, width)."""
+        return x[..., : self.unknowns].reshape(*x.shape[:-1], self.contacts, self.width)
+
+    def complex_ports(self, x: FloatArray) -> npt.NDArray[np.complex128]:
+        """Unknowns (unknown or more,) by port: the mean and the amplitudes, (port, 1 + harmonic)."""
+        waves = x[self.waves_at] + 1j * x[self.waves_at + 1]
+        return np.concatenate((x[self.mean_at][:, None], waves.T), axis=1)
+
+    def flat(self, ports: npt.NDArray[np.complex128]) -> FloatArray:
+        """The other way round: (unknown,) of (port, 1 + harmonic)."""
+        x = np.empty(self.unknowns)
+        x[self.mean_at] = ports[:, 0].real
+        x[self.waves_at], x[self.waves_at + 1] = ports[:, 1:].T.real, ports[:, 1:].T.imag
+        return x
+
+    def with_harmonics(self, x: FloatArray, old: Sequence[int], new: Sequence[int]) -> FloatArray:
+        """Unknowns (unknown + any,) with other harmonics: those that they lack are zero; the rest follows."""
+        wide = Layout(self.contacts, self.directions, len(new))
+        blocks = np.zeros((self.contacts, wide.width))
+        to, of = wide.harmonic_of(new), self.harmonic_of(old)
+        both = [h for h in (0, *old) if h == 0 or h in new]
+        blocks[:, np.isin(to, both)] = self.blocks(x)[:, np.isin(of, both)]
+        return np.concatenate((blocks.ravel(), x[self.unknowns :]))
