@@ -123,7 +123,7 @@ def test_resonance_with_forces_is_that_of_the_response():
 def test_error_by_harmonics_left_out_is_what_more_of_them_change():
     scene = load_scene("two-contacts").in_use()
     coarse, fine = (nonlinear_mode(System(scene, h), 1, (1e-5, 1e-3), 0.05) for h in ((1,), (1, 2, 3)))
-    error = truncation(coarse)
+    error, _ = truncation(coarse)
     at = np.log(coarse.amplitude)
     omega, D = (np.interp(at, np.log(fine.amplitude), x) for x in (fine.omega, fine.damping))
     off = np.maximum(abs(coarse.omega - omega) / omega, abs(coarse.damping - D) / coarse.damping.max())

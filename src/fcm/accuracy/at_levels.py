@@ -10,12 +10,13 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy.borne import relative
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.continuation import Path
 from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.further import Further
-from fcm.harmonic.record import recorded_at_levels
+from fcm.harmonic.record import borne_along, recorded_at_levels
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -44,34 +45,42 @@ def errors_at_levels(
     z: FloatArray,
     level: FloatArray,
     amplitude: FloatArray,
+    borne: FloatArray,
     even: npt.NDArray[np.bool_],
     options: PairOptions = PAIR,
-) -> FloatArray:
-    """By how much the partner's amplitudes differ from amplitude (point, dof), relative, at the same levels.
+) -> tuple[FloatArray, FloatArray]:
+    """By how much the partner's amplitudes differ from amplitude (point, dof), and what its contacts bear
+    from borne (point, contact, 4), at the same levels, relative.
 
     NaN where that is not found, as beside folds, where the curve with them has no such solution.
     """
-    further, error = Further(system), np.zeros_like(amplitude)
+    further, error, of_borne = Further(system), np.zeros_like(amplitude), np.zeros_like(borne)
     bent = np.flatnonzero(~further.linear(z))
     if not bent.size:
-        return error
+        return error, of_borne
     share = further.shares(z[bent], amplitude[bent]).max(axis=0)
     more = partner_of(system.harmonics, share, system.layout.ports, options)
     if more == system.harmonics:
-        return error
-    there = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
+        error[bent], of_borne[bent] = np.nan, np.nan
+        return error, of_borne
+    there, theirs = _balanced(system, system.with_harmonics(more), z[bent], level[bent], even[bent])
     now, size = amplitude[bent], amplitude[bent].max(axis=1, keepdims=True)
     change = np.abs(there - now)
-    change[(change > FAR * size).any(axis=1)] = np.nan
+    far = (change > FAR * size).any(axis=1)
+    change[far], theirs[far] = np.nan, np.nan
     error[bent] = change / np.where(now > 0.0, now, 1.0)
-    return error
+    of_borne[bent] = relative(theirs - borne[bent], borne[bent], borne.max(axis=0), options)
+    return error, of_borne
 
 
 def _balanced(
     system: System, finer: System, z: FloatArray, level: FloatArray, even: npt.NDArray[np.bool_]
-) -> FloatArray:
-    """Amplitudes (point, dof) with the harmonics of another system, NaN where Newton's method finds none that
-    is as the point is, with an even or odd number of real multipliers above 1."""
+) -> tuple[FloatArray, FloatArray]:
+    """Amplitudes (point, dof) with the harmonics of another system, and what its contacts bear.
+
+    NaN where Newton's method finds none that is as the point is, with an even or odd number of real
+    multipliers above 1.
+    """
     raised, front = finer.raised
     newton, found = front.newton, np.zeros((len(z), raised.unknowns + 1))
     known = np.zeros(len(z), dtype=np.bool_)
@@ -86,5 +95,6 @@ def _balanced(
         found[i] = newton.z
         found[i, -1] = one[-1]
     amplitude = recorded_at_levels(finer, found, level)[2]
-    amplitude[~known] = np.nan
-    return amplitude
+    borne = borne_along(finer, found)
+    amplitude[~known], borne[~known] = np.nan, np.nan
+    return amplitude, borne

@@ -24,6 +24,7 @@ class Displacement:
         amplitude: cython.double[:, ::1],
         unit: cython.double[:, ::1],
         change: cython.double[:, ::1],
+        theirs: cython.double[:, ::1],
         known: cython.uchar[::1],
         most: cython.double,
     ) -> None:
@@ -31,8 +32,9 @@ class Displacement:
 
         z, direction (point, unknown + 1); the first displacement is that of the frequency, relative,
         the others
-        are those of amplitude (point, dof) in their unit (point, dof). NaN where Newton's method finds no
-        point of the partner near, and where more than the most evaluations were spent on such points.
+        are those of amplitude (point, dof) in their unit (point, dof). theirs (point, partner's unknown + 1)
+        is the partner there. NaN where Newton's method finds no point of the partner near, and where more
+        than the most evaluations were spent on such points.
         """
         n: cython.Py_ssize_t = z.shape[1] - 1
         p: cython.Py_ssize_t
@@ -46,7 +48,9 @@ class Displacement:
             if self.missed > most or not self.lifted.beside(z[i], direction[i], True):
                 self.missed += self.lifted.newton.evaluations - before
                 change[i, :] = NAN
+                theirs[i, :] = NAN
                 continue
+            theirs[i, :] = self.lifted.newton.z
             change[i, 0] = (self.lifted.found[0] - z[i, n]) / z[i, n]
             for d in range(amplitude.shape[1]):
                 change[i, 1 + d] = (self.lifted.found[1 + d] - amplitude[i, d]) / unit[i, d]

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fcm.accuracy.borne import of_borne
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
@@ -37,6 +38,9 @@ class Errors:
     share (harmonic 1 to HIGHEST,): what each harmonic left out would have without feedback, at peaks and
     folds, of the greatest amplitude of the degree of freedom to which it matters most.
     partner: its harmonics.
+    borne (point, contact, 4): of what the contacts bear, as of `fcm.harmonic.record.cycles`, each relative
+    to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
+    greatest of each along the path.
     """
 
     amplitude: FloatArray
@@ -46,6 +50,8 @@ class Errors:
     fold: FloatArray
     share: FloatArray
     partner: tuple[int, ...]
+    borne: FloatArray
+    greatest: FloatArray
 
 
 def errors_along(
@@ -62,11 +68,15 @@ def errors_along(
     if shown.linear.all() or nothing or more == system.harmonics:
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
-        return Errors(none, none[:, 0], none[0], size, of_folds, share, system.harmonics)
+        borne = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
+        return Errors(none, none[:, 0], none[0], size, of_folds, share, system.harmonics, borne, borne[0])
     partner = PartnerCurve(system, path, shown, more, options)
     change = partner.everywhere(np.union1d(special, met))
     followed = partner.followed(change)
-    shift = partner.shifts(change, followed)
+    compared, dofs = partner.compared(change), shown.amplitude.shape[1]
+    shift = partner.shifts(compared, followed)
+    borne, greatest = of_borne(partner, compared, shift, followed, folds)
+    shift = shift[:, :dofs]
     error = _of_points(partner, shift, change)
     error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
     unit = partner.unit
@@ -95,6 +105,8 @@ def errors_along(
         fold=_of_folds(partner, folds, change, followed),
         share=share,
         partner=more,
+        borne=borne,
+        greatest=greatest,
     )
 
 

@@ -58,6 +58,8 @@ class PairOptions:
         the last that is looked at, and the multiplications of modes that this may take.
     samples : int
         Of the period of the highest harmonic.
+    rounding : float
+        Part of the greatest of a force, slip or energy of a contact: differences of this are nothing.
     """
 
     times: int = 4
@@ -87,6 +89,7 @@ class PairOptions:
     farthest: int = 1024
     products: int = 10_000_000
     samples: int = 8
+    rounding: float = 1e-9
 
 
 PAIR = PairOptions()

@@ -19,6 +19,7 @@ from fcm.accuracy.stretch import Piece, Stretches
 from fcm.continuation import Mark, Path
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.further import LEAST_AMPLITUDE
+from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported
 from fcm.harmonic.runs import runs
 from fcm.harmonic.system import System
@@ -37,18 +38,34 @@ class Followed:
     pieces: list[Piece]
 
 
+@dataclass(frozen=True)
+class Compared:
+    """What is compared of a curve with its partner: amplitudes, and then what the contacts bear.
+
+    value, growth along the curve, unit (point, column); change (point, 1 + column) to the partner, that of
+    the frequency first, the others in their unit.
+    """
+
+    value: FloatArray
+    growth: FloatArray
+    unit: FloatArray
+    change: FloatArray
+
+
 class PartnerCurve:
     """Relative displacements from the points of a path to its partner: of the frequency, then of amplitudes.
 
     unit (point, dof) is what those of the amplitudes are relative to: the amplitude or, of a degree of
     freedom that hardly moves, a part of the greatest, as the others would be lost in its rounding.
     linear (point,): where no contact slips or separates, so that nothing is displaced.
+    borne (point, 4 contact): what the contacts bear.
     """
 
     def __init__(
         self, system: System, path: Path, shown: Reported, more: tuple[int, ...], options: PairOptions
     ) -> None:
         self.path, self.shown, self.options, self.fewer = path, shown, options, system.harmonics
+        self.borne = borne_along(system, path.z).reshape(len(path.z), -1)
         self.amplitude, self.linear = shown.amplitude, _with_ends(path, shown.linear)
         self.unit = np.maximum(self.amplitude, LEAST_AMPLITUDE * self.amplitude.max(axis=1, keepdims=True))
         self.unit[self.unit == 0.0] = 1.0
@@ -61,6 +78,7 @@ class PartnerCurve:
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.steep, self.weight)
         self.change = np.zeros((count, 1 + dofs))
+        self.theirs = np.empty((count, len(lifted.newton.z)))  # where it was found
         self.known = self.linear.copy()
         self.filled = Filled(self.place, self.change, self.known.view(np.uint8))
 
@@ -98,7 +116,7 @@ class PartnerCurve:
         path = self.path
         self.finding.find(
             points, path.z, path.direction, self.amplitude, self.unit,
-            self.change, self.known.view(np.uint8), self.vain,
+            self.change, self.theirs, self.known.view(np.uint8), self.vain,
         )  # fmt: skip
 
     def left_out(self, i: int) -> FloatArray:
@@ -152,17 +170,39 @@ class PartnerCurve:
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
         return [Followed(first, end, self.stretches.between(first - 1, end)) for first, end in found]
 
-    def shifts(self, change: FloatArray, followed: list[Followed]) -> FloatArray:
-        """Differences (point, dof) of the amplitudes at the same frequency, in their unit; NaN where
-        the partner does not come to that."""
-        path, growth = self.path, self.shown.growth
-        shift = shifted(self.place, path.z, path.direction, self.amplitude, growth, self.unit, change)
+    def compared(self, change: FloatArray) -> Compared:
+        """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and what the contacts bear
+        in units of the greatest along the curve; its changes are interpolated as those of amplitudes are."""
+        most = self.borne.max(axis=0)
+        unit = np.tile(np.where(most > 0.0, most, 1.0), (len(self.borne), 1))
+        found = np.zeros((len(change), 1 + self.borne.shape[1]))
+        found[:, 0] = self.change[:, 0]
+        there = self.known & ~self.linear & np.isfinite(self.change[:, 0])
+        theirs = borne_along(self.stretches.finer, self.theirs[there]).reshape(-1, self.borne.shape[1])
+        found[there, 1:] = (theirs - self.borne[there]) / unit[there]
+        found[np.isnan(found[:, 0])] = np.nan
+        every = np.empty_like(found)
+        Filled(self.place, found, self.known.view(np.uint8)).at(np.arange(len(change)), every)
+        return Compared(
+            np.hstack((self.amplitude, self.borne)),
+            np.hstack((self.shown.growth, _rates(self.borne, self.place))),
+            np.hstack((self.unit, unit)),
+            np.hstack((change, every[:, 1:])),
+        )
+
+    def shifts(self, compared: Compared, followed: list[Followed]) -> FloatArray:
+        """Differences (point, column) at the same frequency, in their unit; NaN where the partner does not
+        come to that."""
+        path, change = self.path, compared.change
+        shift = shifted(
+            self.place, path.z, path.direction, compared.value, compared.growth, compared.unit, change
+        )
         shift[np.isnan(change).any(axis=1)] = np.nan
         for one in followed:
-            self._by_pieces(one, change, shift)
+            self._by_pieces(one, compared, shift)
         return shift
 
-    def _by_pieces(self, one: Followed, change: FloatArray, shift: FloatArray) -> None:
+    def _by_pieces(self, one: Followed, compared: Compared, shift: FloatArray) -> None:
         """Fill those along a stretch, and next to it where the way to the same frequency leads into
         it: by the pieces, else by the partner before and behind them."""
         first, end = one.first, one.end
@@ -176,22 +216,26 @@ class PartnerCurve:
         number = np.full(len(rows), -1, dtype=np.intc)
         if (self.path.mark[first:end] & Mark.FOLD).any():
             number = self._numbers(one, rows)
-        now, even = self.amplitude[rows], self.path.orientation[rows] * sign
-        for way in (map(_of_piece, one.pieces), self._beside(change, one.first, one.end)):
+        now, even = compared.value[rows], self.path.orientation[rows] * sign
+        dofs = self.amplitude.shape[1]  # by which the same motion is known
+        by = np.ascontiguousarray(now[:, :dofs])
+        for way in (map(self._of_piece, one.pieces), self._beside(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
                 found = np.empty(now.shape)
                 other.curve.passings(
-                    other.orientation, other.value, other.slope, omega, even, now, number, found
+                    other.orientation, other.value, other.slope, omega, even, by, number, found
                 )
-                found = (found - now) / self.unit[rows]
-                nearer = ~(np.abs(found).max(axis=1) >= np.abs(new).max(axis=1)) & own
+                found = (found - now) / compared.unit[rows]
+                off, before = (np.abs(x[:, :dofs]).max(axis=1) for x in (found, new))
+                nearer = ~(off >= before) & own
                 nearer &= np.isfinite(found).all(axis=1)
                 new[nearer] = found[nearer]
             shift[rows], number = new, np.minimum(number, -1)
 
-    def _beside(self, change: FloatArray, first: int, end: int) -> Iterator[_Other]:
+    def _beside(self, compared: Compared, first: int, end: int) -> Iterator[_Other]:
         """The partner at the points before a stretch, and behind it, as far as it is known there."""
+        change = compared.change
         missed = np.flatnonzero(np.isnan(change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
         high = min(missed[missed >= end], default=len(change))
@@ -200,10 +244,25 @@ class PartnerCurve:
             if len(place) < 2 or (np.diff(place) <= 0.0).any():
                 continue
             omega = self.path.parameter[rows] * (1.0 + change[rows, 0])
-            value = self.amplitude[rows] + self.unit[rows] * change[rows, 1:]
+            value = compared.value[rows] + compared.unit[rows] * change[rows, 1:]
             curve = OtherCurve(place, omega, np.gradient(omega, place))
             orientation = np.ascontiguousarray(self.path.orientation[rows])
             yield _Other(curve, orientation, value, np.gradient(value, place, axis=0))
+
+    def _of_piece(self, piece: Piece) -> _Other:
+        path = piece.path
+        parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
+        place, borne = _lengths(path), self.borne_of(piece)
+        return _Other(
+            OtherCurve(place, parameter, rate),
+            np.ascontiguousarray(path.orientation),
+            np.hstack((piece.shown.amplitude, borne)),
+            np.hstack((piece.shown.growth, _rates(borne, place))),
+        )
+
+    def borne_of(self, piece: Piece) -> FloatArray:
+        """What the contacts bear along a piece (point, 4 contact)."""
+        return borne_along(self.stretches.finer, piece.path.z).reshape(len(piece.path.z), -1)
 
     def _numbers(self, one: Followed, rows: Indices) -> npt.NDArray[np.intc]:
         """Which passing of the partner (row,) belongs to points of a stretch with folds: the same in
@@ -225,22 +284,12 @@ class PartnerCurve:
 
 @dataclass(frozen=True)
 class _Other:
-    """A piece of the partner, with its amplitudes and their slopes (point, dof)."""
+    """A piece of the partner, with what is compared and its slopes (point, column)."""
 
     curve: OtherCurve
     orientation: FloatArray
     value: FloatArray
     slope: FloatArray
-
-
-def _of_piece(piece: Piece) -> _Other:
-    parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (piece.path.z, piece.path.direction))
-    return _Other(
-        OtherCurve(_lengths(piece.path), parameter, rate),
-        np.ascontiguousarray(piece.path.orientation),
-        np.ascontiguousarray(piece.shown.amplitude),
-        np.ascontiguousarray(piece.shown.growth),
-    )
 
 
 def _passed(parameter: FloatArray, omega: float) -> Indices:
@@ -259,6 +308,15 @@ def _lengths(path: Path) -> FloatArray:
     length = np.zeros(len(path.z))
     places(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
     return length
+
+
+def _rates(values: FloatArray, place: FloatArray) -> FloatArray:
+    """Rates of change (point, column) along a curve, from the point before to that behind."""
+    k = np.arange(len(place))
+    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(place) - 1)
+    step = place[after] - place[before]
+    rates: FloatArray = (values[after] - values[before]) / np.where(step > 0.0, step, 1.0)[:, None]
+    return rates
 
 
 def _with_ends(path: Path, linear: Mask) -> Mask:

@@ -69,10 +69,9 @@ class OtherCurve:
     ) -> None:
         """Values (place, value) of the other curve where it passes given parameters `wanted` (place,).
 
-        Of several passings that with a number, counted along the curve from 0; where that is -1 the
-        one nearest
-        to a reference (place, value) of those that are as even as it: even (place,) and orientation (point,)
-        times the sign of the rate. NaN where there is none.
+        Of several passings that with a number, counted along the curve from 0; where that is -1 the one whose
+        first values are nearest to a reference (place, some of the values), of those that are as even as it:
+        even (place,) and orientation (point,) times the sign of the rate. NaN where there is none.
         """
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
@@ -103,7 +102,8 @@ class OtherCurve:
                     at[j] = cubic(
                         value[k, j], value[k + 1, j], slope[k, j] * length, slope[k + 1, j] * length, self.at
                     )
-                    off = max(off, fabs(at[j] - reference[i, j]))
+                    if j < reference.shape[1]:
+                        off = max(off, fabs(at[j] - reference[i, j]))
                 if off < least:
                     least = off
                     for j in range(value.shape[1]):

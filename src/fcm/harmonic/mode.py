@@ -12,6 +12,7 @@ from fcm.continuation import Path
 from fcm.continuation.newton import Newton
 from fcm.harmonic.autonomous import Autonomous, ComplexArray, Guess
 from fcm.harmonic.past_corners import follow_past_corners
+from fcm.harmonic.record import borne_along
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
@@ -169,17 +170,20 @@ def _squares(system: System, share: FloatArray | bool) -> tuple[FloatArray, Floa
     return squares, shapes
 
 
-def truncation(mode: Mode) -> FloatArray:
-    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many.
+def truncation(mode: Mode) -> tuple[FloatArray, FloatArray]:
+    """Error by the harmonics left out, (point,): the change of frequency or damping by twice as many; and
+    what the contacts bear with these, (point, contact, 4).
 
     Relative, of the damping to the greatest of the mode; NaN where there is no such motion.
     """
     system, old = mode.system, mode.problem
     highest = min(2 * system.harmonics[-1] + 1, MOST_HARMONICS)
-    finer = Autonomous(without_even(system.with_harmonics(tuple(range(1, highest + 1)))), old.guess)
+    larger = without_even(system.with_harmonics(tuple(range(1, highest + 1))))
+    finer = Autonomous(larger, old.guess)
     newton = Newton(finer)
     newton.row[-1] = 1.0
     error = np.full(mode.omega.size, np.nan)
+    contacts = np.zeros((mode.omega.size, finer.contact_unknowns + 1))
     for i, z in enumerate(mode.path.z):
         start = finer.carried(z, old)
         finer.measure(start)
@@ -188,7 +192,10 @@ def truncation(mode: Mode) -> FloatArray:
             omega, damping = np.asarray(newton.z)[-3:-1]
             of_damping = abs(damping - mode.damping[i]) / max(mode.damping.max(), SMALL)
             error[i] = max(abs(omega - mode.omega[i]) / mode.omega[i], of_damping)
-    return error
+            contacts[i] = *(mode.amplitude[i] * np.asarray(newton.z)[: finer.contact_unknowns]), omega
+    borne = borne_along(larger, contacts)
+    borne[np.isnan(error)] = np.nan
+    return error, borne
 
 
 def half_peak_to_peak(X: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,6 +18,7 @@ from fcm.scene.model import Contact, FloatArray
 
 SMALLEST = 1e-150  # amplitudes below this count as this in a division
 NONE = 3  # beside the states of a cycle: no state
+OPEN = 2  # of these, by its place in the letters
 LETTERS = np.array(["E", "P", "S", "", "N"])  # of the states; that of a negative slip is -1
 
 IntArray = npt.NDArray[np.intp]
@@ -105,23 +106,44 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     it bears are the greatest normal and friction force, the way of the slip, and the energy that friction
     takes. loop: theirs, as of `loops`.
     """
-    contacts, harmonics = system.scene.contacts, system.harmonics
-    laws, z = system.exact_laws(harmonics), np.ascontiguousarray(z)
-    words = []
-    most = max((law.state.shape[0] for law in laws), default=0)
-    state = np.empty((z.shape[0], most), dtype=np.intc)
-    borne = np.zeros((len(contacts), z.shape[0], 4))
-    for i, (c, x) in enumerate(zip(contacts, _blocks(system, z), strict=True)):
-        state[:] = NONE
-        cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
-        if harmonics != (1,):
+    words, harmonics = [], system.harmonics
+    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for i, (c, state) in enumerate(_solved(system, z, borne)):
+        if c.mu * c.k_u == 0.0:
+            words.append(_without_friction(state))
+        elif harmonics != (1,):
             words.append(_spelt(state))
-        elif c.mu * c.k_u == 0.0:
-            words.append(_without_friction(c, x))
         else:
             words.append(sequences(*loop[:, i, :3].T))
     each = np.stack(words, axis=1) if words else np.empty((z.shape[0], 0), dtype="<U6")
     return each, borne.swapaxes(0, 1)
+
+
+def borne_along(system: System, z: FloatArray) -> FloatArray:
+    """What the contacts bear, (point, contact, 4), as of `cycles`."""
+    borne = np.zeros((len(system.scene.contacts), z.shape[0], 4))
+    for _ in _solved(system, z, borne):
+        pass
+    return np.ascontiguousarray(borne.swapaxes(0, 1))
+
+
+def _solved(
+    system: System, z: FloatArray, borne: FloatArray
+) -> Iterator[tuple[Contact, npt.NDArray[np.intc]]]:
+    """Each contact and the states of its cycle (point, piece), which the next replaces; borne
+    (contact, point, 4) is filled.
+
+    Without friction nothing is known of a slider, and its way is 0.
+    """
+    laws, z = system.exact_laws(system.harmonics), np.ascontiguousarray(z)
+    most = max((law.state.shape[0] for law in laws), default=0)
+    state = np.empty((z.shape[0], most), dtype=np.intc)
+    for i, c in enumerate(system.scene.contacts):
+        state[:] = NONE
+        cycles_of(laws[i], z, i * system.layout.width, state, borne[i])
+        if c.mu * c.k_u == 0.0:
+            borne[i, :, 2] = 0.0
+        yield c, state
 
 
 def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
@@ -132,10 +154,11 @@ def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
     return words
 
 
-def _without_friction(contact: Contact, x: FloatArray) -> npt.NDArray[np.str_]:
-    """Words (point,) of a contact that has no loop."""
-    load, variation = contact.n_0 + contact.k_v * x[:, 1], contact.k_v * np.hypot(x[:, 4], x[:, 5])
-    return np.where(np.abs(load) < variation, "SE", np.where(load > 0.0, "E", "S"))
+def _without_friction(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:
+    """Words (point,) of states (point, piece) of a contact that has no loop."""
+    opens = (state == OPEN).any(axis=1)
+    closes = ((state != OPEN) & (state != NONE)).any(axis=1)
+    return np.where(opens & closes, "SE", np.where(closes, "E", "S"))
 
 
 def _blocks(system: System, z: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from fcm.continuation.newton import Newton
 from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.system import System
 from fcm.reduction.leave_out import Lighter
+from fcm.results.greatest import greatest_of
 from fcm.results.result import Curve, Response
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.layout import Layout
@@ -45,6 +46,7 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     if curve.points == 0:
         traced = []
         curve.loop, curve.regime, curve.cycle = curve.loop[:, :0], curve.regime[:, :0], curve.cycle[:, :0]
+        curve.cycle_error = curve.cycle_error[:, :0]
     at = np.flatnonzero(np.isfinite(curve.frequency))
     loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
     regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
@@ -53,7 +55,12 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     loop[at] = loops(system, z)
     regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
-    curve.loop, curve.regime, curve.cycle = loop, regime, cycle
+    error, of_greatest = np.full(cycle.shape, np.nan), np.full(cycle.shape[1:], np.nan)
+    error[:, traced] = curve.cycle_error
+    if curve.greatest is not None and traced:
+        of_greatest[traced] = curve.greatest.error
+    curve.loop, curve.regime, curve.cycle, curve.cycle_error = loop, regime, cycle, error
+    curve.greatest = greatest_of(curve, of_greatest)
 
 
 def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:

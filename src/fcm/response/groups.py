@@ -14,6 +14,7 @@ from fcm.harmonic.common_levels import forget
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.results.gist import Gist, without_points
+from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, Untold
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.orbits import Orbits, Stuck
@@ -33,11 +34,12 @@ KINDS = (
     Jump,
     Untold,
     Peak,
+    Greatest,
     NonlinearMode,
     Resonance,
 )  # what results consist of
 _BY_POINT = (
-    *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "stable"),
+    *("amplitude", "fundamental", "phase", "mean", "regime", "loop", "cycle", "cycle_error", "stable"),
     *("table_error", "error", "truncation_error"),
 )
 
@@ -129,6 +131,7 @@ def lost_curve(scene: Scene, reason: str) -> Curve:
         regime=np.empty((0, len(scene.contacts)), dtype="<U6"),
         loop=np.empty((0, len(scene.contacts), 5)),
         cycle=np.empty((0, len(scene.contacts), 4)),
+        cycle_error=np.empty((0, len(scene.contacts), 4)),
         stable=none,
         table_error=none,
         error=np.empty((0, len(dofs))),

@@ -34,6 +34,7 @@ from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import Rows, pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
+from fcm.results.greatest import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
@@ -174,6 +175,7 @@ def _followed(system: System, omega: float, span: tuple[float, float]) -> Curve:
             dof: Peak(float(curve.amplitude[i, d]), omega, float(curve.error[i, d]), at_top[d])
             for d, (dof, i) in enumerate(zip(curve.peaks, tops, strict=True))
         }
+        curve.greatest = greatest_of(curve)
         whole, last = path.status is Status.COMPLETE, path.parameter[inside[-1]]
         curve.harmonics, curve.evaluations = system.harmonics, path.evaluations
         curve.reason = curve.reason if whole else f"stopped at level {last:.6g}: {path.status.value}"
@@ -190,7 +192,9 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     X, mean, amplitude = recorded_at_levels(system, z, level)
     X = 1j * X
     first, even = X[:, system.harmonics.index(1)], evenness(path)[inside]
-    error = errors_at_levels(system, z, level, amplitude, even)
+    loop = loops(system, z)
+    words, borne = cycles(system, z, loop)
+    error, of_borne = errors_at_levels(system, z, level, amplitude, borne, even)
     truncation = (error * amplitude).max(axis=1) / np.where(size := amplitude.max(axis=1), size, 1.0)
     stable = stable_at_levels(system, z, even)
     known = truncation <= BELIEVED  # with more harmonics there may be no solution where it is not
@@ -198,8 +202,6 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     lost = no_steady_states(system, z, level)
     for which in lost.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
-    loop = loops(system, z)
-    words, borne = cycles(system, z, loop)
     of_points = {
         "frequency": np.full(level.size, omega),
         "level": level,
@@ -210,6 +212,7 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
         "regime": words,
         "loop": loop,
         "cycle": borne,
+        "cycle_error": of_borne,
         "stable": stable,
         "table_error": np.zeros(level.size),
         "error": error,

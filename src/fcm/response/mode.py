@@ -9,6 +9,8 @@ from functools import partial
 
 import numpy as np
 
+from fcm.accuracy.borne import relative
+from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
 from fcm.harmonic.cost import with_twice_as_many
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
@@ -23,6 +25,7 @@ from fcm.response.one_by_one import one_by_one
 from fcm.response.trace import pick
 from fcm.response.wanted import ResponseError, Wanted, wanted_of
 from fcm.results.at_rest import without_rounding
+from fcm.results.greatest import greatest_of
 from fcm.results.nonlinear_mode import NonlinearMode, Resonance
 from fcm.results.result import INTERRUPTED, NOT_BEGUN, Curve, Response
 from fcm.run import Checkpoint, Progress, fingerprint
@@ -105,7 +108,7 @@ def _curve(
     begin = time.perf_counter()
     system = System(scene, wanted.harmonics or (1,))
     mode = nonlinear_mode(system, number, span, scene.max_step)
-    error, stopped = truncation(mode), ""
+    (error, theirs), stopped = truncation(mode), ""
     while wanted.harmonics is None and not _worst(error) <= wanted.accuracy:
         enlarged = with_twice_as_many(mode.system, mode.path.evaluations)
         if enlarged is None:
@@ -114,11 +117,11 @@ def _curve(
             more = nonlinear_mode(enlarged, number, span, scene.max_step)
             if more.path.status is not Status.COMPLETE and mode.path.status is Status.COMPLETE:
                 break
-            mode, error = more, truncation(more)
+            mode, (error, theirs) = more, truncation(more)
         except KeyboardInterrupt:
             stopped = f"{INTERRUPTED} before it was known with {len(enlarged.harmonics)} harmonics"
             break
-    curve = _recorded(mode, number, error, levels)
+    curve = _recorded(mode, number, error, theirs, levels)
     if wanted.harmonics is None and curve.complete and not _worst(error) <= wanted.accuracy:
         count = counted(len(mode.system.harmonics), "harmonic")
         curve.short_of = f"with {count} an estimated error of {_worst(error):.1e} remains"
@@ -133,7 +136,9 @@ def _worst(error: FloatArray) -> float:
     return float(known.max()) if known.size else np.inf
 
 
-def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, ...]) -> Curve:
+def _recorded(
+    mode: Mode, number: int, error: FloatArray, theirs: FloatArray, levels: tuple[float, ...]
+) -> Curve:
     system, path = mode.system, mode.path
     scene, first = system.scene, system.harmonics.index(1)
     empty = lost_curve(scene, "no motion was found at the least amplitude; try another")
@@ -150,7 +155,7 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         if which.any():
             ends = mode.amplitude[which]
             reason = f"from modal amplitude {ends.min():.5g} to {ends.max():.5g} {because(system, why)}"
-    return replace(
+    curve = replace(
         empty,
         frequency=mode.omega,
         amplitude=amplitude,
@@ -160,6 +165,7 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         regime=pick(words, rows),
         loop=loop,
         cycle=borne,
+        cycle_error=relative(theirs - borne, borne, borne.max(axis=0), PAIR),
         stable=unknown,
         table_error=unknown,
         error=np.full(amplitude.shape, np.nan),
@@ -172,6 +178,8 @@ def _recorded(mode: Mode, number: int, error: FloatArray, levels: tuple[float, .
         harmonic=X if len(system.harmonics) > 1 else None,
         mode=_along(mode, number, levels),
     )
+    curve.greatest = greatest_of(curve)
+    return curve
 
 
 def _along(mode: Mode, number: int, levels: tuple[float, ...]) -> NonlinearMode:

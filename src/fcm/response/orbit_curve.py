@@ -20,6 +20,7 @@ from fcm.response.orbit_branches import OrbitBranches
 from fcm.response.search import Search
 from fcm.response.stuck_beside import stuck_beside
 from fcm.response.visit import Visitor
+from fcm.results.greatest import greatest_of
 from fcm.results.jumps import Swept
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak, stability_at_top
@@ -116,7 +117,8 @@ def _curve(
     stable = error + [p is not None and p.stable for p in points]
     at_top = stability_at_top(amplitude, stable).tolist()
     zero = np.where(np.isnan(frequency), np.nan, 0.0)  # neither a table nor a truncation
-    return replace(
+    cycle = _borne(points, empty)
+    curve = replace(
         empty,
         frequency=frequency,
         amplitude=amplitude,
@@ -125,7 +127,8 @@ def _curve(
         mean=_rows(points, "mean", empty),
         regime=regime,
         loop=np.full((len(points), *empty.loop.shape[1:]), np.nan),  # the exact cycle has none
-        cycle=_borne(points, empty),
+        cycle=cycle,
+        cycle_error=np.zeros_like(cycle) + error[:, None, None],
         stable=stable,
         table_error=zero,
         error=np.repeat(error[:, None], amplitude.shape[1], axis=1),
@@ -135,6 +138,8 @@ def _curve(
         peaks={d: _peak(amplitude[:, i], frequency, error, at_top[i]) for i, d in enumerate(empty.peaks)},
         orbits=_orbits(points, empty, others, stuck),
     )
+    curve.greatest = greatest_of(curve)
+    return curve
 
 
 def _orbits(

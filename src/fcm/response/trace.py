@@ -32,6 +32,7 @@ from fcm.response.restless import with_missed
 from fcm.response.short_of import short_of
 from fcm.response.so_far import SoFar, Tell
 from fcm.response.wanted import ONE_HARMONIC, Wanted
+from fcm.results.greatest import greatest_of
 from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
@@ -175,7 +176,7 @@ def _curve(followed: _Followed) -> Curve:
     stable[far & (stable == 1.0)] = np.nan
     peak = np.full_like(found.peak, np.nan) if followed.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
-    return Curve(
+    curve = Curve(
         parameters=dict(scene.parameters),
         frequency=pick(points.z[:, -1], rows),
         amplitude=pick(points.amplitude, rows),
@@ -185,6 +186,7 @@ def _curve(followed: _Followed) -> Curve:
         regime=pick(words, rows),
         loop=pick(loop, rows),
         cycle=pick(borne, rows),
+        cycle_error=pick(np.concatenate([one.borne for one in found.errors]), rows),
         stable=pick(stable, rows),
         table_error=pick(points.shift, rows),
         error=pick(error, rows),
@@ -205,6 +207,19 @@ def _curve(followed: _Followed) -> Curve:
         folds_between=(FOLDS.lowest, FOLDS.highest) if scene.contacts else None,
         mirrored=len(found.traced.mirrored),
     )
+    of_borne = _of_greatest(found, points.path, borne)
+    curve.greatest = greatest_of(curve, np.full_like(of_borne, np.nan) if followed.exceeded else of_borne)
+    return curve
+
+
+def _of_greatest(found: Accurate, path: Rows, borne: FloatArray) -> FloatArray:
+    """Errors (contact, 4) of the greatest forces, slip and energy of all paths, which are borne
+    (point, contact, 4); unknown where that of one nearly as great is."""
+    heights = np.array([borne[path == k].max(axis=0) for k in range(len(found.errors))])
+    errors = np.array([one.greatest for one in found.errors])
+    unknown = (np.isnan(errors) & (heights > PAIR.rival * heights.max(axis=0))).any(axis=0)
+    own = np.take_along_axis(errors, heights.argmax(axis=0)[None], axis=0)[0]
+    return np.where(unknown, np.nan, own)
 
 
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
@@ -249,6 +264,7 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
                 error,
                 amplitude=_between(error.amplitude, after),
                 truncation=_between(error.truncation, after),
+                borne=_between(error.borne, after),
             )
         )
         stable.append(np.insert(judged.stable, after + 1, [one.stable for one in inserted]))

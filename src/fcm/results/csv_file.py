@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fcm.files import replacing
-from fcm.results.meanings import ORBIT_KINDS
+from fcm.results.meanings import CYCLE, ORBIT_KINDS
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
 from fcm.rotation import unit_of
@@ -44,6 +44,11 @@ def _columns(response: Response) -> list[str]:
         units = {kind: f" [{own}]" if own and kind not in ("phase", "error") else "" for kind in kinds}
         columns += [f"{kind} {dof}{units[kind]}" for kind in kinds]
     columns += [f"regime {name}" for name in response.contacts]
+    work = " ".join(reversed(response.units)) if all(response.units) else ""
+    of_contact = (response.units[1], response.units[1], response.units[0], work)
+    for name in response.contacts:
+        for (kind, _), own in zip(CYCLE, of_contact, strict=True):
+            columns += [f"{kind} {name}{f' [{own}]' if own else ''}", f"{kind}_error {name}"]
     return [*columns, *LAST_COLUMNS, *(ORBIT_COLUMNS if exact else ())]
 
 
@@ -54,12 +59,13 @@ def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
     parts = (c.amplitude, c.phase, c.mean, c.fundamental, c.error, *own)
     stacked = np.stack(parts, axis=2)
     values = stacked.reshape(c.frequency.size, stacked.shape[1] * stacked.shape[2])  # of no points, too
+    borne = np.stack((c.cycle, c.cycle_error), axis=-1).reshape(c.frequency.size, 8 * c.cycle.shape[1])
     for k in np.flatnonzero(np.isfinite(c.frequency)):
         row = [c.branch[k], *c.parameters.values(), repr(float(frequency[k]))]
         row += [] if c.level is None else [repr(float(c.level[k]))]
         row += [] if c.mode is None else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
         row += map(repr, values[k].tolist())
-        row += [*c.regime[k].tolist(), f"{c.stable[k]:g}"]
+        row += [*c.regime[k].tolist(), *map(repr, borne[k].tolist()), f"{c.stable[k]:g}"]
         row += [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
         yield row + ([] if orbits is None else _of_orbit(orbits, int(k)))
 

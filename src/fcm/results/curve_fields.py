@@ -8,6 +8,8 @@ import numpy as np
 
 from fcm.results.field import Field
 from fcm.results.gist import Gist, gist_of
+from fcm.results.greatest import Greatest
+from fcm.results.meanings import CYCLE
 from fcm.results.padded import by_fold
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import PERCENTS, SWEEPS, Scatter
@@ -96,6 +98,7 @@ def curve_fields(response: Response) -> dict[str, Field]:
             folds,
             {"long_name": "frequencies of the folds in order along the curve", "units": cf_unit},
         ),
+        **_greatest_of_contacts(response),
         **_level_folds(curves),
         "complete": Field(
             ("curve",),
@@ -103,6 +106,26 @@ def curve_fields(response: Response) -> dict[str, Field]:
             {"long_name": "1 where the curve reached the end of its range", "units": "1"},
         ),
     }
+
+
+def _greatest_of_contacts(response: Response) -> dict[str, Field]:
+    """What each contact bears at most along each curve, where, and how wrong that is."""
+    dims, out, unit = ("curve", "contact"), dict[str, Field](), response.frequency_unit
+    found = [one.greatest or Greatest.none(len(response.contacts)) for one in response.curves]
+    value, omega, error, stable = (
+        np.array([getattr(one, name) for one in found]).reshape(len(found), len(response.contacts), 4)
+        for name in ("value", "frequency", "error", "stable")
+    )
+    for i, (name, _) in enumerate(CYCLE):
+        of, at = f"greatest {name} of the curve", {"units": CF_UNIT[unit]}
+        out[f"peak_{name}"] = Field(dims, value[..., i], {"long_name": of})
+        where = {"long_name": f"frequency of the {of}"} | at
+        out[f"peak_{name}_frequency"] = Field(dims, in_unit(omega[..., i], unit), where)
+        wrong = {"long_name": f"estimated error of the {of}, relative", "units": "1"}
+        out[f"peak_{name}_error"] = Field(dims, error[..., i], wrong)
+        dies = {"long_name": f"stable of the {of}", "units": "1"}
+        out[f"peak_{name}_stable"] = Field(dims, stable[..., i], dies)
+    return out
 
 
 def scatter_fields(found: Sequence[Scatter], unit: str) -> dict[str, Field]:

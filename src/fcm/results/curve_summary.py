@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from fcm.harmonic.unstable import not_looked_at
 from fcm.results.gist import Gist, gist_of, worst
+from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Untold
+from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
 from fcm.units import in_unit
@@ -18,7 +21,7 @@ if TYPE_CHECKING:
     from fcm.results.result import Curve
 
 
-def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
+def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict[str, Any]:
     """The curve as `fcm respond --json` prints it, frequencies in unit; what it does not have is left out."""
     gist = curve.gist or gist_of(curve)
     swept, dofs = gist.swept, tuple(curve.peaks)
@@ -45,6 +48,8 @@ def curve_summary(curve: Curve, unit: str) -> dict[str, Any]:
     if curve.loose:
         out["may_not_be_unique"] = curve.loose
     out["peak"] = {dof: _peak(curve, peak, gist, unit) for dof, peak in curve.peaks.items()}
+    if curve.greatest is not None and contacts:
+        out["contacts"] = _contacts(curve.greatest, contacts, unit)
     out["folds"] = in_unit(curve.folds, unit).tolist()
     if curve.sensitivity is not None:
         out["sensitivity"] = _sensitivity(curve, curve.sensitivity, unit)
@@ -89,6 +94,23 @@ def _peak(curve: Curve, peak: Peak, gist: Gist, unit: str) -> dict[str, Any]:
         "error": peak.error,
         "stable": None if np.isnan(peak.stable) else bool(peak.stable),
         "at_edge": bool(at_edge),
+    }
+
+
+def _contacts(found: Greatest, contacts: Sequence[str], unit: str) -> dict[str, Any]:
+    """The greatest forces, slip and energy of each contact."""
+    at = in_unit(found.frequency, unit)
+    return {
+        contact: {
+            name: {
+                "greatest": float(found.value[i, k]),
+                "frequency": float(at[i, k]),
+                "error": float(found.error[i, k]),
+                "stable": None if np.isnan(found.stable[i, k]) else bool(found.stable[i, k]),
+            }
+            for k, (name, _) in enumerate(CYCLE)
+        }
+        for i, contact in enumerate(contacts)
     }
 
 

@@ -12,7 +12,17 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
-from fcm.results.meanings import CYCLE, ENERGIES, EXACT, FORCES, LENGTHS, LOOP, ORBIT_KINDS, ORBITS
+from fcm.results.meanings import (
+    CYCLE,
+    CYCLE_ERROR,
+    ENERGIES,
+    EXACT,
+    FORCES,
+    LENGTHS,
+    LOOP,
+    ORBIT_KINDS,
+    ORBITS,
+)
 from fcm.results.padded import Padded, by_point
 from fcm.results.result import Curve, Response
 from fcm.results.scatter import scatter
@@ -159,6 +169,10 @@ def _add_contacts(found: _Points) -> None:
         found.add(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)
     for i, (name, meaning) in enumerate(CYCLE):
         found.add(name, partial(_of_cycle, column=i), ("contact",), long_name=meaning)
+        error = CYCLE_ERROR.format(name)
+        found.add(
+            f"{name}_error", partial(_of_cycle_error, column=i), ("contact",), long_name=error, units="1"
+        )
 
 
 def _add_trust(found: _Points) -> None:
@@ -220,6 +234,10 @@ def _of_orbits(curve: Curve, name: str) -> npt.NDArray[Any]:
 
 def _of_loop(curve: Curve, column: int) -> FloatArray:
     return curve.loop[..., column]
+
+
+def _of_cycle_error(curve: Curve, column: int) -> FloatArray:
+    return curve.cycle_error[..., column]
 
 
 def _of_cycle(curve: Curve, column: int) -> FloatArray:

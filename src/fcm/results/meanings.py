@@ -20,6 +20,7 @@ CYCLE = (  # of Curve.cycle
     ("slip_path", "way of the slider in slip, in a cycle"),
     ("dissipated_energy", "energy that friction takes in a cycle"),
 )
+CYCLE_ERROR = "estimated error of {}, relative; inf where it is 0 and with more harmonics is not"
 
 EXACT = {  # meanings that differ where the curves are of exact periodic solutions
     "regime": "states of the contact over the exact cycle: E stick, P, N positive and negative slip, "
@@ -69,7 +70,11 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path", "peak_percentile", "tracked_amplitude", "optimum_peak",
+    "harmonic_amplitude", "slip_path", "peak_slip_path", "peak_percentile", "tracked_amplitude",
+    "optimum_peak",
 )  # fmt: skip
-FORCES = ("spring_force", "greatest_normal_force", "greatest_friction_force")
-ENERGIES = ("dissipated_energy",)
+FORCES = (
+    "spring_force", "greatest_normal_force", "greatest_friction_force", "peak_greatest_normal_force",
+    "peak_greatest_friction_force",
+)  # fmt: skip
+ENERGIES = ("dissipated_energy", "peak_dissipated_energy")

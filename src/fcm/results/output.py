@@ -29,7 +29,7 @@ LAYOUT = "fcm response 1"  # changes when a reader of older files would misread
 def summary(response: Response) -> dict[str, Any]:
     """What ``fcm respond --json`` prints; a number that does not exist is None."""
     data = {
-        "curves": [curve.summary(response.frequency_unit) for curve in response.curves],
+        "curves": [curve.summary(response.frequency_unit, response.contacts) for curve in response.curves],
         "method": response.method,
         "frequency_unit": response.frequency_unit,
         "left_out": response.left_out,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_summary import curve_summary
 from fcm.results.gist import Gist
+from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, swept
 from fcm.results.peak import Peak
 from fcm.scene.model import Scene
@@ -44,6 +46,7 @@ class Curve:
     regime: npt.NDArray[np.str_]  # (point, contact) sequence of the loop
     loop: FloatArray  # (point, contact, 5) n0_bar, b_bar, phi, tangential amplitude a, force k_u a
     cycle: FloatArray  # (point, contact, 4) greatest normal and friction force, slip, energy in a cycle
+    cycle_error: FloatArray  # (point, contact, 4) of these, estimated, each relative to itself
     stable: FloatArray  # (point,) 1 where small disturbances die out, 0 where not, NaN where it is not known
     table_error: FloatArray  # (point,) shift of the response from table to closed form, relative
     error: FloatArray  # (point, dof) of amplitude, estimated, relative
@@ -64,6 +67,7 @@ class Curve:
     evaluations: int = 0  # of the equations, to follow it
     level: FloatArray | None = None  # (point,) of the forces, where that is what is followed
     level_folds: list[float] = field(default_factory=list)  # levels at which that curve turns back
+    greatest: Greatest | None = None  # forces, slip and energy of the contacts along the curve
     harmonics: tuple[int, ...] = ()  # of the balance
     harmonic: npt.NDArray[np.complex128] | None = None  # (point, harmonic, dof) of Im(X exp(i h omega t))
     orbits: Orbits | None = None  # of the exact motion
@@ -102,9 +106,9 @@ class Curve:
         """Jumps of a slow upward and a slow downward sweep of the frequency."""
         return self.swept().jumps
 
-    def summary(self, unit: str = "rad/s") -> dict[str, Any]:
-        """The curve as `fcm respond --json` prints it, frequencies in unit."""
-        return curve_summary(self, unit)
+    def summary(self, unit: str = "rad/s", contacts: Sequence[str] = ()) -> dict[str, Any]:
+        """The curve as `fcm respond --json` prints it, frequencies in unit; contacts are their names."""
+        return curve_summary(self, unit, contacts)
 
 
 _EMPTY: dict[tuple[Any, ...], npt.NDArray[Any]] = {}  # by shape and kind

@@ -1,0 +1,85 @@
+"""How wrong it is what the contacts bear along a curve of a balance: told by its embedded pair."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.accuracy.options import PairOptions
+from fcm.accuracy.partner_curve import Compared, Followed, PartnerCurve
+from fcm.scene.model import FloatArray
+
+
+def of_borne(
+    partner: PartnerCurve,
+    compared: Compared,
+    shift: FloatArray,
+    followed: Sequence[Followed],
+    folds: npt.NDArray[np.intp],
+) -> tuple[FloatArray, FloatArray]:
+    """Errors of forces, slip and energy, relative: (point, contact, 4) and of the greatest (contact, 4).
+
+    shift (point, column): differences at the same frequency, in the units of what is compared. At the
+    greatest, where the curve is not at its end, the difference is that of the greatest of both. NaN where the
+    partner has none, or, at folds, two.
+    """
+    columns = slice(partner.amplitude.shape[1], None)
+    own, unit = compared.value[:, columns], compared.unit[:, columns]
+    error = np.abs(shift[:, columns])
+    # differences may cancel at a frequency, but not what the partner itself is off by
+    moved = partner.options.own * _moved(partner, compared, columns)
+    error = np.where(partner.linear[:, None], 0.0, np.maximum(error, np.where(np.isnan(moved), 0.0, moved)))
+    error[folds] = np.nan
+    top, last, c = own.argmax(axis=0), len(own) - 1, np.arange(own.shape[1])
+    inside = (top > 0) & (top < last)
+    theirs = _greatest(partner, compared, columns, followed)
+    error[top[inside], c[inside]] = (np.abs(theirs - own[top, c]) / unit[top, c])[inside]
+    error = relative(error * unit, own, unit, partner.options)
+    shape = (len(own), -1, 4)
+    return error.reshape(shape), error[top, c].reshape(shape[1:])
+
+
+def relative(change: FloatArray, own: FloatArray, most: FloatArray, options: PairOptions) -> FloatArray:
+    """Changes of what contacts bear relative to that, of which most is the greatest along the curve.
+
+    Of nothing a change is infinite, unless it is nothing, too.
+    """
+    off = np.abs(change)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(off <= options.rounding * most, 0.0, off / own)
+
+
+def _moved(partner: PartnerCurve, compared: Compared, columns: slice) -> FloatArray:
+    """How far the partner is away (point, column): by the frequency and by what is compared, in its unit.
+
+    That of the frequency counts by how steep the curve is, up to a limit.
+    """
+    own, unit, change = compared.value[:, columns], compared.unit[:, columns], compared.change
+    omega, most = partner.path.parameter, partner.options.steep
+    k = np.arange(len(omega))
+    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(omega) - 1)
+    rise, run = np.abs(own[after] - own[before]), np.abs(omega[after] / omega[before] - 1.0)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        steep = np.where(rise < most * own * run, rise / run, most * own)
+    moved: FloatArray = steep / unit * np.abs(change[:, :1]) + np.abs(change[:, 1:][:, columns])
+    return moved
+
+
+def _greatest(
+    partner: PartnerCurve, compared: Compared, columns: slice, followed: Sequence[Followed]
+) -> FloatArray:
+    """The greatest of the partner (column,); NaN where it may be on a stretch that it was not followed
+    along."""
+    own, unit = compared.value[:, columns], compared.unit[:, columns]
+    expected = own + unit * compared.change[:, 1:][:, columns]
+    greatest: FloatArray = np.fmax.reduce(expected, axis=0, initial=-np.inf)
+    for one in followed:
+        for piece in one.pieces:
+            greatest = np.fmax(greatest, partner.borne_of(piece).max(axis=0))
+    for one in followed:
+        if not any(piece.whole for piece in one.pieces):
+            rival = own[one.first : one.end].max(axis=0) > partner.options.rival * own.max(axis=0)
+            greatest[rival] = np.nan
+    return greatest

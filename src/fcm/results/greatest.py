@@ -1,0 +1,50 @@
+"""The greatest forces, slip and energy of each contact along a curve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fcm.contact.limits import FloatArray
+
+if TYPE_CHECKING:
+    from fcm.results.result import Curve
+
+
+@dataclass(frozen=True)
+class Greatest:
+    """All (contact, 4): of the greatest normal and friction force of a cycle, slip and energy in it.
+
+    value; frequency [rad/s]; error, estimated, relative, NaN where it is not known; stable, 1 where small
+    disturbances die out there, 0 where not, NaN where that is not known.
+    """
+
+    value: FloatArray
+    frequency: FloatArray
+    error: FloatArray
+    stable: FloatArray
+
+    @staticmethod
+    def none(contacts: int) -> Greatest:
+        """Of a curve without points."""
+        return Greatest(*np.full((4, contacts, 4), np.nan))
+
+
+def greatest_of(curve: Curve, error: FloatArray | None = None) -> Greatest:
+    """Of a curve that has all its points; error (contact, 4) is that of the points where it is not given."""
+    contacts = curve.cycle.shape[1]
+    if not np.isfinite(curve.frequency).any():
+        return Greatest.none(contacts)
+    cycle = np.where(np.isnan(curve.cycle), -np.inf, curve.cycle)
+    top = cycle.argmax(axis=0)
+    here = np.ogrid[:contacts, :4]
+    value = curve.cycle[top, here[0], here[1]]
+    there = np.isfinite(value)  # of a contact that was not traced nothing is known
+    return Greatest(
+        value=value,
+        frequency=np.where(there, curve.frequency[top], np.nan),
+        error=curve.cycle_error[top, here[0], here[1]] if error is None else error,
+        stable=np.where(there, curve.stable[top], np.nan),
+    )
