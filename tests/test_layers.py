@@ -19,6 +19,7 @@ NUMERICS = (
     "structure",
     "continuation",
     "harmonic",
+    "stability",
     "branches",
     "accuracy",
     "track",

@@ -10,12 +10,12 @@ from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.refinement import estimated
 from fcm.accuracy.trust import astray
 from fcm.continuation import Mark
-from fcm.harmonic.floquet import multipliers
 from fcm.harmonic.system import System
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
 from fcm.response.exact import trace_exact
 from fcm.scene import load_scene, scene_from_dict
+from fcm.stability.floquet import multipliers
 
 from ..harmonic.scenes import up_to
 from ..harmonic.truth import Truth, exact, scene

@@ -5,13 +5,13 @@ import pytest
 
 from fcm.accuracy.refinement import estimated
 from fcm.accuracy.stability_limits import Lost, lost_along, moved
-from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
 from fcm.orbit import periodic
 from fcm.response.exact import trace_exact
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import scene_from_dict
+from fcm.stability.bifurcations import stability
 
 MANY = tuple(range(1, 21))
 NEGLIGIBLE = 2e-6  # an error: below, a crossing may by chance be nearer than is known of it

@@ -12,11 +12,11 @@ import time
 
 import numpy as np
 
-from fcm.harmonic.stability import stability
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import scene_from_dict
 from fcm.scene.model import Scene
+from fcm.stability.bifurcations import stability
 
 PARTS = "levels and curve", "stability"
 

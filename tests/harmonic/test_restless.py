@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from fcm.harmonic.start import solutions
-from fcm.harmonic.unstable import unstable_stretches
 from fcm.motion import State, simulate
 from fcm.response import restless, trace
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import load_scene, scene_from_dict
+from fcm.stability.unstable_ranges import unstable_stretches
 
 MARCHED = (1.6231, 7.0014, 6.7749, 3.7635)
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.harmonic.floquet import multipliers, multipliers_of
 from fcm.harmonic.record import amplitudes_at, cycles, loops
-from fcm.harmonic.stability import stability
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import scene_from_dict
+from fcm.stability.bifurcations import stability
+from fcm.stability.floquet import multipliers, multipliers_of
 
 from . import rings
 

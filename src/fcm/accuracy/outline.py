@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fcm.branches.beside import beside
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
-from fcm.harmonic.beside import beside
 from fcm.harmonic.cost import PATIENCE, seconds_of
 from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.start import Found

@@ -17,13 +17,13 @@ from fcm.accuracy.foreseen import Foreseen, needed
 from fcm.accuracy.partner import lifted_of, partner_of
 from fcm.continuation import Between, Path
 from fcm.continuation.secants import Secants
-from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.further import HIGHEST, Further
-from fcm.harmonic.inserted import Crossing
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
-from fcm.harmonic.verdicts import EITHER
+from fcm.stability.along_branch import EITHER
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.inserted import Crossing
 
 FAR = 32.0  # points to either side up to which the crossing of more harmonics is sought, from these on:
 FIRST = 0.5

@@ -21,7 +21,6 @@ from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
 from fcm.harmonic.level import Level
 from fcm.harmonic.periodic import Periodic
-from fcm.harmonic.propagator import Propagator
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
@@ -53,7 +52,7 @@ class System:
     linear: Linear = field(init=False)
     coarse: CoefficientLaw = field(init=False)  # the table's
     on_ports: dict[float, ComplexArray] = field(init=False, default_factory=dict)  # see `linear_contacts`
-    propagators: dict[int, Propagator] = field(init=False, default_factory=dict)  # by the number of modes
+    kept: dict[object, object] = field(init=False, default_factory=dict)  # known of its contacts' states
     work: Work = field(init=False, default_factory=Work, compare=False)
 
     def __post_init__(self) -> None:

@@ -51,7 +51,7 @@ def _leads_to(newton: Newton, guess: FloatArray, z: FloatArray, scale: FloatArra
 
 def is_stable(found: Outline, z: FloatArray) -> bool:
     """Whether small disturbances of a solution (unknown + 1,) of a balance die out."""
-    from fcm.harmonic.floquet import multipliers_of
+    from fcm.stability.floquet import multipliers_of
 
     of = multipliers_of(found.system, found.system.scene.frequency_range[1])
     return bool(of.verdict(z, enough=(1.0,)).stable == 1.0)
@@ -60,7 +60,7 @@ def is_stable(found: Outline, z: FloatArray) -> bool:
 def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
-    from fcm.harmonic.beside import around, tops
+    from fcm.branches.beside import around, tops
 
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
         beside = [(top, around(even, top)) for top, even in tops(path, shown.amplitude)]

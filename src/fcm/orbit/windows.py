@@ -1,8 +1,8 @@
 """Windows of stability, or of its loss, between two points of an exact curve that agree.
 
 What tells of them are functions of the multipliers that vary smoothly where those do not; see
-`fcm.harmonic.windows`. Where the states of the contacts change on the way, multipliers may jump, and nothing
-tells of it: there the middle is looked at.
+`fcm.stability.bifurcation_functions`. Where the states of the contacts change on the way, multipliers may
+jump, and nothing tells of it: there the middle is looked at.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Between, Path
-from fcm.harmonic.spectrum import Kind, Verdict
-from fcm.harmonic.windows import LEAST, MANY, Seen, dip, foretold, products, seen
 from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray
+from fcm.stability.bifurcation_functions import LEAST, MANY, Seen, dip, foretold, products, seen
+from fcm.stability.verdict import Kind, Verdict
 
 ComplexArray = npt.NDArray[np.complex128]
 

@@ -40,8 +40,8 @@ def unknown(scene: Scene, wanted: Wanted) -> list[str]:
     orders = {one.ring.engine_order: one for one in scene.each_curve() if one.ring is not None}
     if not orders:
         return []
-    from fcm.harmonic.ring_multipliers import stability_unknown
     from fcm.harmonic.system import System
+    from fcm.stability.ring_multipliers import stability_unknown
 
     for curve in orders.values():
         assert curve.ring is not None

@@ -17,9 +17,9 @@ from fcm.accuracy.refinement import Accurate
 from fcm.harmonic.carried import led_to
 from fcm.harmonic.reported import reported_at
 from fcm.harmonic.system import System
-from fcm.harmonic.unstable import Stretch, stretches_of
 from fcm.response.restless import looks, with_branches
 from fcm.scene.model import FloatArray
+from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 MANY = 9  # harmonics, with which a peak is within a thousandth or so: the branches of more are theirs, too
 SHARE = 0.5  # of the work before, that looking for higher peaks may take

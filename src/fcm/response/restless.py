@@ -21,15 +21,15 @@ from fcm.accuracy.outline import Outline
 from fcm.accuracy.refinement import Accurate, judged
 from fcm.continuation import Mark, Path
 from fcm.harmonic.carried import place_on
-from fcm.harmonic.floquet import multipliers_of
-from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.reported import reported
 from fcm.harmonic.start import NEAR, Found, resonances, solutions
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, with_further
-from fcm.harmonic.unstable import Stretch, stretches_of
 from fcm.harmonic.work import TooLongError
 from fcm.scene.model import FloatArray
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.multipliers import Multipliers
+from fcm.stability.unstable_ranges import Stretch, stretches_of
 
 SHARE = 0.2  # of the work before, that following the level in the middle of stretches may take,
 UNNOTICED = 0.1  # and seconds of work that it may in any case: of small scenes all stretches are looked at

@@ -20,7 +20,6 @@ from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.rest import RestError
 from fcm.harmonic.rigid import too_stiff
-from fcm.harmonic.stability import Inserted, stability, with_points
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.all_branches import with_all_branches
@@ -37,6 +36,7 @@ from fcm.results.peak import Peak, stability_at_top
 from fcm.results.result import Curve
 from fcm.run import Interrupted
 from fcm.scene.model import FloatArray, Scene
+from fcm.stability.bifurcations import Inserted, stability, with_points
 
 METHODS = ("table", "closed-form")
 ROUNDS = 2  # of more harmonics, for the frequencies at which stability is lost: what is left is said

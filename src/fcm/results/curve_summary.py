@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fcm.harmonic.unstable import not_looked_at
 from fcm.results.gist import Gist, gist_of, worst
 from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Untold
 from fcm.results.meanings import CYCLE
 from fcm.results.orbits import Orbits, Stuck
 from fcm.results.peak import Peak
+from fcm.stability.unstable_ranges import not_looked_at
 from fcm.units import in_unit
 
 if TYPE_CHECKING:

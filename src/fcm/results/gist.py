@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
-from fcm.harmonic.unstable import Stretch, unstable_stretches
 from fcm.results.jumps import Swept
+from fcm.stability.unstable_ranges import Stretch, unstable_stretches
 
 if TYPE_CHECKING:
     from fcm.results.result import Curve

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation.newton import Newton
-from fcm.harmonic.floquet import multipliers_of
-from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.multipliers import Multipliers
 from fcm.track.curve import Track, with_spots
 from fcm.track.spot import Spot, Way
 from fcm.track.tracked import Kind, Tracked

@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
-from fcm.harmonic.windows import Seen, dip, foretold, products
+from fcm.stability.bifurcation_functions import Seen, dip, foretold, products
 
 
 def test_products_of_multipliers_are_determinants():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.harmonic.eigenvalues import eigenvalues
+from fcm.stability.eigenvalues import eigenvalues
 
 
 def found(matrix: np.ndarray) -> np.ndarray:

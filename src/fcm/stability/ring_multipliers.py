@@ -14,17 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.finer import Finer, beyond
-from fcm.harmonic.many_monodromy import ManyMonodromy
-from fcm.harmonic.monodromy import Monodromy
-from fcm.harmonic.multipliers import Multipliers, far_above
-from fcm.harmonic.ring_monodromy import RingMonodromy
-from fcm.harmonic.spectrum import Verdict
-from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
-from fcm.harmonic.transitions import Transitions
 from fcm.scene.model import FloatArray
 from fcm.scene.ring import Ring
+from fcm.stability.balanced_sequence import BalancedSequence
+from fcm.stability.finer import Finer, beyond
+from fcm.stability.multipliers import Followed, Multipliers, far_above
+from fcm.stability.ring_monodromy import RingMonodromy
+from fcm.stability.stiffness import Stiffness
+from fcm.stability.verdict import Verdict
 from fcm.structure.ring import RingLinear
 
 MOST_NAMED = 8  # diameters in a sentence
@@ -88,8 +86,8 @@ class RingMultipliers(Multipliers):
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
         self.fine, self.plain = (
-            RingMonodromy(stiffness, Transitions(contact, numbers), 2.0 * np.pi / n, near.renumber, source)
-            for numbers in (finer, harmonics)
+            Followed(states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source))
+            for states in (BalancedSequence(contact, numbers) for numbers in (finer, harmonics))
         )
         self.ring = ring
         self.shifts = {
@@ -97,21 +95,21 @@ class RingMultipliers(Multipliers):
             for numbers in (finer, harmonics)
         }
 
-    def _values(self, monodromy: Monodromy | ManyMonodromy, omega: float) -> list[complex] | None:
+    def _values(self, followed: Followed, omega: float) -> list[complex] | None:
         """As `Multipliers._values`; None where modes are missing, or there are too many."""
-        return None if self.unknown else Multipliers._values(self, monodromy, omega)
+        return None if self.unknown else Multipliers._values(self, followed, omega)
 
-    def see(self, transitions: Transitions, x: FloatArray) -> bool:
+    def see(self, states: BalancedSequence, x: FloatArray) -> bool:
         """As `Multipliers.see`, with the unknowns of one sector."""
-        count = (transitions.width - 2) // 4
-        blocks = np.asarray(x)[: self.contacts * transitions.width].reshape(self.contacts, transitions.width)
+        count = (states.width - 2) // 4
+        blocks = np.asarray(x)[: self.contacts * states.width].reshape(self.contacts, states.width)
         shift = self.shifts[count]
         pairs = np.ascontiguousarray(blocks[:, 2:]).view(np.complex128).reshape(self.contacts, count, 2)
         shifted = pairs[None] * shift[:, None, :, None]  # (sector, contact, harmonic, direction)
-        whole = np.empty((len(shift), self.contacts, transitions.width))
+        whole = np.empty((len(shift), self.contacts, states.width))
         whole[..., :2] = blocks[:, :2]
         whole[..., 2:] = shifted.reshape(len(shift), self.contacts, 2 * count).view(np.float64)
-        return bool(transitions.look(whole.ravel()))
+        return bool(states.look(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""

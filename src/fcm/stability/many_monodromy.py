@@ -28,11 +28,11 @@ from cython.cimports.libc.math import ceil, fabs, sqrt
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
     from cython.cimports.fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
-    from cython.cimports.fcm.harmonic.transitions import Transitions
+    from cython.cimports.fcm.stability.state_sequence import StateSequence
 else:
     from fcm.contact.periodic.cycle import TWO_PI
     from fcm.contact.periodic.slider import NEGATIVE, POSITIVE, SEPARATION, STICK
-    from fcm.harmonic.transitions import Transitions
+    from fcm.stability.state_sequence import StateSequence
 
 REACH = cython.declare(cython.double, 3.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first
@@ -40,7 +40,7 @@ SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the se
 
 @cython.cclass
 class ManyMonodromy:
-    """`follow` transitions: `matrix` is then the derivative of (q, q', w) after a period by that before.
+    """`follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
     Velocities are by the angle; of the places w those that are remembered when the period begins.
 
@@ -61,12 +61,12 @@ class ManyMonodromy:
         damping: npt.NDArray[np.float64],
         far: npt.NDArray[np.bool_],
         contact: npt.NDArray[np.float64],
-        transitions: Transitions,
+        sequence: StateSequence,
     ) -> None:
         self.slow, self.fast = shapes[~far], shapes[far]
         modes, follow, contacts = len(self.slow), len(self.fast), contact.shape[0]
         self.modes, self.follows, self.contacts = modes, follow, contacts
-        self.contact, self.transitions = np.ascontiguousarray(contact), transitions
+        self.contact, self.sequence = np.ascontiguousarray(contact), sequence
         # by ports, so that what an event needs stands together
         self.by_slow, self.by_fast = np.ascontiguousarray(self.slow.T), np.ascontiguousarray(self.fast.T)
         self.natural, self.ratio, self.far = natural[~far], damping[~far], natural[far]
@@ -90,7 +90,7 @@ class ManyMonodromy:
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
         """Take a period at a frequency [rad/s]."""
-        s: Transitions = self.transitions
+        s: StateSequence = self.sequence
         i: cython.int
         k: cython.int
         e: cython.int
@@ -121,7 +121,7 @@ class ManyMonodromy:
 
     def begin(self) -> None:
         """The disturbances, the states and the matrices when the period begins."""
-        s = self.transitions
+        s = self.sequence
         order, whose = np.asarray(s.order)[: s.events], np.asarray(s.whose)[: s.events]
         into = np.asarray(s.into)[: s.events]
         moving = np.unique(whose)
@@ -183,8 +183,8 @@ class ManyMonodromy:
     @cython.exceptval(-1, check=False)
     def happen(self, e: cython.int) -> cython.int:
         """An event: what the slider remembers of the disturbance, and the new state."""
-        c: cython.int = self.transitions.whose[e]
-        to: cython.int = self.transitions.into[e]
+        c: cython.int = self.sequence.whose[e]
+        to: cython.int = self.sequence.into[e]
         was: cython.int = self.state[c]
         unit: cython.double = 1.0 / (self.omega * self.omega)
         k_u: cython.double = self.contact[c, 1]
@@ -194,7 +194,7 @@ class ManyMonodromy:
         if was == STICK:
             self.push(c, -k_u * unit)
         if to == STICK:
-            weight: cython.double = self.transitions.along[e] * self.contact[c, 0] * self.contact[c, 2] / k_u
+            weight: cython.double = self.sequence.along[e] * self.contact[c, 0] * self.contact[c, 2] / k_u
             k: cython.Py_ssize_t
             for k in range(self.columns):
                 self.w[c, k] = self.port[0, k] + weight * self.port[1, k]

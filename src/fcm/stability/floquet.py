@@ -7,9 +7,9 @@ import threading
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+from fcm.stability.multipliers import Multipliers
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -31,7 +31,7 @@ def multipliers_of(system: System, highest: float) -> Multipliers:
     """The workspace for a system, be it a structure or a sector of a ring; the last one if it is small, and
     the contacts alone are others, as in a sweep."""
     if system.scene.ring is not None:
-        from fcm.harmonic.ring_multipliers import RingMultipliers
+        from fcm.stability.ring_multipliers import RingMultipliers
 
         return RingMultipliers(system, highest)
     linear = system.linear

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.spectrum import Verdict
 from fcm.scene.model import FloatArray
+from fcm.stability.verdict import Verdict
 
 DOUBT = 0.1  # of the differences between three values, by which what they foretell may be too high,
 CLOSER = 0.5  # and this part of it where the way was divided: differences fall by squares, errors by cubes

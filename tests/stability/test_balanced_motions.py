@@ -10,18 +10,18 @@ import pytest
 from scipy.linalg import expm
 
 from fcm.continuation import Mark, Status, follow
-from fcm.harmonic import multipliers as module
-from fcm.harmonic.floquet import multipliers
-from fcm.harmonic.multipliers import Multipliers
-from fcm.harmonic.spectrum import Kind, Spectrum, Verdict, even
-from fcm.harmonic.stability import stability, with_points
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import dip, seen
 from fcm.motion import State, simulate
 from fcm.orbit import periodic
 from fcm.response import trace
 from fcm.scene import Contact, Force, Modal, Scene, scene_from_dict
+from fcm.stability import multipliers as module
+from fcm.stability.bifurcation_functions import dip, seen
+from fcm.stability.bifurcations import stability, with_points
+from fcm.stability.floquet import multipliers
+from fcm.stability.multipliers import Multipliers
+from fcm.stability.verdict import Kind, Spectrum, Verdict, even
 
 from ..motion.cases import SCENES, one_mode, yang
 

@@ -14,12 +14,12 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.floquet import multipliers_of
 from fcm.harmonic.lifted import Lifted
-from fcm.harmonic.multipliers import Multipliers
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import MOST_HARMONICS
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.multipliers import Multipliers
 
 ENOUGH = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 TIMES = 3  # as many harmonics, on the way to more that are not found beside at once, and where these tell

@@ -13,9 +13,9 @@ from fcm.harmonic.trace import traced
 from fcm.motion import State, simulate
 from fcm.scene import load_scene
 
+from ..harmonic.scenes import up_to
+from ..harmonic.truth import exact
 from ..response.random_scenes import random_scene
-from .scenes import up_to
-from .truth import exact
 
 
 def amplitudes_at(found, omega):
@@ -49,7 +49,7 @@ def test_an_isolated_branch_is_not_lost_with_more_harmonics_where_its_peak_is_un
     (0.4170, 0.1473) from 6 of 14 random states. Five harmonics have this branch at the end
     of the range; it is closed.
     """
-    scene = load_scene(Path(__file__).parent / "scenes/loose_isola.toml").each_curve()[0]
+    scene = load_scene(Path(__file__).parents[1] / "harmonic/scenes/loose_isola.toml").each_curve()[0]
     found = given(System(replace(scene, frequency_range=(0.977, 1.5)), up_to(highest)))
     there = amplitudes_at(found, 1.05324)
     assert min(np.abs(one[[0, 3]] / (0.4170, 0.1473) - 1.0).max() for one in there) < 2e-2
@@ -61,7 +61,7 @@ def test_a_branch_that_hangs_together_with_the_others_with_one_harmonic_alone_is
     (6.022, 29.47, 1.393, 4.921) from 2 of 5 random states. Three harmonics or more have it on a closed
     branch.
     """
-    scene = load_scene(Path(__file__).parent / "scenes/high_isola.toml").each_curve()[0]
+    scene = load_scene(Path(__file__).parents[1] / "harmonic/scenes/high_isola.toml").each_curve()[0]
     found = given(System(scene, up_to(highest)))
     there = amplitudes_at(found, 1.7)
     assert min(np.abs(one[:4] / (6.022, 29.47, 1.393, 4.921) - 1.0).max() for one in there) < 2e-2
@@ -71,7 +71,7 @@ def test_a_high_branch_is_found_beside_what_some_of_the_harmonics_make_of_few():
     """Beside its peak with one harmonic there is no solution with eight, but there is one with three, and
     beside that one with eight. A march settles there; by what the contact that never slips remembers its
     amplitude differs by 4 %."""
-    scene = load_scene(Path(__file__).parent / "scenes/stepwise_isola.toml")
+    scene = load_scene(Path(__file__).parents[1] / "harmonic/scenes/stepwise_isola.toml")
     begin = State(np.array([-1.0, 5.0]), np.zeros(2), np.zeros(3))
     settled = simulate(scene, 1.73, 800, begin).measures(last=1)[0].amplitude
     assert settled.min() > 6.0

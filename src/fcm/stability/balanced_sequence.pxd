@@ -1,20 +1,14 @@
 from fcm.contact.periodic.cycle cimport Cycle
 from fcm.contact.periodic.motion cimport Motion
+from fcm.stability.state_sequence cimport StateSequence
 
-cdef int FREE
-
-cdef class Transitions:
+cdef class BalancedSequence(StateSequence):
     cdef readonly Motion motion
     cdef readonly Cycle cycle
-    cdef readonly int contacts, width, events, moving, held
+    cdef readonly int width, moving, held
     cdef public bint yielding
     cdef readonly double[:, ::1] contact
-    cdef readonly double[::1] angle, along
-    cdef readonly int[::1] whose, into, order, state, remembers
     cpdef bint look(self, double[::1] x) except -1
     cdef bint contact_cycle(self, double[::1] x, int c) noexcept
     cdef bint opens(self) noexcept
     cdef double limit_at(self, int p) noexcept
-    cdef void occurs(self, double angle, int c, int into, double along) noexcept
-    cdef void sort(self) noexcept
-    cdef void begin(self) noexcept

@@ -14,12 +14,12 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import ceil
 
-from fcm.harmonic.propagator import Propagator
+from fcm.stability.propagator import Propagator
 
 if cython.compiled:
-    from cython.cimports.fcm.harmonic.stiffness import Stiffness
+    from cython.cimports.fcm.stability.stiffness import Stiffness
 else:
-    from fcm.harmonic.stiffness import Stiffness
+    from fcm.stability.stiffness import Stiffness
 
 REACH = cython.declare(cython.double, 6.0)  # of a step, in radians of the fastest motion
 SMALL = cython.declare(cython.double, 1e-13)  # bound of the last term of the series, relative to the first

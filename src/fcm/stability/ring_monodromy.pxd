@@ -1,4 +1,4 @@
-from fcm.harmonic.monodromy cimport Monodromy
+from fcm.stability.monodromy cimport Monodromy
 
 cdef class RingMonodromy(Monodromy):
     cdef double part, start

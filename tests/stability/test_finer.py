@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.multipliers import Multipliers
-from fcm.harmonic.spectrum import meeting
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.orbit import periodic
 from fcm.scene import scene_from_dict
+from fcm.stability.multipliers import Multipliers
+from fcm.stability.verdict import meeting
 
 
 def halves(contacts):

@@ -1,4 +1,4 @@
-from fcm.harmonic.stiffness cimport Stiffness
+from fcm.stability.stiffness cimport Stiffness
 
 cdef class Disturbances:
     cdef readonly Stiffness stiffness

@@ -1,4 +1,4 @@
-"""The states of all contacts over one period of a motion: which changes, into what, in their order."""
+"""The sequence of states of a balanced motion, from the located events of its contacts."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from cython.cimports.libc.math import fabs
 from fcm.contact.periodic.workspace import periodic_contact
 
 if cython.compiled:
-    from cython.cimports.fcm.contact.periodic.cycle import STUCK, TWO_PI
+    from cython.cimports.fcm.contact.periodic.cycle import STUCK
     from cython.cimports.fcm.contact.periodic.motion import OPEN, UNKNOWN
     from cython.cimports.fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
+    from cython.cimports.fcm.stability.state_sequence import FREE, StateSequence
 else:
-    from fcm.contact.periodic.cycle import STUCK, TWO_PI
+    from fcm.contact.periodic.cycle import STUCK
     from fcm.contact.periodic.motion import OPEN, UNKNOWN
     from fcm.contact.periodic.slider import POSITIVE, SEPARATION, STICK
-
-FREE = cython.declare(cython.int, 3)  # closed without friction, a state beside those of a cycle
+    from fcm.stability.state_sequence import FREE, StateSequence
 
 
 @cython.cclass
-class Transitions:
-    """`look` at a motion finds its events, changes of a state; number `order[i]` is the i-th of them.
+class BalancedSequence(StateSequence):
+    """`look` at a motion finds its events.
 
     Parameters
     ----------
@@ -34,12 +34,6 @@ class Transitions:
 
     Attributes
     ----------
-    angle, whose, into : (event,)
-        When, which contact, and into which state: those of a `Cycle`, or FREE.
-    along : (event,)
-        Where a slider comes to rest, its place varies as k_u u + along mu k_v v.
-    state, remembers : (contact,)
-        Before the first event, and whether the slider's place is one of the disturbances then.
     moving, held : int
         Contacts that slip with friction, or open and close; and those that never do, but for an extreme of a
         limit that holds the slider.
@@ -48,16 +42,13 @@ class Transitions:
     """
 
     def __init__(self, contact: npt.NDArray[np.float64], harmonics: list[int]) -> None:
-        contacts = contact.shape[0]
-        self.contacts, self.width = contacts, 2 + 4 * len(harmonics)
+        self.width = 2 + 4 * len(harmonics)
         self.contact = np.ascontiguousarray(contact)
         kernel = periodic_contact(tuple(harmonics), tuple(harmonics))
         self.motion, self.cycle = kernel.motion, kernel.cycle
-        most = contacts * (self.cycle.event.shape[0] + 1)
-        self.angle, self.along = np.zeros(most), np.zeros(most)
-        self.whose, self.into, self.order = (np.zeros(most, dtype=np.intc) for _ in range(3))
-        self.state, self.remembers = np.zeros(contacts, dtype=np.intc), np.zeros(contacts, dtype=np.intc)
-        self.events = self.moving = self.held = 0
+        contacts = contact.shape[0]
+        StateSequence.__init__(self, contacts, contacts * (self.cycle.event.shape[0] + 1))
+        self.moving = self.held = 0
         self.yielding = True
 
     @cython.ccall
@@ -131,41 +122,3 @@ class Transitions:
         if fabs(self.cycle.motion_rate[e]) < load:
             return -self.cycle.motion_rate[e] / load
         return -1.0 if self.cycle.motion_rate[e] > 0.0 else 1.0
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def occurs(
-        self, angle: cython.double, c: cython.int, into: cython.int, along: cython.double
-    ) -> cython.void:
-        """One more event."""
-        i: cython.int = self.events
-        while angle < 0.0:
-            angle += TWO_PI
-        while angle >= TWO_PI:
-            angle -= TWO_PI
-        self.angle[i], self.whose[i], self.into[i], self.along[i] = angle, c, into, along
-        self.events += 1
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def sort(self) -> cython.void:
-        """`order`: the events by their angles; those of one contact at one angle as they were."""
-        i: cython.int
-        j: cython.int
-        for i in range(self.events):
-            j = i
-            while j > 0 and self.angle[self.order[j - 1]] > self.angle[i]:
-                self.order[j] = self.order[j - 1]
-                j -= 1
-            self.order[j] = i
-
-    @cython.cfunc
-    @cython.exceptval(check=False)
-    def begin(self) -> cython.void:
-        """The states before the first event: those after the last of each contact."""
-        i: cython.int
-        c: cython.int
-        for i in range(self.events):
-            c = self.whose[self.order[i]]
-            self.state[c] = self.into[self.order[i]]
-            self.remembers[c] = self.state[c] == STICK

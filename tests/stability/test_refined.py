@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.harmonic.finer import beyond
-from fcm.harmonic.multipliers import Multipliers
-from fcm.harmonic.refined import Refined
 from fcm.harmonic.trace import traced
 from fcm.orbit import periodic
 from fcm.scene import Contact, Force, Modal, Scene, load_scene
+from fcm.stability.finer import beyond
+from fcm.stability.multipliers import Multipliers
+from fcm.stability.refined import Refined
 
-from .test_stability import _state, only, system
+from .test_balanced_motions import _state, only, system
 
 
 def impacts(frequency, damping, shapes, contact, pushed):

@@ -15,21 +15,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.eigenvalues import eigenvalues
-from fcm.harmonic.finer import PORTS, Finer, beyond
-from fcm.harmonic.many_monodromy import ManyMonodromy
-from fcm.harmonic.monodromy import Monodromy
-from fcm.harmonic.propagator import Propagator
-from fcm.harmonic.refined import Refined
-from fcm.harmonic.spectrum import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
-from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
-from fcm.harmonic.transitions import Transitions
 from fcm.scene.model import FloatArray
+from fcm.stability.balanced_sequence import BalancedSequence
+from fcm.stability.eigenvalues import eigenvalues
+from fcm.stability.finer import PORTS, Finer, beyond
+from fcm.stability.many_monodromy import ManyMonodromy
+from fcm.stability.monodromy import Monodromy
+from fcm.stability.propagator import Propagator
+from fcm.stability.refined import Refined
+from fcm.stability.stiffness import Stiffness
+from fcm.stability.verdict import PASSIVE, UNKNOWN, Spectrum, Verdict, doubtful, either, even, meeting
 
 FEW = 24  # modes; with more, those far above the excitation follow without delay
 MANY_CONTACTS = 12  # from which on a change of one's state is followed as that
@@ -47,6 +48,13 @@ STABLE_BY = 1e-3  # and by how much it decays there
 NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which nothing holds
 
 
+class Followed(NamedTuple):
+    """A balanced motion by its states, and what follows its disturbances through them."""
+
+    states: BalancedSequence
+    monodromy: Monodromy | ManyMonodromy
+
+
 class Multipliers:
     """The multipliers of solutions of a system up to a frequency [rad/s]; a workspace."""
 
@@ -55,9 +63,8 @@ class Multipliers:
         linear = system.linear
         self.system, self.highest, self.last = system, highest, last
         self.contacts = len(system.scene.contacts)
-        self.contact = contact = np.zeros((self.contacts, 4))  # what all look at
-        self.fine: Monodromy | ManyMonodromy
-        self.plain: Monodromy | ManyMonodromy
+        law = [[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts]
+        self.contact = contact = np.array(law, dtype=np.float64).reshape(self.contacts, 4)  # all look at it
         harmonics = [int(h) for h in system.harmonics]
         finer = beyond(harmonics)
         far = far_above(linear.natural, highest, harmonics)
@@ -65,28 +72,35 @@ class Multipliers:
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
         self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
-        followed = Transitions(contact, finer), Transitions(contact, harmonics)
-        self.fine, self.plain = _many(system, far, contact, followed) or _few(system, far, contact, followed)
+        self.far, self.states = far, (BalancedSequence(contact, finer), BalancedSequence(contact, harmonics))
+        self.fine, self.plain = self._followed()
         self.further: tuple[Refined, Multipliers] | None = None
-        self.take(system)
 
     def take(self, system: System) -> None:
         """A system with the same structure and harmonics, whose contacts may be others."""
         same = system.scene.frequency_range == self.system.scene.frequency_range and not system.scene.loads
         self.system, self.further = system, self.further if same else None
+        before = self.contact[:, :3].copy()
         for row, c in zip(self.contact, system.scene.contacts, strict=True):
             row[:] = c.mu, c.k_u, c.k_v, c.n_0
         for law, c in zip(self.finer.laws, system.scene.contacts, strict=True):
             law.put(c.mu, c.k_u, c.k_v, c.n_0)
+        if not np.array_equal(self.contact[:, :3], before):  # what is known of the states is of others
+            self.fine, self.plain = self._followed()
+
+    def _followed(self) -> list[Followed]:
+        """The finer motion and that of the balanced harmonics."""
+        make = _many if len(self.contact) >= MANY_CONTACTS else _few
+        return make(self.system, self.far, self.contact, self.states)
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
-        return self._values(self.fine, z[-1]) if self.see(self.fine.transitions, self.finer.x) else None
+        return self._values(self.fine, z[-1]) if self.see(self.fine.states, self.finer.x) else None
 
-    def see(self, transitions: Transitions, x: FloatArray) -> bool:
-        """Let transitions look at the motion x; false where a number is not finite."""
-        return bool(transitions.look(x))
+    def see(self, states: BalancedSequence, x: FloatArray) -> bool:
+        """Let states look at the motion x; false where a number is not finite."""
+        return bool(states.look(x))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """The multipliers of a period from the eigenvalues of what the monodromy follows."""
@@ -98,7 +112,7 @@ class Multipliers:
         Where the finer motion says what is `enough`, stable (1) or unstable (0), it is not confirmed by that
         of the balanced harmonics.
         """
-        fine, plain, omega = self.fine.transitions, self.plain.transitions, float(z[-1])
+        fine, plain, omega = self.fine.states, self.plain.states, float(z[-1])
         self.finer.at(z)
         if self.finer.shift < ROUNDING:
             if not self.see(plain, z):
@@ -125,7 +139,7 @@ class Multipliers:
             return alone
         if self.finer.shift == 0.0:  # both motions are the same, as where no contact slips but one just would
             return even(fine, fine, turning)
-        values = self._values(self.plain, float(z[-1])) if self.see(self.plain.transitions, z) else None
+        values = self._values(self.plain, float(z[-1])) if self.see(self.plain.states, z) else None
         if values is None:
             return UNKNOWN
         plain = Spectrum(values)
@@ -188,10 +202,10 @@ class Multipliers:
         there = refined.beside(z, self.finer.x, persistent)
         return None if there is None else judge.verdict(there)
 
-    def _values(self, monodromy: Monodromy | ManyMonodromy, omega: float) -> list[complex] | None:
+    def _values(self, followed: Followed, omega: float) -> list[complex] | None:
         """Of the motion that was looked at."""
-        monodromy.follow(omega)
-        found = eigenvalues(monodromy.matrix())
+        followed.monodromy.follow(omega)
+        found = eigenvalues(followed.monodromy.matrix())
         if found is None:
             return None
         values = self.of_period(found)
@@ -203,36 +217,33 @@ class Multipliers:
 
     def _resting(self, omega: float) -> Verdict:
         """With the sliders that an extreme of a limit holds left where they are."""
-        transitions = self.fine.transitions
-        transitions.yielding = False
-        self.see(transitions, self.finer.x)
-        values = self._values(self.fine, omega) if transitions.moving else []
-        transitions.yielding = True
+        states = self.fine.states
+        states.yielding = False
+        self.see(states, self.finer.x)
+        values = self._values(self.fine, omega) if states.moving else []
+        states.yielding = True
         return UNKNOWN if values is None else Spectrum(values).verdict()
 
 
 def _few(
-    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, followed: tuple[Transitions, Transitions]
-) -> tuple[Monodromy, Monodromy]:
-    """Of transitions, those that are followed with each state of the contacts put together anew."""
+    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, states: Sequence[BalancedSequence]
+) -> list[Followed]:
+    """Each state of the contacts put together anew."""
     linear = system.linear
     soft = (linear.ports[far].T * linear.natural[far] ** -2.0) @ linear.ports[far] if far.any() else None
     stiffness = Stiffness(linear.ports[~far], linear.natural[~far], linear.damping[~far], soft, contact)
-    carried = system.propagators.setdefault(stiffness.modes, Propagator())
-    fine, plain = (Monodromy(stiffness, one, carried) for one in followed)
-    return fine, plain
+    carried = system.kept.setdefault((Propagator, stiffness.modes), Propagator())
+    assert isinstance(carried, Propagator)
+    return [Followed(one, Monodromy(stiffness, one, carried)) for one in states]
 
 
 def _many(
-    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, followed: tuple[Transitions, Transitions]
-) -> tuple[ManyMonodromy, ManyMonodromy] | None:
-    """Those of many contacts, without far modes that hardly yield beside them; None of few contacts."""
-    if len(contact) < MANY_CONTACTS:
-        return None
+    system: System, far: npt.NDArray[np.bool_], contact: FloatArray, states: Sequence[BalancedSequence]
+) -> list[Followed]:
+    """Each change of one contact's state as that, without far modes that hardly yield beside the contacts."""
     linear, kept = system.linear, ~far | (system.yields > STIFF)
     shown = linear.ports[kept], linear.natural[kept], linear.damping[kept], far[kept]
-    fine, plain = (ManyMonodromy(*shown, contact, one) for one in followed)
-    return fine, plain
+    return [Followed(one, ManyMonodromy(*shown, contact, one)) for one in states]
 
 
 def far_above(natural: FloatArray, highest: float, harmonics: list[int]) -> npt.NDArray[np.bool_]:

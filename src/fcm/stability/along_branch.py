@@ -14,13 +14,13 @@ import numpy as np
 
 from fcm.continuation import Between, Mark, Path
 from fcm.harmonic.balance import Balance
-from fcm.harmonic.floquet import multipliers_of
-from fcm.harmonic.inserted import Inserted
-from fcm.harmonic.multipliers import far_above
-from fcm.harmonic.spectrum import SMALL, Verdict, apart
 from fcm.harmonic.system import System
-from fcm.harmonic.windows import MANY, Seen, seen
 from fcm.scene.model import FloatArray
+from fcm.stability.bifurcation_functions import MANY, Seen, seen
+from fcm.stability.floquet import multipliers_of
+from fcm.stability.inserted import Inserted
+from fcm.stability.multipliers import far_above
+from fcm.stability.verdict import SMALL, Verdict, apart
 
 EITHER = (0.0, 1.0)  # what the finer motion says is enough, stable or not
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.continuation import Mark, Path
-from fcm.harmonic.spectrum import Kind
 from fcm.scene.model import FloatArray
+from fcm.stability.verdict import Kind
 
 
 @dataclass(frozen=True)

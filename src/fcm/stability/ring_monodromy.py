@@ -11,20 +11,20 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.propagator import Propagator
+from fcm.stability.propagator import Propagator
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
     from cython.cimports.fcm.contact.periodic.slider import STICK
-    from cython.cimports.fcm.harmonic.monodromy import Monodromy
-    from cython.cimports.fcm.harmonic.stiffness import Stiffness
-    from cython.cimports.fcm.harmonic.transitions import Transitions
+    from cython.cimports.fcm.stability.monodromy import Monodromy
+    from cython.cimports.fcm.stability.state_sequence import StateSequence
+    from cython.cimports.fcm.stability.stiffness import Stiffness
 else:
     from fcm.contact.periodic.cycle import TWO_PI
     from fcm.contact.periodic.slider import STICK
-    from fcm.harmonic.monodromy import Monodromy
-    from fcm.harmonic.stiffness import Stiffness
-    from fcm.harmonic.transitions import Transitions
+    from fcm.stability.monodromy import Monodromy
+    from fcm.stability.state_sequence import StateSequence
+    from fcm.stability.stiffness import Stiffness
 
 
 class BySeries(Propagator):
@@ -46,12 +46,12 @@ class RingMonodromy(Monodromy):
     def __init__(
         self,
         stiffness: Stiffness,
-        transitions: Transitions,
+        sequence: StateSequence,
         part: cython.double,
         renumber: npt.NDArray[np.float64],
         source: npt.NDArray[np.intp],
     ) -> None:
-        Monodromy.__init__(self, stiffness, transitions, BySeries())
+        Monodromy.__init__(self, stiffness, sequence, BySeries())
         self.part, self.renumber, self.source = part, renumber, source
         self.memory = np.zeros(self.contacts, dtype=np.intc)
         self.first, self.start = 0, 0.0
@@ -60,7 +60,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
         """Fill the matrix for a frequency."""
-        s: Transitions = self.transitions
+        s: StateSequence = self.sequence
         i: cython.int
         e: cython.int
         self.stiffness.at(omega)
@@ -85,7 +85,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(check=False)
     def widest(self) -> cython.void:
         """Begin in the middle of the widest gap between events, so that none is at the ends."""
-        s: Transitions = self.transitions
+        s: StateSequence = self.sequence
         i: cython.int
         widest: cython.double = -1.0
         self.first, self.start = 0, 0.0
@@ -101,7 +101,7 @@ class RingMonodromy(Monodromy):
     @cython.exceptval(-1, check=False)
     def begin(self) -> cython.int:
         """The disturbances to be followed, and the states at the start."""
-        s: Transitions = self.transitions
+        s: StateSequence = self.sequence
         i: cython.int
         c: cython.int
         self.memories = 0

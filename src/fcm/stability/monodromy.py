@@ -20,41 +20,41 @@ import cython
 import numpy as np
 import numpy.typing as npt
 
-from fcm.harmonic.propagator import Propagator
+from fcm.stability.propagator import Propagator
 
 if cython.compiled:
     from cython.cimports.fcm.contact.periodic.cycle import TWO_PI
     from cython.cimports.fcm.contact.periodic.slider import STICK
-    from cython.cimports.fcm.harmonic.disturbance import Disturbances
-    from cython.cimports.fcm.harmonic.stiffness import Stiffness
-    from cython.cimports.fcm.harmonic.transitions import Transitions
+    from cython.cimports.fcm.stability.disturbance import Disturbances
+    from cython.cimports.fcm.stability.state_sequence import StateSequence
+    from cython.cimports.fcm.stability.stiffness import Stiffness
 else:
     from fcm.contact.periodic.cycle import TWO_PI
     from fcm.contact.periodic.slider import STICK
-    from fcm.harmonic.disturbance import Disturbances
-    from fcm.harmonic.stiffness import Stiffness
-    from fcm.harmonic.transitions import Transitions
+    from fcm.stability.disturbance import Disturbances
+    from fcm.stability.state_sequence import StateSequence
+    from fcm.stability.stiffness import Stiffness
 
 
 @cython.cclass
 class Monodromy(Disturbances):
-    """`follow` transitions: `matrix` is then the derivative of (q, q', w) after a period by that before.
+    """`follow` a sequence: `matrix` is then the derivative of (q, q', w) after a period by that before.
 
-    Velocities are by the angle. Followed is the motion that they looked at last.
+    Velocities are by the angle. Followed is the motion that the sequence is of.
     """
 
     def __init__(
-        self, stiffness: Stiffness, transitions: Transitions, propagator: Propagator | None = None
+        self, stiffness: Stiffness, sequence: StateSequence, propagator: Propagator | None = None
     ) -> None:
         Disturbances.__init__(self, stiffness, propagator or Propagator())
-        self.transitions = transitions
+        self.sequence = sequence
         self.port = np.zeros((2, self.size))
 
     @cython.ccall
     @cython.exceptval(-1, check=False)
     def follow(self, omega: cython.double) -> cython.int:
         """Fill the matrix for a frequency."""
-        s: Transitions = self.transitions
+        s: StateSequence = self.sequence
         i: cython.int
         e: cython.int
         length: cython.double
@@ -87,7 +87,7 @@ class Monodromy(Disturbances):
             for i in range(columns):
                 out[j, i] = self.X[j, i]
         for c in range(self.contacts):
-            if self.transitions.remembers[c]:
+            if self.sequence.remembers[c]:
                 for i in range(columns):
                     out[row, i] = self.X[2 * self.modes + c, i]
                 row += 1
@@ -105,8 +105,8 @@ class Monodromy(Disturbances):
             for j in range(self.X.shape[1]):
                 self.X[i, j] = 1.0 if i == j and i < 2 * self.modes else 0.0
         for c in range(self.contacts):
-            self.state[c] = self.transitions.state[c]
-            if self.transitions.remembers[c]:
+            self.state[c] = self.sequence.state[c]
+            if self.sequence.remembers[c]:
                 self.X[2 * self.modes + c, 2 * self.modes + self.memories] = 1.0
                 self.memories += 1
         return self.assemble()
@@ -115,20 +115,20 @@ class Monodromy(Disturbances):
     @cython.exceptval(-1, check=False)
     def happen(self, e: cython.int) -> cython.int:
         """An event: what the slider remembers of the disturbance, and the new state."""
-        c: cython.int = self.transitions.whose[e]
+        c: cython.int = self.sequence.whose[e]
         k: cython.Py_ssize_t
         row: cython.Py_ssize_t = 2 * self.modes + c
         mu: cython.double = self.stiffness.contact[c, 0]
         k_u: cython.double = self.stiffness.contact[c, 1]
         k_v: cython.double = self.stiffness.contact[c, 2]
-        if self.transitions.into[e] == STICK:
+        if self.sequence.into[e] == STICK:
             self.stiffness.displacement(2 * c, self.X, self.port[0])
             self.stiffness.displacement(2 * c + 1, self.X, self.port[1])
-            weight: cython.double = self.transitions.along[e] * mu * k_v / k_u
+            weight: cython.double = self.sequence.along[e] * mu * k_v / k_u
             for k in range(self.size):
                 self.X[row, k] = self.port[0, k] + weight * self.port[1, k]
         else:
             for k in range(self.size):
                 self.X[row, k] = 0.0
-        self.state[c] = self.transitions.into[e]
+        self.state[c] = self.sequence.into[e]
         return 0

@@ -1,7 +1,7 @@
-from fcm.harmonic.transitions cimport Transitions
+from fcm.stability.state_sequence cimport StateSequence
 
 cdef class ManyMonodromy:
-    cdef public Transitions transitions
+    cdef public StateSequence sequence
     cdef readonly int modes, follows, contacts, columns, first
     cdef double rate, omega
     cdef object slow, fast, natural, ratio, far

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from fcm.harmonic.many_monodromy import ManyMonodromy
-from fcm.harmonic.monodromy import Monodromy
 from fcm.harmonic.start import solutions
-from fcm.harmonic.stiffness import Stiffness
 from fcm.harmonic.system import System
-from fcm.harmonic.transitions import Transitions
+from fcm.stability.balanced_sequence import BalancedSequence
+from fcm.stability.many_monodromy import ManyMonodromy
+from fcm.stability.monodromy import Monodromy
+from fcm.stability.stiffness import Stiffness
 
-from .strips import strip
+from ..harmonic.strips import strip
 
 
 def multipliers(matrix):
@@ -27,14 +27,14 @@ def test_multipliers_are_those_of_states_put_together_anew(omega, n_0, yielding,
     linear, (z, *_) = system.linear, solutions(system, omega).solutions
     far = np.arange(linear.natural.size) >= linear.natural.size - follow
     contact = np.array([[c.mu, c.k_u, c.k_v, c.n_0] for c in system.scene.contacts])
-    transitions = Transitions(contact, [1, 2, 3])
-    transitions.yielding = yielding
-    assert transitions.look(z) and transitions.events > 12
+    states = BalancedSequence(contact, [1, 2, 3])
+    states.yielding = yielding
+    assert states.look(z) and states.events > 12
     near = linear.ports[~far], linear.natural[~far], linear.damping[~far]
     soft = (linear.ports[far].T / linear.natural[far] ** 2) @ linear.ports[far]
-    anew = Monodromy(Stiffness(*near, soft if follow else None, contact), transitions)
+    anew = Monodromy(Stiffness(*near, soft if follow else None, contact), states)
     anew.follow(omega)
-    many = ManyMonodromy(linear.ports, linear.natural, linear.damping, far, contact, transitions)
+    many = ManyMonodromy(linear.ports, linear.natural, linear.damping, far, contact, states)
     many.follow(omega)
     assert many.matrix().shape <= anew.matrix().shape
     found, expected = multipliers(many.matrix()), multipliers(anew.matrix())

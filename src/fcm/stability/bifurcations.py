@@ -18,13 +18,13 @@ import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.secants import Secants
-from fcm.harmonic.inserted import Crossing, Inserted, with_points
 from fcm.harmonic.runs import runs
-from fcm.harmonic.spectrum import FLIP_NEAR, Kind, Verdict
 from fcm.harmonic.system import System
-from fcm.harmonic.verdicts import Verdicts
-from fcm.harmonic.windows import MANY, dip
 from fcm.scene.model import FloatArray
+from fcm.stability.along_branch import Verdicts
+from fcm.stability.bifurcation_functions import MANY, dip
+from fcm.stability.inserted import Crossing, Inserted, with_points
+from fcm.stability.verdict import FLIP_NEAR, Kind, Verdict
 
 IntArray = npt.NDArray[np.intp]
 
