@@ -26,6 +26,7 @@ from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Between, Path
 from fcm.continuation.branches import contains
 from fcm.continuation.newton import Newton
+from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
@@ -52,17 +53,19 @@ def branch_points(
     options: BranchingOptions = BRANCHING,
 ) -> Iterator[BranchPoint]:
     """Those of paths of some harmonics, in a system of all harmonics up to the highest."""
-    balance, newton = system.balance(), None
+    balance: Balance | None = None
+    newton: Newton | None = None
     for path in paths:
         whole = path
         if tuple(harmonics) != system.harmonics:
-            newton = newton or Newton(balance)
+            newton = newton or Newton(system.balance())
             solved = _solved(system, newton, path, tuple(harmonics), options)
             if solved is None:
                 continue
             whole = solved
         change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
         for i in np.flatnonzero(change).tolist():
+            balance = balance or system.balance()
             z = _located(Between(balance, whole, i), whole.orientation[i], options)
             starts = tuple(_leaving(system, z, whole, i, options))
             if starts:

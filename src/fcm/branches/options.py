@@ -6,6 +6,21 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
+class SurfaceOptions:
+    """How places on the surface of all solutions are found; lengths are in the scaled unknowns."""
+
+    least: float = 0.1  # levels are measured by themselves, and below this by this
+    iterations: int = 8  # of Newton's method, before a place is judged too far away
+    close: float = 1e-4  # a step that ends them: about its square is left
+    flat: float = 1e-7  # a step along which the matrix does not change,
+    share: float = 1e-3  # or this share of the way from the centre
+    far: float = 1e6  # a step that leads nowhere
+
+
+SURFACE = SurfaceOptions()
+
+
+@dataclass(frozen=True)
 class FoldOptions:
     """How folds of the level of the forces are followed in (frequency, level).
 
@@ -24,6 +39,8 @@ class FoldOptions:
     fine: float = 0.02  # [rad] to which the direction of the chord is found
     upright: float = 100.0  # times the axes: tangents longer than this are of another part of the surface
     wider: tuple[float, ...] = (1.0, 5.0, 25.0)  # times the first step: circles about a start beside a fold
+    round: float = 0.01  # square of the axes of the ellipse in (frequency, level) that a circle about a fold
+    # of a smooth surface is: where it is rounder, the fold is in a corner
     circle: int = 16  # places on a circle, where folds are looked for at first and where none is ahead
     most: int = 400  # steps of a curve
     retreats: int = 4  # of a curve by a step after which no fold was found, to take a shorter one

@@ -12,6 +12,12 @@ cdef class Surface:
     cdef public double value
     cdef public int evaluations
     cdef Solver solver
+    cdef int iterations
+    cdef double least
+    cdef double close
+    cdef double flat
+    cdef double share
+    cdef double far
     cdef double[::1] at
     cdef double[::1] right
     cpdef bint put(self, double ahead, double aside) except -1

@@ -21,15 +21,10 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, isfinite, sqrt
 
+from fcm.branches.options import SURFACE, SurfaceOptions
 from fcm.continuation.dense import Solver
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.whole import jacobian_of
-
-LEAST = cython.declare(cython.double, 0.1)  # levels are measured by themselves, and below this by this
-ITERATIONS = cython.declare(cython.int, 8)  # of Newton's method, before a place is judged too far away
-CLOSE = cython.declare(cython.double, 1e-4)  # a step that ends them, scaled: about its square is left
-FLAT = cython.declare(cython.double, 1e-7)  # a step along which the matrix does not change
-FAR = cython.declare(cython.double, 1e6)  # a step that leads nowhere
 
 
 @cython.cclass
@@ -39,8 +34,10 @@ class Surface:
     z, centre, scale (n + 2,): displacements, frequency [rad/s], level; axes, tangents (2, n + 2), scaled.
     """
 
-    def __init__(self, balance: Balance) -> None:
+    def __init__(self, balance: Balance, options: SurfaceOptions = SURFACE) -> None:
         n: cython.int = balance.unknowns
+        self.least, self.far, self.iterations = options.least, options.far, options.iterations
+        self.close, self.flat, self.share = options.close, options.flat, options.share
         self.balance, self.n, self.evaluations, self.value = balance, n, 0, 0.0
         self.z, self.centre, self.right = np.zeros(n + 2), np.zeros(n + 2), np.zeros(n + 2)
         self.scale, self.at = np.ones(n + 2), np.zeros(n + 1)
@@ -73,7 +70,7 @@ class Surface:
         self.balance.measure(self.at)
         for i in range(self.n + 1):
             self.scale[i] = self.balance.scale[i]
-        self.scale[self.n + 1] = max(fabs(z[self.n + 1]), LEAST)
+        self.scale[self.n + 1] = max(fabs(z[self.n + 1]), self.least)
 
     def upright(self) -> bool:
         """Make the axes unit vectors at right angles; false if they are none."""
@@ -101,14 +98,15 @@ class Surface:
             other -= self.axes[1, i] * (self.z[i] - self.centre[i]) / self.scale[i]
         for i in range(self.n + 2):
             self.z[i] += self.scale[i] * (one * self.axes[0, i] + other * self.axes[1, i])
-        for count in range(ITERATIONS):  # noqa: B007
+        for count in range(self.iterations):  # noqa: B007
             if not self.factor():
                 return False
             step = self.correct(ahead, aside)
-            if not step < FAR:
+            if not step < self.far:
                 return False
-            if step < CLOSE:
-                return (step < FLAT or self.factor()) and self.look()
+            if step < self.close:
+                length: cython.double = self.share * sqrt(ahead * ahead + aside * aside)
+                return (step < max(self.flat, length) or self.factor()) and self.look()
         return False
 
     @cython.cfunc
@@ -159,7 +157,7 @@ class Surface:
         for i in range(n + 2):
             self.z[i] += self.scale[i] * self.solver.right[i]
             total += self.solver.right[i] * self.solver.right[i]
-        return sqrt(total) if isfinite(total) else 2.0 * FAR
+        return sqrt(total) if isfinite(total) else 2.0 * self.far
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)

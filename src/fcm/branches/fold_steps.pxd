@@ -1,0 +1,1 @@
+from fcm.branches.surface cimport Surface
