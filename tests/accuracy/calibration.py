@@ -21,7 +21,7 @@ except ImportError:  # run as a program
 
 from fcm.accuracy.options import PAIR
 from fcm.accuracy.refinement import estimated
-from fcm.continuation import Mark, follow
+from fcm.continuation import FollowOptions, Mark, follow
 from fcm.harmonic.reported import reported
 from fcm.harmonic.system import System
 
@@ -87,7 +87,10 @@ def beyond(system, path, amplitude):
     if motion is None or np.abs(motion / truth.amplitude(z) - 1.0).max() > SAME:
         return np.zeros(amplitude.shape[1])
     span = system.scene.frequency_range
-    sides = [follow(truth.many.balance(), z, span, forward, STEP) for forward in (True, False)]
+    sides = [
+        follow(truth.many.balance(), z, span, options=FollowOptions(STEP), forward=forward)
+        for forward in (True, False)
+    ]
     return np.max([reported(truth.many, side).amplitude.max(axis=0) for side in sides], axis=0)
 
 

@@ -11,7 +11,7 @@ from fcm.accuracy import outline, refinement
 from fcm.accuracy.outline import Outline, outlined
 from fcm.accuracy.refinement import accurate, enlarged, estimated, judged
 from fcm.continuation import follow
-from fcm.continuation.branches import contains
+from fcm.continuation.all_branches import contains
 from fcm.harmonic import start, trace
 from fcm.harmonic.condensed import OPTIONS
 from fcm.harmonic.cost import seconds_of

@@ -8,7 +8,7 @@ import pytest
 from fcm.branches.branch_points import branch_points
 from fcm.branches.mirror import mirrors
 from fcm.branches.search import every_branch
-from fcm.continuation.branches import contains
+from fcm.continuation.all_branches import contains
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.response.trace import traced_curve

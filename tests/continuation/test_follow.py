@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fcm.continuation import Mark, Problem, Status, all_branches, follow
-from fcm.continuation.front import Front
-from fcm.continuation.newton import Newton
+from fcm.continuation import Events, FollowOptions, Mark, Problem, Status, all_branches, follow
+from fcm.continuation.corrector import Newton
+from fcm.continuation.stepper import Stepper
 
 STEPS = (0.2, 0.1, 0.05, 0.02, 0.01)
 CLOSE = 1e-10  # to which a point is on its curve
@@ -74,7 +74,7 @@ def zigzag(back):
 @pytest.mark.parametrize("step", STEPS)
 def test_an_s_shaped_curve_through_both_folds(step):
     """p = x^3 - x + 2 has its folds at x = -+1/sqrt(3), where p = 2 +- 2/(3 sqrt(3))."""
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     x, p = path.z[:, 0], path.parameter
     assert p[0] == 1.0 and p[-1] == 3.0 and np.all(np.diff(x) > 0.0)
@@ -90,7 +90,7 @@ def test_an_s_shaped_curve_through_both_folds(step):
 
 @pytest.mark.parametrize("step", STEPS)
 def test_directions_are_tangents(step):
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))
     x, direction = path.z[:, 0], path.direction
     assert (3.0 * x * x - 1.0) * direction[:, 0] == pytest.approx(direction[:, -1], abs=LAST)
 
@@ -98,15 +98,17 @@ def test_directions_are_tangents(step):
 @pytest.mark.parametrize("step", STEPS)
 def test_the_work_is_bounded(step):
     """A point takes a prediction and some corrections; folds and ends of the range a few more in all."""
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step)
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(step))
     smooth = path.z.shape[0] - path.where(Mark.FOLD | Mark.END).size
     assert path.evaluations < 5 * smooth + 50
 
 
 def test_a_smaller_step_gives_more_points():
-    points = [follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, s).z.shape[0] for s in STEPS]
+    points = [
+        follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(s)).z.shape[0] for s in STEPS
+    ]
     assert points == sorted(points)
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, STEPS[-1])
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(STEPS[-1]))
     apart = np.diff(path.z, axis=0) / [1.0, 1.0, 2.0]  # in the problem's scale
     assert np.linalg.norm(apart, axis=1).max() < 1.1 * STEPS[-1]
 
@@ -115,7 +117,7 @@ def test_a_smaller_step_gives_more_points():
 @pytest.mark.parametrize("back", [0.5, 2.0, 20.0])
 def test_a_corner_at_which_the_curve_turns_back(step, back):
     low = min(1.0, 2.0 - back - 0.5)
-    path = follow(zigzag(back), start(low, low), (low, 6.0), True, step)
+    path = follow(zigzag(back), start(low, low), (low, 6.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     x, p = path.z[:, 0], path.parameter
     assert np.all(np.diff(x) > 0.0) and p[-1] == 6.0
@@ -133,7 +135,7 @@ def test_a_corner_at_which_it_goes_on(step):
         lambda x, p: (x - p, 1.0, -1.0) if x < 2.0 else (2.0 + 4.0 * (x - 2.0) - p, 4.0, -1.0),
         lambda x: x - 2.0,
     )
-    path = follow(bent, start(1.0, 1.0), (1.0, 5.0), True, step)
+    path = follow(bent, start(1.0, 1.0), (1.0, 5.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     (corner,) = path.where(Mark.CORNER)
     assert path.z[corner, 0] == pytest.approx(2.0, abs=1e-10)
@@ -166,7 +168,7 @@ class Above(Planar):
 def test_a_corner_has_the_shift_of_the_step_that_led_there(step):
     """In the plane normal to a line of slope k in x and y, p in units of 2, one that is higher by d is
     d sqrt(2 / (1 + 8 k^2)) away; at a corner that plane is of the piece before, and tilted by its angle."""
-    path = follow(Above(), start(0.05, 0.5), (0.5, 4.0), True, step)
+    path = follow(Above(), start(0.05, 0.5), (0.5, 4.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     corners = path.where(Mark.CORNER)
     assert path.parameter[corners] == pytest.approx([1.0, 3.0])
@@ -198,7 +200,7 @@ def test_a_piece_that_is_all_but_nothing_is_part_of_a_corner(step, wide):
             self.margin[0], self.margin[1] = z[0] - 2.0, z[0] - 2.0 - wide
             return 0
 
-    path = follow(Thin(), start(1.0, 1.0), (1.0, 3.0), True, step)
+    path = follow(Thin(), start(1.0, 1.0), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.RETURNED
     assert np.all(np.diff(path.z[:, 0]) > 0.0)
     assert path.z[-1, 0] == pytest.approx(12.0, abs=1e-6)
@@ -217,7 +219,7 @@ def test_a_stiffness_that_begins_like_a_root(step, stiff):
         ),
         lambda x: x - 2.0,
     )
-    path = follow(closing, start(1.0, 1.0), (1.0, 5.0), True, step)
+    path = follow(closing, start(1.0, 1.0), (1.0, 5.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     x, p = path.z[:, 0], path.parameter
     assert np.all(np.diff(p) > 0.0) and path.where(Mark.FOLD | Mark.BRANCH).size == 0
@@ -227,16 +229,18 @@ def test_a_stiffness_that_begins_like_a_root(step, stiff):
 
 @pytest.mark.parametrize("step", STEPS)
 def test_an_end_of_the_range_next_to_a_corner_is_landed_on(step):
-    path = follow(zigzag(0.5), start(1.0, 1.0), (1.0, 2.0 - 5e-9), True, step)
+    path = follow(zigzag(0.5), start(1.0, 1.0), (1.0, 2.0 - 5e-9), options=FollowOptions(step))
     assert path.status is Status.COMPLETE and path.parameter[-1] == 2.0 - 5e-9
-    path = follow(zigzag(0.5), start(2.5, 1.75), (1.5 + 5e-9, 2.0 + 5e-9), False, step)
+    path = follow(
+        zigzag(0.5), start(2.5, 1.75), (1.5 + 5e-9, 2.0 + 5e-9), options=FollowOptions(step), forward=False
+    )
     assert path.parameter[-1] == 1.5 + 5e-9 and path.z[-1, 0] < 3.0
 
 
 @pytest.mark.parametrize("step", STEPS)
 def test_a_peak_is_a_point(step):
     """Of x on the circle: 5, at p = 2; it rises and falls, so that no fold is there."""
-    path = follow(circle(), start(3.0 + np.sqrt(3.0), 1.0), (1.0, 3.0), True, step)
+    path = follow(circle(), start(3.0 + np.sqrt(3.0), 1.0), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     (peak,) = path.where(Mark.PEAK)
     assert path.z[peak, 0] == pytest.approx(5.0, abs=1e-10)
@@ -258,7 +262,7 @@ def test_a_peak_in_a_corner(step):
             self.margin[0] = z[2] - 2.0
             return 0
 
-    path = follow(Roof(), start(1.0, 1.0), (1.0, 3.0), True, step)
+    path = follow(Roof(), start(1.0, 1.0), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     (corner,) = path.where(Mark.CORNER)
     assert path.z[corner] == pytest.approx([2.0, 2.0, 2.0], abs=1e-8)
@@ -267,7 +271,7 @@ def test_a_peak_in_a_corner(step):
 
 @pytest.mark.parametrize("step", STEPS)
 def test_a_curve_that_leaves_its_range_where_it_entered(step):
-    path = follow(circle(), start(3.0 - np.sqrt(3.0), 1.0), (1.0, 5.0), True, step)
+    path = follow(circle(), start(3.0 - np.sqrt(3.0), 1.0), (1.0, 5.0), options=FollowOptions(step))
     assert path.status is Status.RETURNED
     assert path.z[-1] == pytest.approx([3.0 + np.sqrt(3.0)] * 2 + [1.0], abs=1e-10)
     assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([4.0], abs=1e-10)
@@ -278,7 +282,7 @@ def test_a_curve_that_leaves_its_range_where_it_entered(step):
 @pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_a_range_that_ends_next_to_a_fold(step, before):
     """The circle leaves it there, and would be back within the same step."""
-    path = follow(circle(), start(1.0, 2.0), (-1.0, 4.0 - before), True, step)
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 4.0 - before), options=FollowOptions(step))
     assert path.status is Status.COMPLETE and path.parameter.max() == path.parameter[-1] == 4.0 - before
     across = np.sqrt(4.0 - (2.0 - before) ** 2)
     assert path.z[-1, 0] == pytest.approx(3.0 - across, abs=1e-7)
@@ -287,7 +291,9 @@ def test_a_range_that_ends_next_to_a_fold(step, before):
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("forward", [True, False])
 def test_a_closed_loop_from_inside_the_range(step, forward):
-    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), forward, step, stations=[3.0])
+    path = follow(
+        circle(), start(1.0, 2.0), (-1.0, 5.0), Events([3.0]), options=FollowOptions(step), forward=forward
+    )
     assert path.status is Status.CLOSED
     assert path.z[-1] == pytest.approx(path.z[0], abs=1e-10)
     assert path.parameter[path.where(Mark.FOLD)] == pytest.approx(
@@ -307,7 +313,14 @@ def test_a_closed_loop_from_inside_the_range(step, forward):
 def test_a_closed_loop_ends_at_a_station_where_it_began_and_not_at_the_next_one(step, forward, beside):
     """The last step passes both; going around once is an angle of 2 pi."""
     begin = start(3.0 - np.sqrt(3.0), 3.0)
-    path = follow(circle(), begin, (-1.0, 5.0), forward, step, stations=[3.0, 3.0 + beside])
+    path = follow(
+        circle(),
+        begin,
+        (-1.0, 5.0),
+        Events([3.0, 3.0 + beside]),
+        options=FollowOptions(step),
+        forward=forward,
+    )
     assert path.status is Status.CLOSED
     around = np.unwrap(np.arctan2(path.parameter - 2.0, path.z[:, 0] - 3.0))
     assert abs(around[-1] - around[0]) == pytest.approx(2.0 * np.pi, abs=1e-9)
@@ -321,7 +334,7 @@ def test_a_curve_that_is_lost_to_a_closed_one_goes_around_it_once():
     def joined(x, p):
         return (x - 5.0, 1.0, 0.0) if p < 2.0 and x > 5.0 - 1e-4 else loop(x, p)
 
-    path = follow(Planar(joined), start(5.0, -1.0), (-1.0, 5.0), True, 0.05, stations=[3.0])
+    path = follow(Planar(joined), start(5.0, -1.0), (-1.0, 5.0), Events([3.0]), options=FollowOptions(0.05))
     assert path.status is Status.AROUND
     passed = path.z[path.where(Mark.STATION), 0]
     high = 3.0 + np.sqrt(3.0)
@@ -338,7 +351,7 @@ def test_two_folds_within_one_step(step, back, middle):
         y = x - middle
         return 2.0 + y**3 - back * y - p, 3.0 * y * y - back, -1.0
 
-    path = follow(Planar(f), start(middle - 1.0, 1.0 + back), (1.0, 3.0), True, step)
+    path = follow(Planar(f), start(middle - 1.0, 1.0 + back), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     across = 2.0 * (back / 3.0) ** 1.5
     assert path.parameter[path.where(Mark.FOLD)] == pytest.approx([2.0 + across, 2.0 - across], abs=1e-10)
@@ -359,7 +372,7 @@ def test_two_folds_within_one_step_that_its_cubic_does_not_have(step, middle):
         return along(x) - p, rate * (1.0 - 1.1 / (1.0 + y * y)), -1.0
 
     begin, end = along(middle - 1.0), along(middle + 1.0)
-    path = follow(Planar(f), start(middle - 1.0, begin), (begin, end), True, step)
+    path = follow(Planar(f), start(middle - 1.0, begin), (begin, end), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     turns = middle + width * np.sqrt(0.1) * np.array([-1.0, 1.0])
     assert path.parameter[path.where(Mark.FOLD)] == pytest.approx(along(turns), abs=1e-12)
@@ -374,7 +387,7 @@ def test_a_peak_and_a_least_value_within_one_step(step, back):
         y = p - 2.0
         return x - 2.0 - y**3 + back * y, 1.0, -3.0 * y * y + back
 
-    path = follow(Planar(f), start(1.0 + back, 1.0), (1.0, 2.5), True, step)
+    path = follow(Planar(f), start(1.0 + back, 1.0), (1.0, 2.5), options=FollowOptions(step))
     (peak,) = path.where(Mark.PEAK)
     assert path.parameter[peak] == pytest.approx(2.0 - np.sqrt(back / 3.0), abs=1e-6)
 
@@ -382,7 +395,7 @@ def test_a_peak_and_a_least_value_within_one_step(step, back):
 @pytest.mark.parametrize("step", STEPS)
 def test_every_passing_of_a_station(step):
     """p = 2 on the S-shaped curve at x = -1, 0, 1."""
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, step, stations=[2.0])
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), Events([2.0]), options=FollowOptions(step))
     found = path.where(Mark.STATION)
     assert path.parameter[found].tolist() == [2.0] * 3
     assert path.z[found, 0] == pytest.approx([-1.0, 0.0, 1.0], abs=1e-10)
@@ -392,7 +405,7 @@ def test_every_passing_of_a_station(step):
 @pytest.mark.parametrize("before", [1e-2, 1e-4, 1e-6, 1e-8])
 def test_a_station_next_to_a_fold_is_passed_twice(step, before):
     """The circle turns back at p = 4, where x = 3 -+ sqrt(4 before) about."""
-    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), True, step, stations=[4.0 - before])
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), Events([4.0 - before]), options=FollowOptions(step))
     assert path.status is Status.CLOSED
     found = path.z[path.where(Mark.STATION)]
     across = np.sqrt(4.0 - (2.0 - before) ** 2)
@@ -404,7 +417,7 @@ def test_a_station_next_to_a_fold_is_passed_twice(step, before):
 def test_another_curve_that_crosses(step):
     """x (x - p + 2) = 0: x = 0 is followed past p = 2, where x = p - 2 crosses it."""
     crossed = Planar(lambda x, p: (x * (x - p + 2.03), 2.0 * x - p + 2.03, -x))
-    path = follow(crossed, start(0.0, 1.0), (1.0, 3.0), True, step)
+    path = follow(crossed, start(0.0, 1.0), (1.0, 3.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE and np.all(path.z[:, 0] == 0.0)
     (after,) = path.where(Mark.BRANCH)
     assert path.parameter[after - 1] < 2.03 < path.parameter[after]
@@ -428,7 +441,7 @@ def test_a_resonance_without_damping_has_no_limit():
             return 0
 
     pole = Pole(lambda x, p: (x * (2.0 - p) - 1.0, 2.0 - p, -x))
-    path = follow(pole, start(1.0, 1.0), (1.0, 3.0), True, 0.2)
+    path = follow(pole, start(1.0, 1.0), (1.0, 3.0), options=FollowOptions(0.2))
     assert path.status is Status.UNBOUNDED and path.parameter[-1] == pytest.approx(2.0, abs=1e-8)
 
 
@@ -438,13 +451,13 @@ def test_a_curve_that_ends_is_kept_up_to_there():
     def f(x, p):
         return (x - p, 1.0, -1.0) if p < 2.0 else (1.0 + x * x, 2.0 * x, 0.0)
 
-    path = follow(Planar(f), start(1.0, 1.0), (1.0, 3.0), True, 0.1)
+    path = follow(Planar(f), start(1.0, 1.0), (1.0, 3.0), options=FollowOptions(0.1))
     assert path.status is Status.STALLED
     assert path.parameter[-1] == pytest.approx(2.0, abs=1e-6)
 
 
 def test_backwards_and_then():
-    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), True, 0.1)
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), options=FollowOptions(0.1))
     back = path.backwards()
     assert np.array_equal(back.z, path.z[::-1]) and np.array_equal(back.direction, -path.direction[::-1])
     assert np.array_equal(back.backwards().z, path.z)
@@ -458,7 +471,7 @@ def test_all_branches_once_each():
         return loop * line, 2.0 * (x - 3.0) * line + loop, 2.0 * (p - 2.0) * line
 
     solutions = [start(8.0, -1.0), start(8.0, 5.0), start(1.0, 2.0), start(5.0, 2.0), start(8.0, 2.0)]
-    found = all_branches(lambda: Planar(f), solutions, (-1.0, 5.0), 0.05)
+    found = all_branches(lambda: Planar(f), solutions, (-1.0, 5.0), FollowOptions(0.05))
     assert [path.status for path in found.paths] == [Status.COMPLETE, Status.CLOSED]
     assert found.status is Status.COMPLETE and found.lost == ()
     line, loop = found.paths
@@ -467,7 +480,7 @@ def test_all_branches_once_each():
 
 
 def test_a_start_inside_the_range_is_followed_both_ways():
-    found = all_branches(cubic, [start(0.0, 2.0)], (1.0, 3.0), 0.1)
+    found = all_branches(cubic, [start(0.0, 2.0)], (1.0, 3.0), FollowOptions(0.1))
     (path,) = found.paths
     assert found.status is Status.COMPLETE
     assert (path.parameter[0], path.parameter[-1]) == (1.0, 3.0)
@@ -479,7 +492,7 @@ class Labelled(Planar):
 
     def __init__(self, f, label):
         Planar.__init__(self, f, label)
-        self.soft = True
+        self.labelled = True
 
 
 def tent():
@@ -494,7 +507,7 @@ def tent():
 
 @pytest.mark.parametrize("max_step", STEPS)
 def test_a_corner_that_only_a_label_tells_of_is_turned_at(max_step):
-    path = follow(tent(), start(-0.9, 0.3025), (0.3, 2.0), True, max_step)
+    path = follow(tent(), start(-0.9, 0.3025), (0.3, 2.0), options=FollowOptions(max_step))
     assert path.status is Status.RETURNED or path.parameter[-1] == 0.3
     (fold,) = path.where(Mark.FOLD)
     assert path.parameter[fold] == pytest.approx(1.0, abs=1e-7)
@@ -506,7 +519,7 @@ class RoofBesideALine(Problem):
 
     def __init__(self, radius):
         Problem.__init__(self, 1, 1, 0)
-        self.soft, self.radius = True, radius
+        self.labelled, self.radius = True, radius
 
     def evaluate(self, z):
         x, p = z
@@ -521,7 +534,7 @@ class RoofBesideALine(Problem):
 @pytest.mark.parametrize("max_step", STEPS)
 def test_no_step_leads_from_a_narrow_fold_to_another_branch(radius, max_step):
     """Beyond the fold the curve is at right angles to what it was, where a short step sees the other one."""
-    path = follow(RoofBesideALine(radius), np.array([-0.5, 1.5]), (1.0, 3.0), True, max_step)
+    path = follow(RoofBesideALine(radius), np.array([-0.5, 1.5]), (1.0, 3.0), options=FollowOptions(max_step))
     assert path.parameter == pytest.approx(2.0 - np.hypot(path.z[:, 0], radius), abs=1e-7)
     assert path.status is Status.COMPLETE and path.z[-1, 0] == pytest.approx(1.0, abs=1e-6)
 
@@ -537,7 +550,7 @@ class Pieces(Labelled):
 
         Labelled.__init__(self, f, None)
         Problem.__init__(self, 2, 1, 1)
-        self.soft = True
+        self.labelled = True
 
     def bound(self, z):
         self.margin[0] = np.floor(z[2])
@@ -547,7 +560,7 @@ class Pieces(Labelled):
 @pytest.mark.parametrize("max_step", STEPS)
 def test_a_spike_is_gone_round_if_its_other_side_has_another_label(max_step):
     """The parameter goes on where all else turns back, by an angle of 176 degrees."""
-    path = follow(Pieces(10.0, -10.0), start(0.0, 1.0), (1.0, 2.8), True, max_step)
+    path = follow(Pieces(10.0, -10.0), start(0.0, 1.0), (1.0, 2.8), options=FollowOptions(max_step))
     assert path.status is Status.COMPLETE
     assert path.z[:, 0] == pytest.approx(10.0 - 10.0 * abs(path.parameter - 2.0), abs=1e-8)
     assert path.z[:, 0].max() == pytest.approx(10.0, abs=1e-6)
@@ -562,7 +575,7 @@ class Touch(Problem):
 
     def __init__(self, c, depth):
         Problem.__init__(self, 2, 1, 0)
-        self.soft, self.c, self.depth = True, c, depth
+        self.labelled, self.c, self.depth = True, c, depth
 
     def evaluate(self, z):
         x, y, p = z
@@ -587,7 +600,7 @@ class Touch(Problem):
 @pytest.mark.parametrize("c", [10.0, 30.0, 100.0])
 def test_a_curve_that_turns_back_as_contacts_touch_goes_on_with_these_touching(c, depth):
     """It turns within less than any step, and its other side is close to the way there."""
-    path = follow(Touch(c, depth), np.array([-0.2, -0.2 * c, -0.2]), (-0.2, 1.0), True, 0.05)
+    path = follow(Touch(c, depth), np.array([-0.2, -0.2 * c, -0.2]), (-0.2, 1.0), options=FollowOptions(0.05))
     end = brentq(lambda x: x - x**1.5 / (x + depth) + 0.2, 0.01, 0.2)
     assert path.status is Status.RETURNED and path.z[-1, 0] == pytest.approx(end, abs=1e-9)
     (fold,) = path.where(Mark.FOLD)
@@ -626,7 +639,7 @@ def test_a_fold_in_a_corner_within_a_step_is_found_by_few_looks(max_step):
     """It takes forty to enclose it by halves."""
     problem = shallow()
     seen = evaluations_at(problem)
-    path = follow(problem, start(-1.0, 2.98), (2.98, 4.0), True, max_step)
+    path = follow(problem, start(-1.0, 2.98), (2.98, 4.0), options=FollowOptions(max_step))
     (fold,) = path.where(Mark.FOLD)
     assert path.parameter[fold] == pytest.approx(3.0, abs=1e-12)
     assert len(seen) < 3 * len(path.z) + 25
@@ -637,7 +650,7 @@ def test_smooth_folds_and_peaks_of_a_soft_problem(max_step):
     """Folds at p = 4 and 0, a peak of x = 5."""
     problem = soft_circle()
     seen = evaluations_at(problem)
-    path = follow(problem, start(5.0, 2.0), (-1.0, 5.0), True, max_step)
+    path = follow(problem, start(5.0, 2.0), (-1.0, 5.0), options=FollowOptions(max_step))
     folds, peaks = path.where(Mark.FOLD), path.where(Mark.PEAK)
     assert path.status is Status.CLOSED
     assert path.parameter[folds] == pytest.approx([4.0, 0.0], abs=0.1 * CLOSE)
@@ -661,7 +674,9 @@ def step_back(slope, height, width):
 def test_two_folds_that_a_step_hardly_misses_the_curve_by_are_found(max_step):
     """Either side of them the curve rises as slowly, so that both ends of a step across them look alike."""
     slope, height, width = 4e-3, 2e-4, 0.01
-    path = follow(step_back(slope, height, width), start(1.0, 1.0042), (1.0042, 1.02), True, max_step)
+    path = follow(
+        step_back(slope, height, width), start(1.0, 1.0042), (1.0042, 1.02), options=FollowOptions(max_step)
+    )
     turn = np.sqrt(1.0 - slope * width / height)  # tanh where p neither rises nor falls
     up = height * turn - slope * width * np.arctanh(turn)
     assert path.status is Status.COMPLETE
@@ -670,9 +685,9 @@ def test_two_folds_that_a_step_hardly_misses_the_curve_by_are_found(max_step):
 
 def test_a_curve_goes_on_from_any_stage_to_the_same_points():
     stages = []
-    whole = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, watch=stages.append)
+    whole = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), options=FollowOptions(0.1), watch=stages.append)
     for stage in stages[:: max(len(stages) // 5, 1)]:
-        again = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), True, 0.1, stage=stage)
+        again = follow(cubic(), start(-1.5, 0.125), (0.0, 4.0), options=FollowOptions(0.1), checkpoint=stage)
         assert again.status is whole.status
         np.testing.assert_array_equal(again.z, whole.z)
         np.testing.assert_array_equal(again.mark, whole.mark)
@@ -722,7 +737,9 @@ class Many(Problem):
 def test_slight_corners_of_many_unknowns_are_stepped_over(step):
     """Folds and the peak are where they are nonetheless, and the work is that of a smooth curve."""
     path, plain = (
-        follow(Many(120, slight), np.append(np.full(120, -1.32), 1.02), (1.02, 3.0), True, step)
+        follow(
+            Many(120, slight), np.append(np.full(120, -1.32), 1.02), (1.02, 3.0), options=FollowOptions(step)
+        )
         for slight in (1e-3, 0.0)
     )
     assert path.status is Status.COMPLETE
@@ -742,7 +759,7 @@ def test_slight_corners_of_some_unknowns_are_stepped_over_where_the_parameter_go
     """The folds are landed on as closely, with half the work of landing on every corner."""
     of, fewer = Many(80, 1e-3), Many(40, 1e-3)
     path, landed = (
-        follow(one, np.append(np.full(one.unknowns, -1.32), 1.02), (1.02, 3.0), True, step)
+        follow(one, np.append(np.full(one.unknowns, -1.32), 1.02), (1.02, 3.0), options=FollowOptions(step))
         for one in (of, fewer)
     )
     exact = [brentq(lambda x: of.curve(x)[1], a, b, xtol=1e-14) for a, b in ((-1.0, 0.0), (0.0, 1.0))]
@@ -767,7 +784,12 @@ class Narrow(Many):
 @pytest.mark.parametrize("first", np.linspace(-0.5, 0.5, 11))
 def test_no_pair_of_folds_between_two_corners_is_stepped_over(unknowns, first):
     """However the steps lie to it: p' = 0 at 1/81 of a unit beyond a, and where the roots differ by 1/9."""
-    path = follow(Narrow(unknowns, first), np.append(np.full(unknowns, -0.9), 1.1), (1.1, 2.9), True, 0.2)
+    path = follow(
+        Narrow(unknowns, first),
+        np.append(np.full(unknowns, -0.9), 1.1),
+        (1.1, 2.9),
+        options=FollowOptions(0.2),
+    )
     beyond = [1.0 / 81.0, (0.02 * 9.0 + 1.0 / 9.0) ** 2 / 4.0]
     assert path.z[path.where(Mark.FOLD), 0] - first == pytest.approx(beyond, abs=1e-6)
 
@@ -807,7 +829,7 @@ def test_a_corner_at_which_a_curve_of_many_unknowns_turns_back_is_landed_on(step
     low = min(1.0, 2.0 - back - 0.5)
     z = np.append(np.zeros(102), low)
     z[:2] = low
-    path = follow(Widened(zigzag(back)), z, (low, 6.0), True, step)
+    path = follow(Widened(zigzag(back)), z, (low, 6.0), options=FollowOptions(step))
     assert path.status is Status.COMPLETE
     folds = path.where(Mark.FOLD)
     assert path.where(Mark.CORNER).tolist() == folds.tolist()
@@ -820,7 +842,7 @@ def test_a_corner_of_many_unknowns_is_gone_to_at_once_and_left_by_a_share_of_the
     """Where its other side is found from this one."""
     z = np.append(np.zeros(102), 1.0)
     z[:2] = 1.0
-    path = follow(Widened(zigzag(0.5)), z, (1.0, 6.0), True, step)
+    path = follow(Widened(zigzag(0.5)), z, (1.0, 6.0), options=FollowOptions(step))
     for corner in path.where(Mark.FOLD):
         beside = np.linalg.norm((path.z - path.z[corner])[:, [0, 1, -1]] / [1.0, 1.0, 2.0], axis=1)
         assert np.count_nonzero(beside < 1e-3) <= 3
@@ -830,12 +852,12 @@ def test_a_margin_is_the_same_only_within_its_group():
     """However near another of its kind is: here that of the other group, by its angle."""
     problem = Problem(1, 4, 0)
     problem.group = 2
-    front = Front(problem)
-    for place, angles in ((front.here, (1.0, 2.0, 1.1, 2.1)), (front.there, (1.2, 2.2, 1.0, 2.0))):
+    stepper = Stepper(problem)
+    for place, angles in ((stepper.here, (1.0, 2.0, 1.1, 2.1)), (stepper.there, (1.2, 2.2, 1.0, 2.0))):
         np.asarray(place.kind)[:] = (0, 1, 0, 1)
         np.asarray(place.angle)[:] = angles
         np.asarray(place.margin)[:] = np.arange(1.0, 5.0)
-    assert [front.here.margin_at(k, front.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
+    assert [stepper.here.margin_at(k, stepper.there) for k in range(4)] == [1.0, 2.0, 3.0, 4.0]
 
 
 class Counted(Planar):
@@ -852,10 +874,10 @@ class Counted(Planar):
         return super().evaluate(z)
 
 
-def corrected(f, x, p, dear=False, close=1e-13):
+def corrected(f, x, p, costly=False, close=1e-13):
     """Newton's method from x at the parameter p."""
     newton = Newton(Counted(f))
-    newton.problem.dear, newton.close = dear, close
+    newton.problem.costly, newton.close = costly, close
     newton.z[:], newton.scale[:] = start(x, p), 1.0
     newton.row[:] = np.array([0.0, 0.0, 1.0])
     assert newton.correct(1.0)
@@ -867,10 +889,10 @@ def rooted(x, p):
     return x + abs(x) ** 1.5 - p, 1.0 + 1.5 * np.sqrt(abs(x)), -1.0
 
 
-@pytest.mark.parametrize("dear", [False, True])
-def test_the_last_step_takes_the_derivatives_from_before_where_they_hardly_change(dear):
+@pytest.mark.parametrize("costly", [False, True])
+def test_the_last_step_takes_the_derivatives_from_before_where_they_hardly_change(costly):
     """The point is as exact as with those there, the direction to what the step before was long."""
-    newton, counts = corrected(circle().f, 3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5), dear)
+    newton, counts = corrected(circle().f, 3.0 + 2.02 * np.sin(0.5), 2.0 + 2.02 * np.cos(0.5), costly)
     assert counts == (3, 1)
     x, p = newton.z[0], newton.z[2]
     assert x == pytest.approx(3.0 + np.sqrt(4.0 - (p - 2.0) ** 2), rel=1e-15)
@@ -878,11 +900,11 @@ def test_the_last_step_takes_the_derivatives_from_before_where_they_hardly_chang
 
 
 def test_where_derivatives_change_as_a_root_the_last_step_takes_its_own():
-    """Unless places are dear: the direction is then off by the root of the step before."""
-    for dear, off in ((False, 1e-9), (True, 1e-4)):
-        newton, (_, probed) = corrected(rooted, 1e-3, 1e-6 + 1e-9, dear)
+    """Unless places are costly: the direction is then off by the root of the step before."""
+    for costly, off in ((False, 1e-9), (True, 1e-4)):
+        newton, (_, probed) = corrected(rooted, 1e-3, 1e-6 + 1e-9, costly)
         assert newton.z[0] == pytest.approx(1e-6, rel=1e-9)
-        assert probed == int(dear)
+        assert probed == int(costly)
         assert newton.tangent[2] / newton.tangent[0] == pytest.approx(1.0015, rel=off)
 
 

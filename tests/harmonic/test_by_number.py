@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.by_number import growth_of, rates_of
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System

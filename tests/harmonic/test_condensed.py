@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fcm.continuation import follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import Events, follow
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.condensed import CondensedOptions
 from fcm.harmonic.system import System
 from fcm.scene import scene_from_dict
@@ -96,7 +96,7 @@ def stations(condensing, harmonics):
     system = System(strip(), harmonics, condensing=condensing)
     problem = system.balance()
     at = (1.0, 1.15, 1.3)
-    path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), stations=at)
+    path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
     return problem, path.z[np.isin(path.parameter, at)]
 
 
@@ -135,7 +135,7 @@ def test_modes_left_out_that_yield_as_much_as_contacts_are_in_the_solutions(stif
     for options in (CondensedOptions(fewest=1, share=1.0, stiff=(stiff,)), WHOLE):
         system = System(strip(**soft), (1, 3), condensing=options)
         problem, at = system.balance(), (1.0, 1.15, 1.3)
-        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), stations=at)
+        path = follow(problem, np.append(np.zeros(problem.unknowns), 0.9), (0.9, 1.5), Events(at))
         solutions.append(path.z[np.isin(path.parameter, at)])
         if options is not WHOLE:
             left_out = system.yields[system.yields <= stiff]

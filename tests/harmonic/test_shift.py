@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fcm
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 

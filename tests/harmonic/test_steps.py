@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fcm import load_scene
-from fcm.continuation import Mark, Status, all_branches
+from fcm.continuation import FollowOptions, Mark, Status, all_branches
 
 from ..motion.cases import yang
 from .scenes import Curves, gap5, up_to
@@ -37,7 +37,7 @@ def test_a_solution_next_to_a_fold_lies_on_the_branch_that_passes_it(step):
     away = np.repeat(finest.folds, 2) - [z[-1] for z in beside]
     assert np.all((np.abs(away) > 0.0) & (np.abs(away) < 1e-5))
     starts = [fine.z[0], *beside]
-    found = all_branches(finest.system.balance, starts, scene.frequency_range, step)
+    found = all_branches(finest.system.balance, starts, scene.frequency_range, FollowOptions(step))
     assert found.status is Status.COMPLETE and len(found.paths) == 1
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import fcm
-from fcm.continuation import follow
+from fcm.continuation import FollowOptions, follow
 from fcm.harmonic.lifted import Lifted
 from fcm.motion import SimulationError, State
 
@@ -79,7 +79,7 @@ class Truth:
         onward = (z[-1] - near[-1]) * tangent[-1] > 0.0  # along the curve, whichever way that leads
         forward = z[-1] > near[-1]
         span = (min(near[-1], z[-1]), max(near[-1], z[-1]))
-        path = follow(self.many.balance(), near, span, forward, 0.05)
+        path = follow(self.many.balance(), near, span, options=FollowOptions(0.05), forward=forward)
         if not len(path.z) or path.parameter[-1] != z[-1]:
             return None
         heading = path.direction[0] / newton.scale @ tangent

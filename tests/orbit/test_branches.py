@@ -11,8 +11,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import fcm
-from fcm.continuation import Mark, Status, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Mark, Status, follow
+from fcm.continuation.corrector import Newton
 from fcm.continuation.path import Path as Followed
 from fcm.motion import State, simulate
 from fcm.motion.errors import SimulationError
@@ -87,7 +87,7 @@ def test_a_search_for_further_branches_that_is_given_up_is_told(monkeypatch):
 def test_no_branches_are_looked_for_without_end_where_those_that_are_followed_break_off():
     """Contacts that rattle have countless unstable motions; here every branch ends where it begins."""
 
-    def broken(problem, z, *_):
+    def broken(problem, z, *_, **__):
         begun.append(z[-1])
         one, nothing = np.array(z)[None], np.zeros(1)
         return Followed(one, 0.0 * one, nothing.astype(int), nothing, nothing, Status.STALLED, 0)
@@ -191,7 +191,7 @@ def test_a_branch_followed_again_from_beside_its_fold_is_known_and_the_other_is_
     (other, isolated), _ = explore(problem)
     beside = isolated.z[isolated.where(Mark.FOLD)[0] + 2]
     span = problem.scene.frequency_range
-    again = follow(problem, beside, span, True, 0.7 * problem.scene.max_step)
+    again = follow(problem, beside, span, options=FollowOptions(0.7 * problem.scene.max_step))
     assert len(again.z) > 10
     assert known([isolated], spread(again), problem) and not known([other], spread(again), problem)
 
@@ -217,7 +217,7 @@ def test_a_curve_goes_round_the_spike_at_which_a_slip_begins():
     scene = lightly_damped(8)
     problem = OrbitProblem(scene)
     (orbit,) = near_balance(scene, inner_resonances(scene)[0])
-    path = follow(problem, first_point(problem, orbit), (0.9, 1.12), True, scene.max_step)
+    path = follow(problem, first_point(problem, orbit), (0.9, 1.12), options=FollowOptions(scene.max_step))
     assert path.status is Status.COMPLETE and path.parameter[-1] == 1.12
     assert off_after_a_period(scene, path.z[-1]) < 1e-9
     at = int(np.argmin(np.abs(path.parameter - 1.11364864)))
@@ -232,7 +232,13 @@ def test_a_curve_goes_on_from_a_corner_at_right_angles():
     scene = random_scene(21)
     problem = OrbitProblem(scene)
     begin = max(starts(problem)[0], key=lambda z: z[-1])
-    path = follow(problem, begin, (1.574, scene.frequency_range[1]), False, scene.max_step)
+    path = follow(
+        problem,
+        begin,
+        (1.574, scene.frequency_range[1]),
+        options=FollowOptions(scene.max_step),
+        forward=False,
+    )
     assert path.status is Status.COMPLETE and path.parameter[-1] == 1.574
     for z in path.z[np.abs(path.parameter - 1.57431) < 1e-5]:
         assert off_after_a_period(scene, z) < 1e-9
@@ -246,7 +252,7 @@ def test_a_start_is_looked_for_anywhere_and_ends_that_are_not_reached_are_said()
     low, high = scene.frequency_range
     assert sought and low < z[-1] < high and set(missed) == {low, high}
     assert off_after_a_period(scene, z) < 1e-9
-    piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), True, scene.max_step)
+    piece = follow(problem, z, (z[-1] - 1e-5, z[-1] + 1e-5), options=FollowOptions(scene.max_step))
     assert piece.status is Status.COMPLETE and incomplete(scene, [piece], missed[low]) == missed[low] != ""
 
 

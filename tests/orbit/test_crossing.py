@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fcm.continuation import Between, Mark, follow
+from fcm.continuation import FollowOptions, Mark, Segment, follow
 from fcm.orbit import periodic
 from fcm.orbit.crossing import crossing
 from fcm.orbit.periodic import STABLE
@@ -54,7 +54,7 @@ def crossed():
     """A problem, its path, and the steps on which stability changes between folds."""
     scene = replace(light(), frequency_range=(0.54, 0.55))
     problem, begin = OrbitProblem(scene), periodic(scene, 0.54)
-    path = follow(problem, problem.z(begin.state, 0.54), scene.frequency_range, True, 0.05)
+    path = follow(problem, problem.z(begin.state, 0.54), scene.frequency_range, options=FollowOptions(0.05))
     stable = [greatest(problem, z) <= 1.0 + STABLE for z in path.z]
     steps = [
         k
@@ -70,7 +70,7 @@ def test_stability_changes_at_the_place(crossed):
     jumps = 0
     assert len(steps) > 10
     for k in steps:
-        place, between = crossing(problem, path, k), Between(problem, path, k)
+        place, between = crossing(problem, path, k), Segment(problem, path, k)
         assert place is not None and greatest(problem, place.z) <= 1.0 + STABLE
         aside = max(1e-5, 2e-8 / between.length)
         part = place.part + (aside if stable[k] else -aside)
@@ -93,11 +93,11 @@ def test_a_place_beside_known_ones_is_the_same_and_takes_fewer_periods(crossed):
     problem, path, _, steps = crossed
     again, parts, alone, beside = OrbitProblem(problem.scene), (0.7, 0.3, 0.5, 0.4, 0.45, 0.425), 0, 0
     for k in steps:
-        among = Between(again, path, k)
+        among = Segment(again, path, k)
         for part in parts:
             assert among.put(part)
         found, fresh = among.z, OrbitProblem(problem.scene)
-        by_itself = Between(fresh, path, k)
+        by_itself = Segment(fresh, path, k)
         before = fresh.periods
         assert by_itself.put(parts[-1])
         problem.measure(found)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fcm.continuation import Events, FollowOptions
 from fcm.motion import simulate
 from fcm.orbit.harmonic import balanced_states
 from fcm.orbit.problem import OrbitProblem
@@ -154,9 +155,9 @@ def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
 def spied(function, calls):
     """The same function, its calls noted."""
 
-    def spy(*args):
+    def spy(*args, **options):
         calls.append(args)
-        return function(*args)
+        return function(*args, **options)
 
     return spy
 
@@ -229,10 +230,11 @@ def test_what_is_saved_of_other_unknowns_is_not_gone_on_with(scene):
     first = OrbitProblem(scene)
     z = first_point(first, next(near_balance(scene, 0.9)))
     Legs(scene.frequency_range, Report(lambda *_: None, save=saved.append))(
-        first, z, scene.frequency_range, True, 0.1, ()
+        first, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True
     )
     assert isinstance(saved[-1], Leg)
     problem = OrbitProblem(light)
     z = first_point(problem, next(near_balance(light, 0.9)))
     legs = Legs(scene.frequency_range, Report(lambda *_: None, saved))
-    assert legs(problem, z, scene.frequency_range, True, 0.1, ()).z.shape[1] == z.size
+    path = legs(problem, z, scene.frequency_range, Events(), FollowOptions(0.1), forward=True)
+    assert path.z.shape[1] == z.size

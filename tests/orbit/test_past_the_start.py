@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fcm.continuation import Stage, follow
+from fcm.continuation import Checkpoint, FollowOptions, follow
 from fcm.orbit import periodic
 from fcm.orbit.problem import OrbitProblem
 
@@ -46,16 +46,23 @@ class EnoughError(Exception):
 
 def test_a_curve_does_not_turn_back_where_slip_passes_the_start_of_the_period():
     """Friction falls to its limit and rises from there, nothing else of the motion turns."""
-    scene, stages = random_scene(STIFF), list[Stage]()
+    scene, stages = random_scene(STIFF), list[Checkpoint]()
     problem = OrbitProblem(scene)
 
-    def watch(stage: Stage) -> None:
+    def watch(stage: Checkpoint) -> None:
         stages.append(stage)
         if len(stages) == STEPS:
             raise EnoughError
 
     with pytest.raises(EnoughError):
-        follow(problem, np.array(BEGIN), scene.frequency_range, False, scene.max_step, watch=watch)
+        follow(
+            problem,
+            np.array(BEGIN),
+            scene.frequency_range,
+            options=FollowOptions(scene.max_step),
+            forward=False,
+            watch=watch,
+        )
     frequency = np.array([stage.z[-1] for stage in stages])
     assert (np.diff(frequency) < 1e-12).all() and frequency[-1] < 0.97 * BEGIN[-1]
     last = problem.shot(stages[-1].z)

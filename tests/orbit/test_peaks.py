@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Between, Mark, follow
+from fcm.continuation import FollowOptions, Mark, Segment, follow
 from fcm.orbit import periodic
 from fcm.orbit.problem import OrbitProblem
 
@@ -24,11 +24,13 @@ def test_the_greatest_amplitudes_are_found_and_few_others():
     """No place midway between two points exceeds them; most peaks exceed all points before them."""
     scene = replace(light(), frequency_range=(LOW, HIGH))
     problem = OrbitProblem(scene)
-    path = follow(problem, problem.z(periodic(scene, LOW).state, LOW), (LOW, HIGH), True, 0.05)
+    path = follow(
+        problem, problem.z(periodic(scene, LOW).state, LOW), (LOW, HIGH), options=FollowOptions(0.05)
+    )
     outputs = np.array([amplitudes(problem, *one) for one in zip(path.z, path.direction, strict=True)])
     greatest = outputs.max(axis=0)
     for k in range(len(outputs) - 1):
-        between = Between(problem, path, k)
+        between = Segment(problem, path, k)
         if between.put(0.5):
             assert (amplitudes(problem, between.z, between.direction) <= greatest * (1.0 + 1e-9)).all()
     peaks = [k for k in range(1, len(outputs)) if path.mark[k] & Mark.PEAK]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.continuation import Between, follow
+from fcm.continuation import FollowOptions, Segment, follow
 from fcm.orbit import periodic
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import samples
@@ -25,14 +25,16 @@ def test_a_window_between_two_points_that_agree_is_on_the_curve():
     low, high = 1.0748, 1.1413
     scene, windows = within(random_scene(37), low, high), 0
     problem = OrbitProblem(scene)
-    path = follow(problem, problem.z(periodic(scene, low).state, low), (low, high), True, 0.2)
+    path = follow(
+        problem, problem.z(periodic(scene, low).state, low), (low, high), options=FollowOptions(0.2)
+    )
     points = samples(problem, path)
     known = np.array([point.frequency for point in points])
     assert (np.diff(known) > 0.0).all()
     for k in range(len(path.z) - 1):
         if grows(problem, path.z[k]) != grows(problem, path.z[k + 1]):
             continue
-        way, told = Between(problem, path, k), set()
+        way, told = Segment(problem, path, k), set()
         for part in np.linspace(0.1, 0.9, 9):
             assert way.put(part)
             i = int(np.searchsorted(known, way.z[-1]))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from fcm.continuation import Mark, Status, follow
+from fcm.continuation import FollowOptions, Mark, Status, follow
 from fcm.harmonic.start import solutions
 from fcm.harmonic.system import System
 from fcm.motion import State, simulate
@@ -42,7 +42,7 @@ def only(scene, omega, highest):
 def path(scene, highest, span):
     of = system(scene, highest, span)
     start = solutions(of, span[0]).solutions[0]
-    found = follow(of.balance(), start, span, True, scene.max_step)
+    found = follow(of.balance(), start, span, options=FollowOptions(scene.max_step))
     assert found.status is Status.COMPLETE
     return of, found
 
@@ -124,7 +124,7 @@ def test_the_same_backwards():
 def test_the_determinant_of_a_path_from_within():
     of = system(yang(5.0), 3, (1.15, 1.3))
     start = solutions(of, 1.25).solutions[0]
-    found = follow(of.balance(), start, (1.15, 1.3), False, 0.05).backwards()
+    found = follow(of.balance(), start, (1.15, 1.3), options=FollowOptions(0.05), forward=False).backwards()
     problem = of.balance()
     for z, direction, orientation in zip(found.z, found.direction, found.orientation, strict=True):
         problem.evaluate(z)

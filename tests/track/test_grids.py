@@ -7,8 +7,8 @@ import pytest
 
 from fcm.branches.search import every_branch
 from fcm.cli.track import as_table
-from fcm.continuation import Mark, Status, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Mark, Status, follow
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.record import recorded
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
@@ -168,8 +168,7 @@ def test_an_isolated_branch_is_between_the_turns_that_are_told():
         moved(way.system, gap.put(scene, value)).balance(),
         beside_fold(way, max(spots, key=lambda spot: spot.z[-2]).z),
         (0.7, 1.5),
-        True,
-        0.05,
+        options=FollowOptions(0.05),
     )
     at_closed = np.unique(closed.parameter[closed.where(Mark.FOLD)].round(10))
     assert closed.status is Status.CLOSED

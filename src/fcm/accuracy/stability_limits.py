@@ -15,8 +15,8 @@ import numpy as np
 
 from fcm.accuracy.foreseen import Foreseen, needed
 from fcm.accuracy.partner import lifted_of, partner_of
-from fcm.continuation import Between, Path
-from fcm.continuation.secants import Secants
+from fcm.continuation import Path, Segment
+from fcm.continuation.root_finding import Secants
 from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import reported_at
@@ -99,7 +99,7 @@ class _Beside:
         k = min(int(place), len(self.path.z) - 2)
         z, direction = self.path.z[k], self.path.direction[k]
         if place != k:
-            between = Between(self.balance, self.path, k)
+            between = Segment(self.balance, self.path, k)
             if not between.put(place - k):
                 return math.nan
             z, direction = between.z, between.direction

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fcm.accuracy.options import PairOptions
-from fcm.continuation import Path, Status
-from fcm.continuation.follower import Follower
-from fcm.continuation.front import Front
+from fcm.continuation import Events, FollowOptions, Path, Status
+from fcm.continuation.follow import Follower
+from fcm.continuation.stepper import Stepper
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.reported import Reported, reported
@@ -64,7 +64,7 @@ class Stretches:
         self.each = seconds_of(finer, 1, len(finer.harmonics))
         self.left = options.seconds / self.each  # evaluations
         self.evaluations = 0
-        self._front: Front | None = None
+        self._stepper: Stepper | None = None
 
     def between(self, first: int, last: int) -> list[Piece]:
         """The partner between point first and point last of the curve, which may be beyond its ends.
@@ -141,18 +141,18 @@ class Stretches:
 
     def _followed(self, begin: End, end: End | None, span: tuple[float, float], forward: bool) -> Piece:
         """The partner from one end to the other, or as far as it stays in the span."""
-        front, known = self.front, 0
+        stepper, known = self.stepper, 0
 
         def pay(_: float) -> None:
             nonlocal known
-            self.evaluations += front.newton.evaluations - known
-            self.left -= front.newton.evaluations - known
-            known = front.newton.evaluations
+            self.evaluations += stepper.newton.evaluations - known
+            self.left -= stepper.newton.evaluations - known
+            known = stepper.newton.evaluations
             if self.left < 0.0:
                 raise SpentError
 
-        stations = (float(end.z[-1]),) if end else ()
-        follower = Follower(front.problem, span, self.options.step, stations, pay, front=front)
+        wanted = Events((float(end.z[-1]),) if end else ())
+        follower = Follower(stepper.problem, span, wanted, FollowOptions(self.options.step), pay, stepper)
         if not follower.begin(begin.z, forward):
             path = follower.path(Status.STALLED)
         else:
@@ -172,11 +172,11 @@ class Stretches:
         return Piece(_part(path, rows), shown.part(rows), True)
 
     @property
-    def front(self) -> Front:
+    def stepper(self) -> Stepper:
         """Of a balance of its own."""
-        if self._front is None:
-            self._front = Front(self.finer.balance())
-        return self._front
+        if self._stepper is None:
+            self._stepper = Stepper(self.finer.balance())
+        return self._stepper
 
 
 def _part(path: Path, rows: slice) -> Path:

@@ -23,9 +23,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fcm.branches.options import BRANCHING, BranchingOptions
-from fcm.continuation import Between, Path
-from fcm.continuation.branches import contains
-from fcm.continuation.newton import Newton
+from fcm.continuation import Path, Segment
+from fcm.continuation.all_branches import contains
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
 from fcm.harmonic.whole import jacobian_of
@@ -66,7 +66,7 @@ def branch_points(
         change = whole.orientation[:-1] * whole.orientation[1:] < 0.0
         for i in np.flatnonzero(change).tolist():
             balance = balance or system.balance()
-            z = _located(Between(balance, whole, i), whole.orientation[i], options)
+            z = _located(Segment(balance, whole, i), whole.orientation[i], options)
             starts = tuple(_leaving(system, z, whole, i, options))
             if starts:
                 yield BranchPoint(z, starts)
@@ -94,7 +94,7 @@ def _solved(
     return replace(path, z=z, direction=direction, orientation=orientation)
 
 
-def _located(between: Between, before: float, options: BranchingOptions) -> FloatArray:
+def _located(between: Segment, before: float, options: BranchingOptions) -> FloatArray:
     """The place between two points where the determinant changes its sign."""
     low, high = 0.0, 1.0
     between.put(low)

@@ -17,7 +17,7 @@ from fcm.branches.fold_continuation import Folds, folds_from
 from fcm.branches.options import FOLDS, FoldOptions
 from fcm.branches.surface import Surface
 from fcm.continuation import Path
-from fcm.continuation.branches import contains
+from fcm.continuation.all_branches import contains
 from fcm.harmonic.cost import seconds_of
 from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.start import Found, few_of
@@ -137,7 +137,7 @@ def _at_level_one(few: System, system: System, curve: Folds) -> Iterator[FloatAr
 
 def _in_its_plane(system: System, z: FloatArray, way: FloatArray) -> FloatArray | None:
     """The solution near a guess, in the plane across a direction in the displacements."""
-    balance, newton = system.afresh(), system.front.newton
+    balance, newton = system.afresh(), system.stepper.newton
     balance.measure(z)
     newton.scale[:], newton.z[:] = balance.scale, z
     row = way / np.asarray(balance.scale)

@@ -11,7 +11,7 @@ from fcm.branches.isolas import crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
 from fcm.continuation import Path, Status
-from fcm.continuation.branches import contains
+from fcm.continuation.all_branches import contains
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced, with_further
 

@@ -1,4 +1,4 @@
-from fcm.continuation.dense cimport Solver
+from fcm.continuation.dense_solver cimport Solver
 from fcm.harmonic.balance cimport Balance
 
 cdef class Surface:

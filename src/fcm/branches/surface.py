@@ -22,7 +22,7 @@ import numpy as np
 from cython.cimports.libc.math import fabs, isfinite, sqrt
 
 from fcm.branches.options import SURFACE, SurfaceOptions
-from fcm.continuation.dense import Solver
+from fcm.continuation.dense_solver import Solver
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.whole import jacobian_of
 

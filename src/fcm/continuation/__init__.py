@@ -1,10 +1,25 @@
 """Curves of solutions of n equations for n unknowns and a parameter; knows nothing of contacts."""
 
-from fcm.continuation.between import Between
-from fcm.continuation.branches import Branches, all_branches
+from fcm.continuation.all_branches import Branches, all_branches
+from fcm.continuation.checkpoint import Checkpoint
+from fcm.continuation.events import Events
 from fcm.continuation.follow import follow
+from fcm.continuation.options import FOLLOW, FollowOptions
 from fcm.continuation.path import Mark, Path, Status
 from fcm.continuation.problem import Problem
-from fcm.continuation.stage import Stage
+from fcm.continuation.segment import Segment
 
-__all__ = ["Between", "Branches", "Mark", "Path", "Problem", "Stage", "Status", "all_branches", "follow"]
+__all__ = [
+    "FOLLOW",
+    "Branches",
+    "Checkpoint",
+    "Events",
+    "FollowOptions",
+    "Mark",
+    "Path",
+    "Problem",
+    "Segment",
+    "Status",
+    "all_branches",
+    "follow",
+]

@@ -1,6 +1,6 @@
 """Gaussian elimination with pivots along rows, which suits stiff contacts, and what it leaves to be solved.
 
-A matrix (n, n) becomes its lower and its unit upper triangle, in place. From a row those above it are taken
+A matrix (n, n) becomes its lower and its unit upper triangle, in point. From a row those above it are taken
 four at a time: a number is then loaded and stored once for all. Of many rows four are treated together, by
 what C compiles for registers of any width, see the .pxd; every number is the same either way.
 """

@@ -1,6 +1,22 @@
-from fcm.continuation.front cimport Front
-from fcm.continuation.place cimport Place
+from fcm.continuation.root_finding cimport Secants
+from fcm.continuation.options cimport EventOptions
+from fcm.continuation.point cimport Point
+from fcm.continuation.stepper cimport Stepper
 
-cdef bint quiet(Front front, double[::1] values, double[::1] greatest) except -1
-cdef bint turns(Place here, Place there, Py_ssize_t k, double greatest) except -1
-cdef bint closes(Front front, double[::1] first, double[::1] head) except -1
+cdef double LOST
+cdef int MARGIN, FOLD, PEAK, PASSING
+
+cdef class TestFunction:
+    cdef int kind
+    cdef Py_ssize_t k
+    cdef double value
+
+cdef double value(Stepper stepper, Point point, TestFunction function) except? -1
+cdef double root_within(Stepper stepper, TestFunction function) except? -1
+cdef double root(
+    Stepper stepper, TestFunction function, double low, double high, double before, double after
+) except? -1
+cdef bint quiet(Stepper stepper, double[::1] values, double[::1] greatest) except -1
+cdef bint turns(Point here, Point there, Py_ssize_t k, double greatest, EventOptions options) except -1
+cdef bint may_exceed(Stepper stepper, Py_ssize_t k, double greatest) except -1
+cdef bint closes(Stepper stepper, double[::1] first, double[::1] head) except -1

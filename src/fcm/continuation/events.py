@@ -2,33 +2,123 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import cython
 import numpy as np
 from cython.cimports.libc.math import sqrt
 
-from fcm.continuation.front import Front
-from fcm.continuation.looks import Look, Looks
+from fcm.continuation.extremum_search import ExtremumSearch, Sample
+from fcm.continuation.options import EventOptions
 from fcm.continuation.path import FloatArray, Mark
-from fcm.continuation.place import Place
-from fcm.continuation.roots import Sought
+from fcm.continuation.point import Point
+from fcm.continuation.root_finding import Secants
+from fcm.continuation.stepper import Stepper
 
 if cython.compiled:
-    from cython.cimports.fcm.continuation.margins import NEARLY_GREATEST, RISE
-    from cython.cimports.fcm.continuation.prediction import along
+    from cython.cimports.fcm.continuation.predictor import along
     from cython.cimports.fcm.continuation.problem import DEAR
-    from cython.cimports.fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
 else:
-    from fcm.continuation.margins import NEARLY_GREATEST, RISE
-    from fcm.continuation.prediction import along
+    from fcm.continuation.predictor import along
     from fcm.continuation.problem import DEAR
-    from fcm.continuation.roots import FOLD, LOST, MARGIN, PASSING, PEAK, root, root_within
-
-SAME_WAY = cython.declare(cython.double, 0.5)  # cosine beyond which a curve closes, and does not cross itself
 
 
-class Found(NamedTuple):
+@dataclass(frozen=True)
+class Events:
+    """What a curve is to have points at, besides its folds, corners, peaks, branch points and ends.
+
+    Attributes
+    ----------
+    values : sequence of float
+        Each is an event, marked `Mark.STATION`, wherever the curve passes it.
+    narrow : sequence of (float, float)
+        Values with a width, at which the curve may have a peak that no point away from them tells of: steps
+        end there where the width is less than the longest step.
+    """
+
+    values: Sequence[float] = ()
+    narrow: Sequence[tuple[float, float]] = ()
+
+    def within(self, length: float) -> list[tuple[float, float]]:
+        """Those narrower than a length."""
+        return [one for one in self.narrow if one[1] < length]
+
+
+NO_MORE = Events()  # than those of every curve
+LOST = cython.declare(cython.double, -1.0)  # a root that is none
+MARGIN = cython.declare(cython.int, 0)  # the functions along a step
+FOLD = cython.declare(cython.int, 1)
+PEAK = cython.declare(cython.int, 2)
+PASSING = cython.declare(cython.int, 3)
+
+
+@cython.cclass
+class TestFunction:
+    """Its change of sign is an event: a margin k, the growth of the parameter or of an output k, or the
+    parameter less a value."""
+
+    def __init__(self, kind: int, k: int = 0, value: float = 0.0) -> None:
+        self.kind, self.k, self.value = kind, k, value
+
+
+@cython.cfunc
+def value(stepper: Stepper, point: Point, function: TestFunction) -> cython.double:
+    """A function along the step; a margin that there is not has not changed its sign."""
+    k: cython.Py_ssize_t = function.k
+    if function.kind == MARGIN:
+        margin: cython.double = (
+            stepper.here.margin[k] if point is stepper.here else stepper.here.margin_at(k, point)
+        )
+        return margin if margin != 0.0 else stepper.here.margin[k]
+    if function.kind == PASSING:
+        return point.z[point.z.shape[0] - 1] - function.value
+    return point.tangent[point.tangent.shape[0] - 1] if function.kind == FOLD else point.growth[k]
+
+
+@cython.cfunc
+def root_within(stepper: Stepper, function: TestFunction) -> cython.double:
+    """Length at which a function changes sign between here and there."""
+    before: cython.double = value(stepper, stepper.here, function)
+    return root(stepper, function, 0.0, stepper.step, before, value(stepper, stepper.there, function))
+
+
+@cython.cfunc
+def root(
+    stepper: Stepper,
+    function: TestFunction,
+    low: cython.double,
+    high: cython.double,
+    before: cython.double,
+    after: cython.double,
+) -> cython.double:
+    """Length at which a function changes sign between two lengths, before and after which it is known.
+
+    Where the curve cannot be found, that length is the root; but of a margin LOST: what is there may be
+    another part of a curve that goes back in the corner.
+    """
+    at: cython.double
+    now: cython.double
+    count: cython.int
+    turning: cython.bint = function.kind == FOLD or function.kind == PEAK
+    sides: Secants = Secants(low, high, before, after)
+    for count in range(stepper.options.events.most):  # noqa: B007
+        if sides.known(stepper.options.events.fine * stepper.step, function.kind == MARGIN):
+            return min(max(sides.secant, sides.low), sides.high)
+        at = sides.at
+        if not stepper.put(at, function.kind == MARGIN, False):
+            return sides.high if turning else LOST
+        if turning and not stepper.sharpen(False, function.kind == PEAK):
+            return sides.high
+        now = value(stepper, stepper.between, function)
+        if now == 0.0:
+            return at
+        sides.saw(at, now)
+    return sides.high
+
+
+class Event(NamedTuple):
     """A point of the curve within a step."""
 
     length: float  # from the beginning of the step
@@ -39,38 +129,38 @@ class Found(NamedTuple):
     shift: float  # from the approximate equations to the exact ones
 
 
-def found(front: Front, length: float, mark: int, place: Place) -> Found:
-    """A place to keep."""
-    direction = np.asarray(front.newton.scale) * np.asarray(place.tangent)
-    return Found(length, mark, np.array(place.z), direction, place.orientation, front.there.shift)
+def found(stepper: Stepper, length: float, mark: int, point: Point) -> Event:
+    """A point to keep."""
+    direction = np.asarray(stepper.newton.scale) * np.asarray(point.tangent)
+    return Event(length, mark, np.array(point.z), direction, point.orientation, stepper.there.shift)
 
 
-def seen(front: Front, look: Look, mark: int) -> Found:
+def seen(stepper: Stepper, look: Sample, mark: int) -> Event:
     """A look to keep."""
-    scale = np.asarray(front.newton.scale)
-    return Found(look.at, mark, scale * look.z, scale * look.tangent, look.orientation, front.there.shift)
+    scale = np.asarray(stepper.newton.scale)
+    return Event(look.at, mark, scale * look.z, scale * look.tangent, look.orientation, stepper.there.shift)
 
 
-def first_margin(front: Front) -> float:
+def first_margin(stepper: Stepper) -> float:
     """Where within the step a margin changes sign first; LOST if the curve is not found there.
 
     Of many that change theirs most have not yet done so where another does: their roots are not looked for.
     """
-    last, first = front.there, front.step
-    for k in _changing(front):
-        if front.here.margin[k] * front.here.margin_at(k, last) < 0.0:
-            first = min(first, root_within(front, Sought(MARGIN, k)))
+    last, first = stepper.there, stepper.step
+    for k in _changing(stepper):
+        if stepper.here.margin[k] * stepper.here.margin_at(k, last) < 0.0:
+            first = min(first, root_within(stepper, TestFunction(MARGIN, k)))
             if first == LOST:
                 break
-            last = front.between
+            last = stepper.between
     return first
 
 
-def _changing(front: Front) -> list[int]:
+def _changing(stepper: Stepper) -> list[int]:
     """Margins that change sign within the step, those first that seem to be the first."""
     places = {}
-    for k in range(front.problem.margins):
-        before, after = front.here.margin[k], front.here.margin_at(k, front.there)
+    for k in range(stepper.problem.margins):
+        before, after = stepper.here.margin[k], stepper.here.margin_at(k, stepper.there)
         if before * after < 0.0:
             places[k] = before / (before - after)
     return sorted(places, key=lambda k: places[k])
@@ -78,50 +168,53 @@ def _changing(front: Front) -> list[int]:
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def quiet(front: Front, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
+def quiet(stepper: Stepper, values: cython.double[::1], greatest: cython.double[::1]) -> cython.bint:
     """Whether there is nothing within the step."""
-    n: cython.Py_ssize_t = front.problem.unknowns
+    n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
-    here: Place = front.here
-    there: Place = front.there
+    here: Point = stepper.here
+    there: Point = stepper.there
     for k in range(values.shape[0]):
         if (values[k] - here.z[n]) * (values[k] - there.z[n]) < 0.0:
             return False
     if here.tangent[n] * there.tangent[n] < 0.0:
         return False
-    for k in range(front.problem.outputs):  # noqa: SIM110 - a loop in C
-        if turns(here, there, k, greatest[k]):
+    for k in range(stepper.problem.outputs):
+        if turns(here, there, k, greatest[k], stepper.options.events):
             return False
     return True
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def turns(here: Place, there: Place, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
+def turns(
+    here: Point, there: Point, k: cython.Py_ssize_t, greatest: cython.double, options: EventOptions
+) -> cython.bint:
     """Whether an output has a peak that matters between two places."""
     size: cython.double = max(here.output[k], there.output[k])
-    if not (here.growth[k] > RISE * size and there.growth[k] < -RISE * size):
+    least: cython.double = options.rise * size
+    if not (here.growth[k] > least and there.growth[k] < -least):
         return False
-    return size >= NEARLY_GREATEST * greatest
+    return size >= options.nearly_greatest * greatest
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def may_exceed(front: Front, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
+def may_exceed(stepper: Stepper, k: cython.Py_ssize_t, greatest: cython.double) -> cython.bint:
     """Whether a peak of an output within the step may be the greatest so far, by the slopes at its ends.
 
-    Each look is dear where a problem is soft or has many unknowns; on a curve with many loops most peaks are
-    lower than an earlier one.
+    Each point is costly where a problem is labelled or has many unknowns; on a curve with many loops most
+    peaks are lower than an earlier one.
     """
-    here: Place = front.here
-    there: Place = front.there
-    slope: cython.double = max(here.growth[k], -there.growth[k] / front.spread())
-    return max(here.output[k], there.output[k]) + front.step * slope >= greatest
+    here: Point = stepper.here
+    there: Point = stepper.there
+    slope: cython.double = max(here.growth[k], -there.growth[k] / stepper.spread())
+    return max(here.output[k], there.output[k]) + stepper.step * slope >= greatest
 
 
 @cython.cfunc
 @cython.exceptval(-1, check=False)
-def closes(front: Front, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
+def closes(stepper: Stepper, first: cython.double[::1], head: cython.double[::1]) -> cython.bint:
     """Whether the step passes the point where the curve began, in the direction that it had there."""
     i: cython.Py_ssize_t
     before: cython.double = 0.0
@@ -129,74 +222,84 @@ def closes(front: Front, first: cython.double[::1], head: cython.double[::1]) ->
     far: cython.double = 0.0
     farther: cython.double = 0.0
     for i in range(first.shape[0]):
-        one: cython.double = (front.here.z[i] - first[i]) / front.newton.scale[i]
-        other: cython.double = (front.there.z[i] - first[i]) / front.newton.scale[i]
+        one: cython.double = (stepper.here.z[i] - first[i]) / stepper.newton.scale[i]
+        other: cython.double = (stepper.there.z[i] - first[i]) / stepper.newton.scale[i]
         far += one * one
         farther += other * other
         before += one * head[i]
         after += other * head[i]
-    if sqrt(min(far, farther)) > front.step:
+    if sqrt(min(far, farther)) > stepper.step:
         return False
-    return before < 0.0 <= after and along(front.here.tangent, head) > SAME_WAY
+    return before < 0.0 <= after and along(stepper.here.tangent, head) > stepper.options.events.same_way
 
 
-def within(front: Front, limit: float, values: list[float], greatest: FloatArray) -> list[Found]:
+def within(stepper: Stepper, limit: float, values: list[float], greatest: FloatArray) -> list[Event]:
     """Folds, peaks and values of the parameter before a limit, a length of the step, in order."""
-    n: cython.Py_ssize_t = front.problem.unknowns
+    n: cython.Py_ssize_t = stepper.problem.unknowns
     k: cython.Py_ssize_t
     most: cython.double[::1] = greatest
-    here: Place = front.here
-    there: Place = front.there
+    here: Point = stepper.here
+    there: Point = stepper.there
     events = []
-    dear: cython.bint = front.problem.soft or front.problem.unknowns >= DEAR  # what lies between helps
+    costly: cython.bint = (
+        stepper.problem.labelled or stepper.problem.unknowns >= DEAR
+    )  # what lies between helps
     folds: cython.bint = here.tangent[n] * there.tangent[n] < 0.0
-    peaks = [k for k in range(front.problem.outputs) if turns(here, there, k, most[k])]
-    looks = Looks(front) if dear and (folds or peaks) else None
+    peaks = [
+        k for k in range(stepper.problem.outputs) if turns(here, there, k, most[k], stepper.options.events)
+    ]
+    looks = ExtremumSearch(stepper) if costly and (folds or peaks) else None
     if folds:
-        events += located(front, FOLD, 0, limit, Mark.FOLD, looks)
+        events += located(stepper, FOLD, 0, limit, Mark.FOLD, looks)
     fold = events[0] if events else None
     for value in values:
-        events += passings(front, value, fold)
+        events += passings(stepper, value, fold)
     for k in peaks:
-        if not dear or may_exceed(front, k, most[k]):
-            events += located(front, PEAK, k, limit, Mark.PEAK, looks)
+        if not costly or may_exceed(stepper, k, most[k]):
+            events += located(stepper, PEAK, k, limit, Mark.PEAK, looks)
     return sorted((event for event in events if event.length <= limit), key=lambda event: event.length)
 
 
-def located(front: Front, kind: int, k: int, limit: float, mark: int, looks: Looks | None) -> list[Found]:
+def located(
+    stepper: Stepper, kind: int, k: int, limit: float, mark: int, looks: ExtremumSearch | None
+) -> list[Event]:
     """The root of a function along the step, as a list of one point, or none if the curve is not found."""
     if looks is not None:
         look = looks.extreme(None if kind == FOLD else k)
-        return [seen(front, look, mark)] if look.at <= limit else []
-    at = root_within(front, Sought(kind, k))
-    return [found(front, at, mark, front.between)] if at <= limit and front.put(at, False, False) else []
+        return [seen(stepper, look, mark)] if look.at <= limit else []
+    at = root_within(stepper, TestFunction(kind, k))
+    return (
+        [found(stepper, at, mark, stepper.between)] if at <= limit and stepper.put(at, False, False) else []
+    )
 
 
-def passings(front: Front, value: float, fold: Found | None) -> list[Found]:
+def passings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
     """Where the parameter passes a value: once on the way, or on either side of a fold.
 
     At a value next to a fold the equations have two solutions close together, either of which may be found,
-    or none, so that there the place is looked for along the step.
+    or none, so that there the point is looked for along the step.
     """
-    n: cython.Py_ssize_t = front.problem.unknowns
-    begin: float = front.here.z[n] - value
-    end: float = front.there.z[n] - value
+    n: cython.Py_ssize_t = stepper.problem.unknowns
+    begin: float = stepper.here.z[n] - value
+    end: float = stepper.there.z[n] - value
     if fold is not None:
         top = float(fold.z[n]) - value
-        return passing(front, value, 0.0, fold.length, begin, top) + passing(
-            front, value, fold.length, front.step, top, end
+        return passing(stepper, value, 0.0, fold.length, begin, top) + passing(
+            stepper, value, fold.length, stepper.step, top, end
         )
-    if begin * end < 0.0 and front.land(value) and 0.0 <= front.length(front.between) <= front.step:
-        return [found(front, front.length(front.between), Mark.STATION, front.between)]
-    return passing(front, value, 0.0, front.step, begin, end)
+    if begin * end < 0.0 and stepper.land(value) and 0.0 <= stepper.length(stepper.between) <= stepper.step:
+        return [found(stepper, stepper.length(stepper.between), Mark.STATION, stepper.between)]
+    return passing(stepper, value, 0.0, stepper.step, begin, end)
 
 
-def passing(front: Front, value: float, low: float, high: float, before: float, after: float) -> list[Found]:
+def passing(
+    stepper: Stepper, value: float, low: float, high: float, before: float, after: float
+) -> list[Event]:
     """Where the parameter passes a value between two lengths, at which it is greater by before and after."""
     if not before * after < 0.0:
         return []
-    at = root(front, Sought(PASSING, 0, value), low, high, before, after)
-    if at == LOST or not front.put(at, False, False):
+    at = root(stepper, TestFunction(PASSING, 0, value), low, high, before, after)
+    if at == LOST or not stepper.put(at, False, False):
         return []
-    front.between.z[front.problem.unknowns] = value
-    return [found(front, at, Mark.STATION, front.between)]
+    stepper.between.z[stepper.problem.unknowns] = value
+    return [found(stepper, at, Mark.STATION, stepper.between)]

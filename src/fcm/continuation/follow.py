@@ -14,30 +14,257 @@ Methods").
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
-from fcm.continuation.follower import Follower, Progress, Watch
-from fcm.continuation.front import Front
-from fcm.continuation.path import FloatArray, Path, Status
+import cython
+import numpy as np
+
+from fcm.continuation.checkpoint import Checkpoint, put_back, state_of
+from fcm.continuation.events import NO_MORE, Events
+from fcm.continuation.labelled_switching import LabelledSwitching
+from fcm.continuation.landing import Landing
+from fcm.continuation.nonsmooth_points import NonsmoothPoints
+from fcm.continuation.options import FOLLOW, FollowOptions, StepOptions, SwitchingOptions
+from fcm.continuation.path import FloatArray, Mark, Path, Status
+from fcm.continuation.point import Point
 from fcm.continuation.problem import Problem
-from fcm.continuation.stage import Stage
+from fcm.continuation.recorder import Recorder, earlier
+from fcm.continuation.stepper import Stepper
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.nonsmooth_points import before_corner
+    from cython.cimports.fcm.continuation.step_control import clear, extent, good, next_step
+    from cython.cimports.fcm.continuation.switching_functions import (
+        ahead,
+        crosses,
+        detour,
+        dip,
+        even,
+        turning,
+    )
+else:
+    from fcm.continuation.nonsmooth_points import before_corner
+    from fcm.continuation.step_control import clear, extent, good, next_step
+    from fcm.continuation.switching_functions import ahead, crosses, detour, dip, even, turning
 
 __all__ = ["Progress", "Watch", "follow"]
+
+BRANCH = cython.declare(cython.long, int(Mark.BRANCH))
+
+Progress = Callable[[float], None]  # fraction of the range that has been covered
+Watch = Callable[[Checkpoint], None]
+
+
+@cython.cclass
+class Follower:
+    """`begin` or `resume`, then `run`: steps, the points that they keep, and where the curve ends."""
+
+    problem: Problem
+    options: FollowOptions
+    stepper: Stepper
+    recorder: Recorder
+    landing: Landing  # values of the parameter that no step leads across
+    nonsmooth: NonsmoothPoints
+    step: cython.double
+    size: cython.double  # of the solution at the start
+    near: cython.double  # a corner no further away is gone to at once
+    attempts: int  # to go back from where no step leads on
+    labelled: LabelledSwitching | None
+    progress: Progress | None
+
+    def __init__(
+        self,
+        problem: Problem,
+        span: tuple[float, float],
+        events: Events = NO_MORE,
+        options: FollowOptions = FOLLOW,
+        progress: Progress | None = None,
+        stepper: Stepper | None = None,
+    ) -> None:
+        self.problem, self.options, self.progress = problem, options, progress
+        self.stepper = stepper or Stepper(problem, options)
+        self.stepper.ready(options)
+        self.near = options.max_step if options.hasty or problem.costly else options.switching.near
+        self.recorder = Recorder(self.stepper, span, events.values)
+        self.landing = Landing(events.within(options.max_step * (span[1] - span[0])))
+        self.nonsmooth, self.attempts = NonsmoothPoints(self.recorder, problem.labelled), 0
+        self.labelled = LabelledSwitching(self.stepper, self.recorder.store) if problem.labelled else None
+
+    def begin(self, start: FloatArray, forward: bool) -> bool:
+        """Go to the curve at the start; whether there is one."""
+        row = np.zeros(self.problem.unknowns + 1)
+        row[self.problem.unknowns] = 1.0 if forward else -1.0
+        if not self.stepper.begin(np.array(start, dtype=np.float64), row):
+            return False
+        self.recorder.begins(start[self.problem.unknowns])
+        self.size = extent(self.stepper)
+        self.step = min(self.options.step.first, self.options.max_step)
+        return True
+
+    def resume(self, checkpoint: Checkpoint) -> None:
+        """Go where the curve had come to."""
+        put_back(self.stepper, checkpoint)
+        self.recorder.resumes(checkpoint)
+        self.step, self.size = checkpoint.step, checkpoint.size
+
+    def checkpoint(self) -> Checkpoint:
+        """Where it is."""
+        return Checkpoint(step=self.step, size=self.size, **self.recorder.state(), **state_of(self.stepper))
+
+    def run(self, watch: Watch | None) -> Path:
+        """Step by step to where the curve ends."""
+        count: cython.int
+        for count in range(self.options.step.most):
+            if watch is not None and self.labelled is not None and self.labelled.repeated == 0:
+                watch(self.checkpoint())
+            status = self.advance()
+            if status is None:
+                if self.progress is not None and count % 16 == 0:
+                    self.progress(self.recorder.covered())
+            elif status is not Status.STALLED or not self.taken_back():
+                return self.path(status)
+        return self.path(Status.TOO_LONG)
+
+    def path(self, status: Status) -> Path:
+        """The points kept so far."""
+        return self.recorder.path(status)
+
+    def taken_back(self) -> bool:
+        """Whether the curve can be gone on with from an earlier point, by other steps."""
+        if self.labelled is not None or self.attempts == len(self.options.step.back):
+            return False
+        self.attempts += 1
+        self.step = min(self.options.step.first, self.options.max_step)
+        return earlier(self.stepper, self.recorder.store, self.options.step.back[self.attempts - 1])
+
+    @cython.cfunc
+    def advance(self) -> object:
+        """One step; a status where the curve ends."""
+        stepper: Stepper = self.stepper
+        control: StepOptions = self.options.step
+        switching: SwitchingOptions = self.options.switching
+        step: cython.double = self.step
+        if self.labelled is not None:
+            return self.labelled.advance(self, step)
+        step = self.landing.up_to(stepper, step)
+        many: cython.bint = self.problem.unknowns >= switching.many
+        if self.problem.costly and (self.over(step) or self.over(control.shortened * step)):
+            return self.smooth()
+        while step > control.shortest:
+            reach: cython.double = ahead(stepper, step)
+            if reach < step and step > self.near and many and self.over(step):
+                return self.smooth()
+            if reach < min(step, switching.touched):
+                stepper.drift(reach)
+                return self.leave(stepper.here, 0.0)
+            # curves bend more and more towards a corner, and may hide a pair of folds there
+            if self.near < reach < step and clear(stepper, switching.nearer * reach) and self.hidden() == 0.0:
+                return self.smooth()
+            if stepper.go(reach * (1.0 + switching.past) + control.shortest if reach < step else step):
+                if crosses(stepper):
+                    status = self.corner() if stepper.missed < 1.0 else Status.STALLED
+                    if status is not Status.STALLED:
+                        return status
+                elif reach >= step and good(stepper):
+                    hidden: cython.double = self.hidden() or self.landing.across(stepper, step)
+                    if hidden == 0.0:
+                        return self.smooth()
+                    step = hidden
+                    continue
+            # the curve may turn back in a corner, so that nothing is to be found beyond
+            if reach < step and clear(stepper, reach * (1.0 - switching.past)):
+                return self.smooth()
+            step = 0.25 * min(step, reach)
+        return Status.STALLED
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def over(self, step: cython.double) -> cython.bint:
+        """Whether a step goes on past all margins as if there were none: where they are many, most corners
+        are slight. Only if none can hide a pair of folds, which a hasty curve may miss."""
+        stepper: Stepper = self.stepper
+        if not stepper.go(step) or not good(stepper) or self.landing.across(stepper, step) > 0.0:
+            return False
+        if detour(stepper, self.recorder.most) != 0.0:
+            return False
+        return self.options.hasty or not crosses(stepper) or even(stepper)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def hidden(self) -> cython.double:
+        """Length at which the step passes by something that both its ends tell of; 0 if they do not."""
+        self.stepper.incline()
+        at: cython.double = dip(self.stepper)
+        return at if at > 0.0 else detour(self.stepper, self.recorder.most)
+
+    def good(self) -> bool:
+        """Whether the curve was where it was predicted, and went on as it did."""
+        return bool(good(self.stepper))
+
+    def turning(self) -> float:
+        """Length at which the step passes by two folds that its ends tell of; 0 if they do not."""
+        return float(turning(self.stepper) * self.stepper.step)
+
+    @cython.ccall
+    def smooth(self) -> object:
+        """Go on to the point there."""
+        stepper: Stepper = self.stepper
+        count: cython.int = self.recorder.store.count
+        if self.recorder.keep(stepper.step):
+            return self.recorder.end()
+        if not self.recorder.inside():
+            self.recorder.store.cut(count)  # beyond an end that was not landed on
+            self.step = 0.25 * stepper.step
+            return Status.STALLED if self.step < self.options.step.after else None
+        if self.recorder.closed():
+            return Status.CLOSED
+        turned: cython.bint = stepper.there.orientation != stepper.here.orientation
+        self.recorder.add(BRANCH if turned else 0)
+        wanted: cython.double = self.step
+        self.step = next_step(stepper)
+        if self.landing.met and self.step >= stepper.step:  # nothing was there: on with the steps before
+            self.step = max(self.step, wanted)
+        stepper.accept(stepper.there, stepper.step)
+        self.recorder.rise()
+        return Status.UNBOUNDED if extent(stepper) > self.problem.unbounded * self.size else None
+
+    @cython.cfunc
+    def corner(self) -> object:
+        """Go on from the first corner of the step; STALLED where the curve is not found up to there."""
+        stepper: Stepper = self.stepper
+        at: cython.double = before_corner(stepper)
+        if at < 0.0:
+            return Status.STALLED
+        if self.recorder.keep(stepper.step):
+            return self.recorder.end()
+        point: Point = stepper.between if stepper.put(at, True, True) else stepper.there
+        return self.leave(point, at)
+
+    @cython.ccall
+    def leave(self, point: Point, at: cython.double, past: cython.double = 0.0) -> object:
+        """Go on from a corner, a point at a length from here; past: where to look if it is labelled."""
+        self.nonsmooth.at(point, at, past or self.options.switching.beyond)
+        resumed: cython.double = self.options.step.resumed * self.step if self.problem.costly else 0.0
+        self.step = max(self.options.step.after, resumed)
+        return None
+
+    def aim(self, step: float, longer: bool) -> None:
+        """Make the next step at most that long, or at least."""
+        self.step = min(max(self.step, step), self.options.max_step) if longer else min(self.step, step)
 
 
 def follow(
     problem: Problem,
     start: FloatArray,
     span: tuple[float, float],
+    events: Events = NO_MORE,
+    options: FollowOptions = FOLLOW,
+    *,
     forward: bool = True,
-    max_step: float = 0.05,
-    stations: Sequence[float] = (),
     progress: Progress | None = None,
-    stage: Stage | None = None,
     watch: Watch | None = None,
-    hasty: bool = False,
-    front: Front | None = None,
-    narrow: Sequence[tuple[float, float]] = (),
+    checkpoint: Checkpoint | None = None,
+    stepper: Stepper | None = None,
 ) -> Path:
     """Follow the curve through start until the parameter leaves the span, or the curve closes.
 
@@ -49,34 +276,43 @@ def follow(
         Near a point of the curve, the parameter last; it is corrected with the parameter held.
     span : (low, high)
         Of the parameter; the start may lie within.
+    events : Events
+        Points that the curve is to have besides those at its own events: folds, corners, peaks of outputs,
+        branch points and the ends of the span; see `Mark`.
+    options : FollowOptions
+        All tolerances, and the longest step.
     forward : bool
         Whether the parameter rises at first.
-    max_step : float
-        Longest step, in the problem's scale.
-    stations : sequence of float
-        Values of the parameter at which the curve has points, marked.
     progress : callable, optional
         Called now and then.
-    stage : Stage, optional
-        Of the same curve of a soft problem, to which it had come when it was interrupted.
     watch : callable, optional
-        Is given the stage before every step of a soft problem.
-    hasty : bool
-        Whether only the passings of stations matter: corners are gone to, and left, by longer steps.
-    front : Front, optional
+        Is given the checkpoint before every step of a problem with labels.
+    checkpoint : Checkpoint, optional
+        Of the same curve of such a problem, to which it had come when it was interrupted.
+    stepper : Stepper, optional
         Of the same problem, that has followed another curve to its end.
-    narrow : sequence of (float, float)
-        Values of the parameter, with a width, at which the curve may have a peak that no point away from it
-        tells of: steps end there, where the width is less than the longest step.
 
     Returns
     -------
     Path
         With status STALLED and without points where there is no curve at the start.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> class Circle(Problem):
+    ...     def evaluate(self, z):
+    ...         x, y = z
+    ...         self.residual[0] = x * x + y * y - 1.0
+    ...         self.jacobian[0, 0], self.jacobian[0, 1] = 2.0 * x, 2.0 * y
+    ...         return 0
+    >>> path = follow(Circle(1, 0, 0), np.array([1.0, 0.0]), (-2.0, 2.0))
+    >>> path.status.name, [round(y, 6) for y in path.parameter[path.where(Mark.FOLD)].tolist()]
+    ('CLOSED', [1.0, -1.0])
     """
-    follower = Follower(problem, span, max_step, stations, progress, hasty, front, narrow)
-    if stage is not None:
-        follower.resume(stage)
+    follower = Follower(problem, span, events, options, progress, stepper)
+    if checkpoint is not None:
+        follower.resume(checkpoint)
     elif not follower.begin(start, forward):
         return follower.path(Status.STALLED)
     return follower.run(watch)

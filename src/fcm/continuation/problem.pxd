@@ -8,9 +8,9 @@ cdef class Problem:
     cdef public int rank
     cdef public int group
     cdef public bint coarse
-    cdef public bint soft
-    cdef public bint dear
-    cdef public double boundless
+    cdef public bint labelled
+    cdef public bint costly
+    cdef public double unbounded
     cdef public double[::1] residual
     cdef public double[:, ::1] jacobian
     cdef public double[::1] scale

@@ -10,7 +10,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-BOUNDLESS = cython.declare(cython.double, 1e9)  # `boundless` where a problem says nothing else
+BOUNDLESS = cython.declare(cython.double, 1e9)  # `unbounded` where a problem says nothing else
 DEAR = cython.declare(cython.int, 100)  # unknowns, from which on most of the work is to solve for them
 NONE = cython.declare(cython.int, -1)  # kind of a margin that is none
 
@@ -26,19 +26,19 @@ class Problem:
     rank: 0; or the size of a smaller system to which that of Newton's method is condensed, by the problem
     itself. Then jacobian is (n, 1), the derivative by the parameter alone; see `factor` and `solve`.
     group: margins of so many in a row belong together; one is never the same as one of another group.
-    boundless: growth of the solution, in units of its size at the start, that only an undamped resonance has.
-    coarse: whether there are approximate equations, with which each place is sought first; see `refine`.
-    dear: whether there are so many unknowns that every place counts: slight corners are stepped over, peaks
-    and folds sought between all places of a step that are known.
-    soft: whether the margins are labels: the problem is smooth while they stay, and may be where they change.
+    unbounded: growth of the solution, in units of its size at the start, that only an undamped resonance has.
+    coarse: whether there are approximate equations, with which each point is sought first; see `refine`.
+    costly: whether there are so many unknowns that every point counts: slight corners are stepped over,
+    peaks and folds sought between all points of a step that are known.
+    labelled: whether the margins are labels: while they stay the problem is smooth; else it may not be.
     """
 
     def __init__(
         self, unknowns: cython.int, margins: cython.int, outputs: cython.int, rank: cython.int = 0
     ) -> None:
         self.unknowns, self.margins, self.outputs, self.rank = unknowns, margins, outputs, rank
-        self.coarse, self.soft, self.boundless = False, False, BOUNDLESS
-        self.group, self.dear = margins, unknowns >= DEAR
+        self.coarse, self.labelled, self.unbounded = False, False, BOUNDLESS
+        self.group, self.costly = margins, unknowns >= DEAR
         self.residual = np.zeros(unknowns)
         self.jacobian = np.zeros((unknowns, 1 if rank else unknowns + 1))
         self.scale = np.ones(unknowns + 1)

@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Path, Status, follow
+from fcm.continuation import FollowOptions, Path, Status, follow
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.linear_contacts import foresee
 from fcm.harmonic.nearby import lowest_of, turns_near
@@ -28,7 +28,7 @@ from fcm.scene.model import FloatArray
 MANY = 7  # harmonics, from the first on, with which a peak is within a per cent or so
 FAR = 0.5  # of a solution's size: a Newton step that leads further is not believed
 CLOSE = 0.1  # of it: what moves further may have come to another solution
-STEP = 0.5  # longest, on the way to a solution
+ON_THE_WAY = FollowOptions(0.5)  # to a solution
 DETOUR = -9.0  # as far back as the way may lead before it does: it has folds
 REPORTS = 16  # of the follower, of 16 steps each, after which it is too long
 APART = 1e-3  # of their size: solutions that come closer than this have become one
@@ -104,7 +104,7 @@ def same(one: FloatArray, other: FloatArray) -> bool:
 
 def at_its_frequency(system: System, z: FloatArray, far: float = FAR) -> FloatArray | None:
     """The solution that Newton's method finds from z at its frequency, if that is not far."""
-    balance, newton = system.afresh(), system.front.newton
+    balance, newton = system.afresh(), system.stepper.newton
     newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
     balance.measure(z)
     newton.scale[:] = balance.scale
@@ -125,7 +125,7 @@ def led_to(system: System, z: FloatArray) -> FloatArray | None:
             raise _LostError
 
     try:
-        path = follow(way, np.append(z[:-1], 0.0), (DETOUR, 1.0), True, STEP, (), tire)
+        path = follow(way, np.append(z[:-1], 0.0), (DETOUR, 1.0), options=ON_THE_WAY, progress=tire)
     except _LostError:
         return None
     arrived = path.status is Status.COMPLETE and path.parameter[-1] == 1.0

@@ -81,9 +81,9 @@ def passings(system: System, path: Path, omega: float) -> list[FloatArray] | Non
 
 def _between(system: System, omega: float, ends: FloatArray, part: float) -> FloatArray | None:
     """The solution near a part of the way between two of other levels, if it lies between them."""
-    level, front = system.raised
+    level, stepper = system.raised
     level.begin(omega)
-    newton, chord = front.newton, ends[1] - ends[0]
+    newton, chord = stepper.newton, ends[1] - ends[0]
     newton.z[:] = np.append(ends[0] + part * chord, 1.0)
     newton.row[:] = np.append(np.zeros(chord.size), 1.0)
     level.measure(newton.z)

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fcm.continuation.dense import Solver
+from fcm.continuation.dense_solver import Solver
 from fcm.harmonic.modal_answer import ModalAnswer
 from fcm.scene.model import FloatArray
 from fcm.structure.receptance import Receptance

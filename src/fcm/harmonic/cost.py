@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
-from fcm.continuation.front import Front
+from fcm.continuation.stepper import Stepper
 from fcm.harmonic.condensed import condensed_size
 from fcm.harmonic.system import System
 from fcm.scene.rules import MOST_HARMONICS, harmonics_up_to
@@ -58,7 +58,9 @@ def with_twice_as_many(system: System, evaluations: int) -> System | None:
     return system.with_harmonics(harmonics_up_to(more))
 
 
-def paid(system: System, front: Front, progress: Progress | None, follow: Callable[[Progress], Path]) -> Path:
+def paid(
+    system: System, stepper: Stepper, progress: Progress | None, follow: Callable[[Progress], Path]
+) -> Path:
     """What follow returns with a progress that adds what it takes to the work of a system, as it goes on."""
     known, each = 0, seconds_of(system, 1, len(system.harmonics))
 
@@ -68,7 +70,7 @@ def paid(system: System, front: Front, progress: Progress | None, follow: Callab
         system.work.take(new * each)
 
     def report(share: float) -> None:
-        add(front.newton.evaluations)
+        add(stepper.newton.evaluations)
         if progress is not None:
             progress(share)
 

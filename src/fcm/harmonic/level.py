@@ -23,14 +23,14 @@ class Level(Problem):
         Problem.__init__(self, balance.unknowns, balance.margins, 0, balance.rank)
         self.group, self.residual, self.jacobian = balance.group, balance.residual, balance.jacobian
         self.margin, self.kind, self.angle = balance.margin, balance.kind, balance.angle
-        self.boundless *= self.boundless  # as much again as the level may grow
+        self.unbounded *= self.unbounded  # as much again as the level may grow
         self.balance, self.z = balance, np.zeros(balance.unknowns + 1)
-        self.many = self.dear
+        self.many = self.costly
         self.begin(omega)
 
     def begin(self, omega: float, lightly: bool = False) -> None:
         """Another curve, at omega; lightly if slight corners are stepped over however few the unknowns."""
-        self.omega, self.dear = omega, lightly or self.many
+        self.omega, self.costly = omega, lightly or self.many
         self.balance.largest[:] = 0.0
 
     @cython.ccall

@@ -1,4 +1,4 @@
-from fcm.continuation.newton cimport Newton
+from fcm.continuation.corrector cimport Newton
 from fcm.harmonic.balance cimport Balance
 from fcm.harmonic.homotopy cimport Homotopy
 

@@ -6,7 +6,7 @@ import cython
 import numpy as np
 from cython.cimports.libc.math import fabs, sqrt
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.homotopy import Homotopy
 

@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Path
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Path
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.autonomous import Autonomous, ComplexArray, Guess
 from fcm.harmonic.past_corners import follow_past_corners
 from fcm.harmonic.record import borne_along
@@ -77,7 +77,9 @@ def nonlinear_mode(system: System, number: int, span: tuple[float, float], max_s
     low, high = (float(np.log(a)) for a in span)
     for guess in guesses:
         problem, new_problem = Autonomous(system, guess), partial(Autonomous, followed, guess)
-        path = follow_past_corners(new_problem, new_problem().start(low), (low, high), max_step)
+        path = follow_past_corners(
+            new_problem, new_problem().start(low), (low, high), FollowOptions(max_step)
+        )
         if path.z.shape[0]:
             break
     if followed is not system:

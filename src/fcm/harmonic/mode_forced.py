@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from fcm.continuation import Between, Path
+from fcm.continuation import Path, Segment
 from fcm.harmonic.mode import Mode, mode_at
 from fcm.scene.model import FloatArray
 
@@ -65,7 +65,7 @@ def resonances(mode: Mode, level: float = 1.0) -> Mode | None:
 
 def _between(mode: Mode, i: int, level: float) -> FloatArray | None:
     """The resonance between a point and the next."""
-    curve = Between(mode.problem, mode.path, i)
+    curve = Segment(mode.problem, mode.path, i)
 
     def off(part: float) -> float:
         if not 0.0 < part < 1.0:

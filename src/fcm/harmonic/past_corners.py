@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Path, Problem, Status, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Path, Problem, Status, follow
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 
 RESTARTS = 12  # of a curve, on its way past corners
@@ -26,12 +26,12 @@ class _StuckError(Exception):
 
 
 def follow_past_corners(
-    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], max_step: float
+    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], options: FollowOptions
 ) -> Path:
     """The curve through start, upwards from the lower end of the span, as of `follow`."""
     whole, low = None, span[0]
     for _ in range(RESTARTS):
-        path, ended = _part(new_problem, start, (low, span[1]), max_step)
+        path, ended = _part(new_problem, start, (low, span[1]), options)
         if not path.z.shape[0]:
             return path if whole is None else whole
         if low > span[0] and path.status is Status.RETURNED:  # to where it was taken up
@@ -48,7 +48,7 @@ def follow_past_corners(
 
 
 def _part(
-    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], max_step: float
+    new_problem: Callable[[], Problem], start: FloatArray, span: tuple[float, float], options: FollowOptions
 ) -> tuple[Path, bool]:
     """The curve as far as its steps lead, and whether that is its end."""
     last, same = -1.0, 0
@@ -61,13 +61,13 @@ def _part(
             raise _StuckError
 
     try:
-        path = follow(new_problem(), start, span, True, max_step, (), watch)
+        path = follow(new_problem(), start, span, options=options, progress=watch)
         return path, path.status is not Status.STALLED
     except _StuckError:
         reach = span[0] + last * (span[1] - span[0]) * (1.0 - 1e-6)
         if not reach > span[0]:
-            return follow(new_problem(), start, span, True, max_step), True
-        path = follow(new_problem(), start, (span[0], reach), True, max_step)
+            return follow(new_problem(), start, span, options=options), True
+        path = follow(new_problem(), start, (span[0], reach), options=options)
         return replace(path, status=Status.STALLED), path.status is not Status.COMPLETE
 
 

@@ -8,7 +8,7 @@ from enum import Enum
 import numpy as np
 from scipy.optimize import brentq
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.by_number import Rates, growth_of
 from fcm.harmonic.system import System

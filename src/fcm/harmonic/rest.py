@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fcm.continuation import Status, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Status, follow
+from fcm.continuation.corrector import Newton
 from fcm.continuation.problem import Problem
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
@@ -21,7 +21,7 @@ from fcm.structure.linear import Linear
 from fcm.structure.rigid import HELD
 
 LEAST = 1e-3  # share of the loads to begin with
-STEP = 0.2  # longest, along the curve of the share
+BY_SHARE = FollowOptions(0.2)  # along the curve of the share
 SMALL = 0.1  # shares are measured by themselves, and below this by this
 ADRIFT = (
     "the static loads push the structure along a rigid-body mode that no contact holds along its normal, so "
@@ -99,7 +99,7 @@ def at_rest(system: System) -> FloatArray:
     omega = max(float(linear.natural.max(initial=0.0)), 1.0)  # any: nothing moves
     for guess in _linear(single, LEAST):
         problem = Share(single.balance(), omega)
-        path = follow(problem, np.append(guess, LEAST), (LEAST, 1.0), True, STEP)
+        path = follow(problem, np.append(guess, LEAST), (LEAST, 1.0), options=BY_SHARE)
         if path.status is Status.COMPLETE and path.z.shape[0] and path.parameter[-1] == 1.0:
             return path.z[-1][single.layout.mean_at]  # type: ignore[no-any-return]
     for guess in _linear(single, 1.0):

@@ -15,8 +15,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from fcm.continuation import Path, Status, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import Events, FollowOptions, Path, Status, follow
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.common_levels import in_common, passings
 from fcm.harmonic.cost import paid, seconds_of
 from fcm.harmonic.linear_contacts import (
@@ -188,10 +188,11 @@ def _raised(
     hasty: bool = False,
     lightly: bool = False,
 ) -> Path:
-    level, front = system.raised
+    level, stepper = system.raised
     level.begin(omega, lightly)
-    along = partial(follow, level, start, span, True, step, stations, hasty=hasty, front=front)
-    return paid(system, front, None, lambda report: along(progress=report))
+    wanted, options = Events(stations), FollowOptions(step, hasty)
+    along = partial(follow, level, start, span, wanted, options, stepper=stepper)
+    return paid(system, stepper, None, lambda report: along(progress=report))
 
 
 def _back(path: Path, low: float) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 from fcm.contact.closed_form import ClosedForm
 from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
-from fcm.continuation.front import Front
+from fcm.continuation.stepper import Stepper
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.condensed import OPTIONS, Condensed, CondensedOptions, condensed_size, yielding
 from fcm.harmonic.displacement import Displacements
@@ -111,12 +111,12 @@ class System:
         return self._workspace.taken_by(self).balance
 
     @property
-    def front(self) -> Front:
+    def stepper(self) -> Stepper:
         """Of `looking`, for whoever follows it."""
-        return self._workspace.taken_by(self).front
+        return self._workspace.taken_by(self).stepper
 
     @property
-    def raised(self) -> tuple[Level, Front]:
+    def raised(self) -> tuple[Level, Stepper]:
         """`looking` in the level of its forces."""
         return self._workspace.taken_by(self).raised
 
@@ -208,13 +208,13 @@ class _Workspace:
         return self
 
     @cached_property
-    def front(self) -> Front:
-        return Front(self.balance)
+    def stepper(self) -> Stepper:
+        return Stepper(self.balance)
 
     @cached_property
-    def raised(self) -> tuple[Level, Front]:
+    def raised(self) -> tuple[Level, Stepper]:
         level = Level(self.balance)
-        return level, Front(level)
+        return level, Stepper(level)
 
 
 class _Kept(threading.local):

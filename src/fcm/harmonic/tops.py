@@ -7,7 +7,7 @@ import numpy.typing as npt
 from numpy.polynomial import chebyshev
 
 from fcm.continuation import Path
-from fcm.continuation.between import Between
+from fcm.continuation.segment import Segment
 from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -46,7 +46,7 @@ class _Way:
         self.system = System(scene.at_attached_and(chosen), system.harmonics, system.table, system.corrected)
         place = {name: i for i, name in enumerate(self.system.scene.modal.dofs)}
         self.columns = np.array([place[scene.modal.dofs[d]] for d in dofs], dtype=np.intp)
-        self.dofs, self.between = dofs, Between(self.system.balance(), path, first)
+        self.dofs, self.between = dofs, Segment(self.system.balance(), path, first)
 
     def raise_to(self, height: FloatArray, omega: FloatArray) -> None:
         """Put what is higher on the way, and where, in the place of heights (dof,) and frequencies."""

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from fcm.continuation import Branches, Path, all_branches, follow
-from fcm.continuation.branches import Follow
+from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches, follow
+from fcm.continuation.all_branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
 from fcm.harmonic.carried import MANY, found_at, led, place_on
@@ -92,7 +92,7 @@ def _through(system: System, starts: Sequence[FloatArray], progress: Progress | 
     span = system.scene.frequency_range
     inside = [z for z in starts if span[0] <= z[-1] <= span[1]]
     step, along = system.scene.max_step, _along(system)
-    return _steady(system, all_branches(system.afresh, inside, span, step, progress, along))
+    return _steady(system, all_branches(system.afresh, inside, span, FollowOptions(step), progress, along))
 
 
 def with_further(
@@ -102,27 +102,29 @@ def with_further(
     that were traced before."""
     span, known = system.scene.frequency_range, before.branches
     step, along = system.scene.max_step, _along(system)
-    branches = all_branches(system.afresh, starts, span, step, None, along, known.paths)
+    branches = all_branches(system.afresh, starts, span, FollowOptions(step), None, along, known.paths)
     further = (path for path in branches.paths[len(known.paths) :] if not _nowhere(system, path))
     branches = Branches((*known.paths, *further), (*known.lost, *branches.lost))
     return replace(before, branches=branches, found=(*before.found, *found))
 
 
 def _along(system: System) -> Follow:
-    """Follows the balance that a system looks with, on the one front that it has for that."""
-    front, places = system.front, narrow(system)
+    """Follows the balance that a system looks with, on the one stepper that it has for that."""
+    stepper, places = system.stepper, narrow(system)
 
     def along(
         problem: Problem,
         start: FloatArray,
         span: tuple[float, float],
+        wanted: Events,
+        options: FollowOptions,
+        *,
         forward: bool,
-        max_step: float,
-        stations: Sequence[float],
         progress: Progress | None,
     ) -> Path:
-        one = partial(follow, problem, start, span, forward, max_step, stations, front=front, narrow=places)
-        return paid(system, front, progress, lambda report: one(progress=report))
+        landed = replace(wanted, narrow=places)
+        one = partial(follow, problem, start, span, landed, options, forward=forward, stepper=stepper)
+        return paid(system, stepper, progress, lambda report: one(progress=report))
 
     return along
 

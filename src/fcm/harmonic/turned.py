@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 
 from fcm.continuation import Mark, Path
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fcm.continuation import Path
-from fcm.continuation.branches import SAME
-from fcm.continuation.newton import Newton
+from fcm.continuation.all_branches import SAME
+from fcm.continuation.corrector import Newton
 from fcm.motion.state import State
 from fcm.orbit.harmonic import MANY, computed_state
 from fcm.orbit.held import held

@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from fcm.continuation import Mark, Path, Status, all_branches, follow
-from fcm.continuation.branches import Branches, Follow
+from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, follow
+from fcm.continuation.all_branches import Branches, Follow
 from fcm.motion.errors import SimulationError
 from fcm.orbit.apart import ACCURACY, converged_balance, passes
 from fcm.orbit.bounded import Bounded
@@ -92,7 +92,9 @@ def trace_orbits(
     z = first_point(problem, begin)
     said = None if progress is None else lambda fraction: progress(fraction, "")
     forward = z[-1] - span[0] <= span[1] - z[-1]
-    return branch_of(problem, follow(problem, z, span, forward, longest, (), said))
+    return branch_of(
+        problem, follow(problem, z, span, options=FollowOptions(longest), forward=forward, progress=said)
+    )
 
 
 def explore(
@@ -106,7 +108,11 @@ def explore(
     scene = problem.scene
     found, missed, sought, apart = starts(problem, look)
     branches = partial(
-        all_branches, lambda: problem, span=scene.frequency_range, max_step=scene.max_step, along=along
+        all_branches,
+        lambda: problem,
+        span=scene.frequency_range,
+        options=FollowOptions(scene.max_step),
+        along=along,
     )
     paths = branches(found).paths
     bounded, lacking, lost = Bounded(look, most), list[tuple[float, float]](), list[float]()

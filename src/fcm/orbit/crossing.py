@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fcm.continuation import Between, Path
-from fcm.continuation.secants import Secants
-from fcm.continuation.soft import TOUCHED
+from fcm.continuation import Path, Segment
+from fcm.continuation.options import FOLLOW
+from fcm.continuation.root_finding import Secants
 from fcm.orbit.periodic import STABLE
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray
@@ -43,9 +43,9 @@ def crossing(problem: OrbitProblem, path: Path, first: int) -> Place | None:
     """
     ends = [_place(problem, float(i), path.z[first + i], path.direction[first + i]) for i in (0, 1)]
     sides = Secants(0.0, 1.0, ends[0].excess, ends[1].excess, may_jump=True)
-    between, stable = Between(problem, path, first), min(ends, key=lambda place: place.excess)
+    between, stable = Segment(problem, path, first), min(ends, key=lambda place: place.excess)
     for _ in range(LOOKS):
-        if stable.there or sides.width * between.length < TOUCHED:
+        if stable.there or sides.width * between.length < FOLLOW.switching.touched:
             return stable
         tried = sides.at, 0.5 * (sides.low + sides.high)
         part = next((at for at in tried if between.put(at)), None)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray, Scene

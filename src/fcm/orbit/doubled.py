@@ -11,9 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from fcm.continuation import Mark, Path
-from fcm.continuation.branches import Follow, contains, through
-from fcm.continuation.newton import Newton
+from fcm.continuation import Events, FollowOptions, Mark, Path
+from fcm.continuation.all_branches import Follow, contains, through
+from fcm.continuation.corrector import Newton
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.orbit.held import held
@@ -60,13 +60,12 @@ def doubled_paths(
 ) -> tuple[list[Path], int]:
     """The curves that begin at the flips of branches, and how many flips none was found from."""
     starts, lost = doubled_starts(problem, branches, look)
-    span, stations = problem.scene.frequency_range, sorted({float(z[-1]) for z in starts})
+    span, options = problem.scene.frequency_range, FollowOptions(problem.scene.max_step)
+    wanted = Events(sorted({float(z[-1]) for z in starts}))
     paths = list[Path]()
     for z in starts:
         if not any(contains(path, one, problem) for path in paths for one in (z, problem.later(z))):
-            path = through(
-                lambda: problem, z, span, problem.scene.max_step, stations, progress=None, along=along
-            )
+            path = through(lambda: problem, z, span, wanted, options, progress=None, along=along)
             if path.z.shape[0]:
                 paths.append(path)
             else:

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from fcm.continuation import Mark
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.sample import Sample, sampled

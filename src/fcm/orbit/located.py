@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Mark, Path, follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import FollowOptions, Mark, Path, follow
+from fcm.continuation.corrector import Newton
 from fcm.motion.state import State
 from fcm.orbit.held import held
 from fcm.orbit.problem import OrbitProblem
@@ -72,7 +72,8 @@ def _on_curve(problem: OrbitProblem, guess: Guess) -> FloatArray | None:
 def _within(problem: OrbitProblem, z: FloatArray, span: tuple[float, float]) -> list[tuple[Sample, Summits]]:
     """The peaks, folds and ends of the range on the piece of the curve through z within a span."""
     found: list[tuple[Sample, Summits]] = []
-    paths = [follow(problem, z, span, forward, problem.scene.max_step) for forward in (True, False)]
+    options = FollowOptions(problem.scene.max_step)
+    paths = [follow(problem, z, span, options=options, forward=forward) for forward in (True, False)]
     for path in paths:
         for k in np.flatnonzero(path.mark & (Mark.PEAK | Mark.FOLD | Mark.END)):
             mark = int(path.mark[k])

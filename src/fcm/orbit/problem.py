@@ -53,7 +53,7 @@ class OrbitProblem(Problem):
         self.scene, self.shooting, self.repeats = scene, Shooting(scene, repeats), repeats
         self.free = self.shooting.free
         super().__init__(self.free.size, 1, len(scene.modal.dofs))
-        self.soft = True
+        self.labelled = True
         self.span = scene.frequency_range[1] - scene.frequency_range[0]
         self.periods = 0  # that have been computed
         self._block, self._all = np.ix_(self.free, self.free), self.free.size == self.shooting.size

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fcm.continuation import Path, Stage, Status, all_branches, follow
-from fcm.continuation.branches import Follow
-from fcm.continuation.newton import Newton
+from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, all_branches, follow
+from fcm.continuation.all_branches import Follow
+from fcm.continuation.corrector import Newton
 from fcm.orbit.bounded import Bounded
 from fcm.orbit.harmonic import FEW
 from fcm.orbit.held import held
@@ -105,7 +105,7 @@ def _followed(
     if rest is None:
         return False
     there = [np.append(z[:-1], 1.0) for z in known]
-    curves = all_branches(lambda: problem, there, span, STEP, None, along, rest)
+    curves = all_branches(lambda: problem, there, span, FollowOptions(STEP), None, along, rest)
     found.extend(_beside(scene, [turn for path in curves.paths for turn in turns_of(path, omega)], look))
     return curves.status is Status.COMPLETE
 
@@ -116,25 +116,26 @@ def _along(
     problem: LevelProblem,
     start: FloatArray,
     span: tuple[float, float],
+    wanted: Events,
+    options: FollowOptions,
+    *,
     forward: bool,
-    max_step: float,
-    stations: Sequence[float],
-    _progress: object = None,
+    progress: object = None,
 ) -> Path:
     """As `follow`; passes is told of the path also where look raises `TooLongError`."""
     from fcm.harmonic.work import TooLongError
 
-    stages = list[Stage]()
+    checkpoints = list[Checkpoint]()
 
-    def watch(stage: Stage) -> None:
-        stages[:] = [stage]
+    def watch(checkpoint: Checkpoint) -> None:
+        checkpoints[:] = [checkpoint]
         look()
 
     try:
-        path = follow(problem, start, span, forward, max_step, stations, watch=watch)
+        path = follow(problem, start, span, wanted, options, forward=forward, watch=watch)
     except TooLongError:
-        for stage in stages:
-            passes(stage.path(Status.INTERRUPTED))
+        for checkpoint in checkpoints:
+            passes(checkpoint.path(Status.INTERRUPTED))
         raise
     passes(path)
     return path
@@ -149,7 +150,7 @@ def _from_rest(
     """
     for step in (STEP, SHORTER * STEP):
         for z in _begun(problem, linear):
-            path = along(problem, z, (0.0, span[1]), True, step, (1.0,))
+            path = along(problem, z, (0.0, span[1]), Events((1.0,)), FollowOptions(step), forward=True)
             whole = path.status is Status.COMPLETE and path.parameter[-1] == span[1]
             if whole or (path.status is Status.STALLED and path.z.shape[0]):
                 return (path,)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System

@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation import Between, Path
+from fcm.continuation import Path, Segment
 from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray
@@ -118,7 +118,7 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
     jumps : whether multipliers may jump there.
     """
     first, (low, high) = max(k - 1, 0), known.places(k, k + 2)
-    between: Between | None = None
+    between: Segment | None = None
 
     def inside(before: Sequence[Seen], low: Seen, high: Seen, after: Sequence[Seen], times: int) -> bool:
         """Whether one is found, the way divided so often already; `between` is there then."""
@@ -129,7 +129,7 @@ def _window(problem: OrbitProblem, path: Path, known: _Known, k: int, jumps: boo
             length = 0.5 * (low.length + high.length)
         if length is None:
             return False
-        between = between or Between(problem, path, k)
+        between = between or Segment(problem, path, k)
         if not between.put((length - start) / width):
             return False
         shot = problem.shot(between.z)

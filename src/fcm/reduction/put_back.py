@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.system import System
 from fcm.reduction.leave_out import Lighter

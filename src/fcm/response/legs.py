@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from fcm.continuation import Path, Stage, Status, follow
-from fcm.continuation.branches import SAME
-from fcm.continuation.trail import Kept, Points
+from fcm.continuation import Checkpoint, Events, FollowOptions, Path, Status, follow
+from fcm.continuation.all_branches import SAME
+from fcm.continuation.point_store import Points, Stored
 from fcm.orbit.doubled import Doubled
 from fcm.orbit.periodic import without_end
 from fcm.orbit.problem import OrbitProblem
@@ -32,17 +32,17 @@ class Leg:
     held: tuple[int, ...]  # the contacts that were held
     repeats: int  # periods after which the motions repeat
     path: Path | None
-    stage: Stage | None
+    checkpoint: Checkpoint | None
 
     def there(self) -> Path:
         """The points that there are, as those of a curve that is cut off."""
         if self.path is not None:
             return replace(self.path, status=Status.INTERRUPTED)
-        assert self.stage is not None
-        return self.stage.path(Status.INTERRUPTED)
+        assert self.checkpoint is not None
+        return self.checkpoint.path(Status.INTERRUPTED)
 
 
-LEGS = (Leg, Path, Stage, Status, Kept, Points)  # what is saved consists of these
+LEGS = (Leg, Path, Checkpoint, Status, Stored, Points)  # what is saved consists of these
 
 
 class _Ended(Exception):  # noqa: N818
@@ -102,7 +102,7 @@ class Legs:
         self.look, self.passing = look, passing
         self.number = 0  # of the next one
         self._recorded = 0  # points of the one that is followed
-        self._begun: tuple[OrbitProblem, Stage] | None = None
+        self._begun: tuple[OrbitProblem, Checkpoint] | None = None
         self._passed: Leg | None = None  # the last one of which nothing was wrong
         self._given = dict[int, Leg]()  # of another scene, with the same motions
         self._seen, self._took = time.monotonic(), 0.0
@@ -114,16 +114,17 @@ class Legs:
         problem: OrbitProblem,
         start: FloatArray,
         span: tuple[float, float],
+        wanted: Events,
+        options: FollowOptions,
+        *,
         forward: bool,
-        max_step: float,
-        stations: Sequence[float],
-        _progress: object = None,
+        progress: object = None,
     ) -> Path:
         """See `follow`; of motions of twice the periods of others up to where the curve comes to those."""
         saved = self._known.get(_key(self._leg(problem))) or self._taken(problem, start, forward)
         if saved is None or saved.path is None:
-            stage = None if saved is None else saved.stage
-            path = self._followed(problem, start, span, forward, max_step, stations, stage)
+            checkpoint = None if saved is None else saved.checkpoint
+            path = self._followed(problem, start, span, forward, wanted, options, checkpoint)
             saved = self._leg(problem, path)
             self._save(saved)
         self._begun = None
@@ -137,42 +138,44 @@ class Legs:
         start: FloatArray,
         span: tuple[float, float],
         forward: bool,
-        max_step: float,
-        stations: Sequence[float],
-        stage: Stage | None,
+        wanted: Events,
+        options: FollowOptions,
+        checkpoint: Checkpoint | None,
     ) -> Path:
-        """The curve from its start, or from a stage of it on."""
+        """The curve from its start, or from a checkpoint of it on."""
         self._recorded = 0
         watch = partial(self._watch, problem, float(start[-1]))
         if isinstance(problem, Doubled):
             problem.begins()
         try:
-            return follow(problem, start, span, forward, max_step, stations, None, stage, watch)
+            return follow(
+                problem, start, span, wanted, options, forward=forward, watch=watch, checkpoint=checkpoint
+            )
         except _Ended:
             assert self._begun is not None
             return self._begun[1].path(Status.COMPLETE)
 
-    def _watch(self, problem: OrbitProblem, begin: float, stage: Stage) -> None:
-        if isinstance(problem, Doubled) and problem.ended(stage.z):
+    def _watch(self, problem: OrbitProblem, begin: float, checkpoint: Checkpoint) -> None:
+        if isinstance(problem, Doubled) and problem.ended(checkpoint.z):
             raise _Ended
-        self._begun = problem, stage
-        self._record(problem, stage)
-        covered = abs(float(stage.z[-1]) - begin) / (self.high - self.low)
+        self._begun = problem, checkpoint
+        self._record(problem, checkpoint)
+        covered = abs(float(checkpoint.z[-1]) - begin) / (self.high - self.low)
         if time.monotonic() - self._seen > max(OFTEN, self._took / SHARE):
             self.keep()
-        self.report(covered, f"{stage.kept.number} points")
+        self.report(covered, f"{checkpoint.kept.number} points")
         if self.passing is not None:
-            self.passing(problem, stage.z)
-            self._passed = self._leg(problem, stage=stage)
+            self.passing(problem, checkpoint.z)
+            self._passed = self._leg(problem, checkpoint=checkpoint)
         self.look()
 
-    def _record(self, problem: OrbitProblem, stage: Stage) -> None:
+    def _record(self, problem: OrbitProblem, checkpoint: Checkpoint) -> None:
         """Record the points that are new before their periods are forgotten: then a curve that is stopped is
         there at once. Many together: after each step it would make the following a tenth slower."""
         if problem.full:
-            for z in (*stage.kept.before.z[self._recorded :], stage.kept.last[0]):
+            for z in (*checkpoint.kept.before.z[self._recorded :], checkpoint.kept.last[0]):
                 recorded(problem, z)
-            self._recorded = stage.kept.number - 1
+            self._recorded = checkpoint.kept.number - 1
             problem.forget()
 
     def found(self, problem: OrbitProblem) -> list[Leg]:
@@ -198,7 +201,7 @@ class Legs:
         if self._begun is None:
             return
         begin = time.monotonic()
-        self._save(self._leg(self._begun[0], stage=self._begun[1]))
+        self._save(self._leg(self._begun[0], checkpoint=self._begun[1]))
         self._seen = time.monotonic()
         self._took = self._seen - begin
 
@@ -209,9 +212,11 @@ class Legs:
         found = [leg.there() for leg in sorted(legs, key=lambda leg: leg.number)]
         return [path for path in found if path.z.shape[0]]
 
-    def _leg(self, problem: OrbitProblem, path: Path | None = None, stage: Stage | None = None) -> Leg:
+    def _leg(
+        self, problem: OrbitProblem, path: Path | None = None, checkpoint: Checkpoint | None = None
+    ) -> Leg:
         """The one that is followed now."""
-        return Leg(self.number, *kind_of(problem), path, stage)
+        return Leg(self.number, *kind_of(problem), path, checkpoint)
 
     def _save(self, leg: Leg) -> None:
         self._known[_key(leg)] = leg
@@ -223,8 +228,8 @@ def _begins_at(leg: Leg, problem: OrbitProblem, start: FloatArray, forward: bool
     if leg.path is not None:
         first, rise = leg.path.z[0], float(leg.path.direction[0, -1])
     else:
-        assert leg.stage is not None
-        first, rise = leg.stage.start, float(leg.stage.heading[-1])
+        assert leg.checkpoint is not None
+        first, rise = leg.checkpoint.start, float(leg.checkpoint.heading[-1])
     problem.measure(first)
     off = np.linalg.norm((first - start) / np.asarray(problem.scale))
     return bool(off < SAME) and (rise > 0.0) == forward

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation import Path, Stage
-from fcm.continuation.front import Front
-from fcm.continuation.stage import state_of
-from fcm.continuation.trail import Kept, Points
+from fcm.continuation import Checkpoint, Path
+from fcm.continuation.checkpoint import state_of
+from fcm.continuation.point_store import Points, Stored
+from fcm.continuation.stepper import Stepper
 from fcm.motion.matrices import has_friction
 from fcm.orbit.problem import OrbitProblem
 from fcm.response.legs import Leg, kind_of
@@ -49,9 +49,11 @@ class Released:
         """Those of a number of legs that are also of the other problem."""
         for leg in legs:
             path = None if leg.path is None else self._path(leg.path)
-            stage = None if leg.stage is None or leg.path is not None else self._stage(leg.stage)
-            if path is not None or stage is not None:
-                yield Leg(leg.number, *kind_of(self.now), path, stage)
+            checkpoint = (
+                None if leg.checkpoint is None or leg.path is not None else self._checkpoint(leg.checkpoint)
+            )
+            if path is not None or checkpoint is not None:
+                yield Leg(leg.number, *kind_of(self.now), path, checkpoint)
 
     def keeps(self, points: Iterable[FloatArray]) -> bool:
         """Whether the contacts that are released have kept their state in motions z."""
@@ -71,22 +73,22 @@ class Released:
     def _path(self, path: Path) -> Path | None:
         if not (len(path.z) and self.keeps(path.z)):
             return None
-        front = self._front(path.z[-1], path.direction[-1])
-        if front is None:
+        stepper = self._stepper(path.z[-1], path.direction[-1])
+        if stepper is None:
             return None
-        sense = front.here.orientation * path.orientation[-1]
+        sense = stepper.here.orientation * path.orientation[-1]
         z, direction = _each(self.point, path.z), _each(self.way, path.direction)
         return replace(path, z=z, direction=direction, orientation=sense * path.orientation)
 
-    def _stage(self, stage: Stage) -> Stage | None:
-        """A stage of the other problem, whose front is where that of this is."""
-        before, last = stage.kept
-        if not self.keeps([*before.z, last[0], stage.z]):
+    def _checkpoint(self, checkpoint: Checkpoint) -> Checkpoint | None:
+        """A checkpoint of the other problem, whose stepper is where that of this is."""
+        before, last = checkpoint.kept
+        if not self.keeps([*before.z, last[0], checkpoint.z]):
             return None
-        front = self._front(stage.z, stage.scale * stage.tangent)
-        if front is None:
+        stepper = self._stepper(checkpoint.z, checkpoint.scale * checkpoint.tangent)
+        if stepper is None:
             return None
-        sense = front.here.orientation * stage.orientation
+        sense = stepper.here.orientation * checkpoint.orientation
         points = Points(
             _each(self.point, before.z),
             _each(self.way, before.direction),
@@ -94,28 +96,28 @@ class Released:
             before.rest * [sense, 1.0],
         )
         end = self.point(last[0]), self.way(last[1]), last[2], sense * last[3], last[4]
-        return stage._replace(
-            kept=Kept(points, end),
-            start=self.point(stage.start),
-            heading=self._heading(stage),
-            **(state_of(front) | {"z": self.point(stage.z)}),
+        return checkpoint._replace(
+            kept=Stored(points, end),
+            start=self.point(checkpoint.start),
+            heading=self._heading(checkpoint),
+            **(state_of(stepper) | {"z": self.point(checkpoint.z)}),
         )
 
-    def _front(self, z: FloatArray, direction: FloatArray) -> Front | None:
+    def _stepper(self, z: FloatArray, direction: FloatArray) -> Stepper | None:
         """One of the other problem at a point; None where its curve is not found there, in that direction."""
-        there, front = self.point(z), Front(self.now)
+        there, stepper = self.point(z), Stepper(self.now)
         row = _unit(self.now, there, self.way(direction))
-        if not front.begin(there, row):
+        if not stepper.begin(there, row):
             return None
-        off = (np.asarray(front.here.z) - there) / np.asarray(front.newton.scale)
-        same = np.linalg.norm(off) < CLOSE and np.asarray(front.here.tangent) @ row > 1.0 - CLOSE
-        return front if same else None
+        off = (np.asarray(stepper.here.z) - there) / np.asarray(stepper.newton.scale)
+        same = np.linalg.norm(off) < CLOSE and np.asarray(stepper.here.tangent) @ row > 1.0 - CLOSE
+        return stepper if same else None
 
-    def _heading(self, stage: Stage) -> FloatArray:
+    def _heading(self, checkpoint: Checkpoint) -> FloatArray:
         """The direction at the start, in units of the scale there."""
-        self.before.measure(stage.start)
-        direction = stage.heading * np.asarray(self.before.scale)
-        return _unit(self.now, self.point(stage.start), self.way(direction))
+        self.before.measure(checkpoint.start)
+        direction = checkpoint.heading * np.asarray(self.before.scale)
+        return _unit(self.now, self.point(checkpoint.start), self.way(direction))
 
 
 def _each(change: Callable[[FloatArray], FloatArray], rows: FloatArray) -> FloatArray:

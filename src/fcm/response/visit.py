@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.motion.errors import CycleError, SimulationError
 from fcm.motion.measure import Measure
 from fcm.motion.run import cycles_from

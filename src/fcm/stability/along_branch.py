@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fcm.continuation import Between, Mark, Path
+from fcm.continuation import Mark, Path, Segment
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
@@ -132,9 +132,9 @@ class Verdicts:
     def _balance(self) -> Balance:
         return self._system.balance()
 
-    def curve(self, k: int) -> Between:
+    def curve(self, k: int) -> Segment:
         """From a point to the next."""
-        return Between(self._balance, self.path, k)
+        return Segment(self._balance, self.path, k)
 
     def put(self, length: float, enough: Sequence[float] = ()) -> float | None:
         """The place at a length, if it is found between two points; it has a verdict then."""

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation import Path
-from fcm.continuation.secants import Secants
+from fcm.continuation.root_finding import Secants
 from fcm.harmonic.runs import runs
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray

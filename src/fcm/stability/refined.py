@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fcm.continuation.newton import Newton, settle
+from fcm.continuation.corrector import Newton, settle
 from fcm.harmonic.homotopy import Homotopy
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray

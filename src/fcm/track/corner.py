@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 from fcm.track.onset import kinds_of, onset
 from fcm.track.tracked import Condition, Kind, Tracked

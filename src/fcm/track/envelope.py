@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track
 from fcm.track.spot import Way

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation.sharp import SHARP
+from fcm.continuation.options import FOLLOW
 from fcm.scene.model import FloatArray
 from fcm.track.circle import Circle
 from fcm.track.corner import nearest
@@ -103,7 +103,7 @@ class _Follower(Meeting):
             guess = self.z + scale * (step * self.t + 0.5 * step * step * bend)
             if (kink := self._kink(guess)) is not None and (passed := self._pass(guess, kink, step)):
                 return passed
-            sharp = step < SHARP
+            sharp = step < FOLLOW.step.sharp
             good = self._solve(guess, self.t) and self.newton.moved < (BENT if sharp else MISSED) * step
             turned = float(np.asarray(self.newton.tangent) @ self.t) if good else 0.0
             good = good and turned > (0.0 if sharp else COSINE)

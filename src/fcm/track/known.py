@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track
 from fcm.track.spot import Spot, Way

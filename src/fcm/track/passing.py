@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fcm.continuation.secants import Secants
+from fcm.continuation.root_finding import Secants
 from fcm.scene.model import FloatArray
 from fcm.track.place import FIRST, KINK, Place
 from fcm.track.spot import Ending, Spot

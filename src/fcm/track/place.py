@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.scene.model import FloatArray
 from fcm.track.corner import Corner
 from fcm.track.onset import values

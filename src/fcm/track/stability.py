@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fcm.continuation.newton import Newton
+from fcm.continuation.corrector import Newton
 from fcm.harmonic.whole import jacobian_of
 from fcm.scene.model import FloatArray
 from fcm.stability.floquet import multipliers_of

@@ -1,0 +1,145 @@
+"""All branches of a problem that hold some known solutions, each traced once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.continuation.events import Events
+from fcm.continuation.follow import Progress, follow
+from fcm.continuation.options import FOLLOW, FollowOptions
+from fcm.continuation.path import FloatArray, Path, Status
+from fcm.continuation.problem import Problem
+
+Follow = Callable[..., Path]  # as `follow`
+SAME = 1e-5  # solutions closer than this, in the problem's scale, are one
+BESIDE = 0.5  # of a chord: what is further from it is not on its part of a path
+CHORDS = 4  # nearest ones that are looked at
+
+
+@dataclass(frozen=True)
+class Branches:
+    """Paths that do not hang together; each solution that was given lies on one of them, or is in lost."""
+
+    paths: tuple[Path, ...]
+    lost: tuple[FloatArray, ...] = ()  # solutions from which nothing could be followed
+
+    @property
+    def status(self) -> Status:
+        """COMPLETE if every branch ended as a whole branch does, else how the first that did not ended."""
+        whole = (Status.COMPLETE, Status.RETURNED, Status.CLOSED)
+        broken = [path.status for path in self.paths if path.status not in whole]
+        return broken[0] if broken else Status.STALLED if self.lost else Status.COMPLETE
+
+
+def all_branches(
+    new_problem: Callable[[], Problem],
+    solutions: Sequence[FloatArray],
+    span: tuple[float, float],
+    options: FollowOptions = FOLLOW,
+    progress: Progress | None = None,
+    along: Follow = follow,
+    known: Sequence[Path] = (),
+) -> Branches:
+    """Follow every solution that no branch followed before contains.
+
+    Parameters
+    ----------
+    new_problem : callable
+        Makes the problem anew; what it made before is not used any more.
+    solutions : sequence of (n + 1,)
+        In the order in which they are to be followed; those at an end of the span lead inwards, those inside
+        it both ways.
+    along : callable
+        Follows a path, as `follow` does.
+    known : sequence of Path
+        Branches that were followed before, which are the first of those returned.
+    """
+    events = Events(sorted({float(z[-1]) for z in solutions}))
+    paths: list[Path] = list(known)
+    lost: list[FloatArray] = []
+    for z in solutions:
+        problem = new_problem() if paths else None
+        if problem is not None and any(contains(path, z, problem) for path in paths):
+            continue
+        path = through(new_problem, z, span, events, options, progress, along)
+        if not path.z.shape[0]:
+            lost.append(z)
+        elif problem is None or not _known(path, paths, problem):
+            paths.append(path)
+    return Branches(tuple(paths), tuple(lost))
+
+
+def _known(path: Path, paths: Sequence[Path], problem: Problem) -> bool:
+    """Whether a path has the ends of one followed before: rounding may hide that its start is on that.
+
+    So it does where a preload is so large that displacements are not known to `SAME`.
+    """
+    return path.status is Status.COMPLETE and any(
+        contains(other, path.z[0], problem) and contains(other, path.z[-1], problem) for other in paths
+    )
+
+
+def contains(path: Path, z: FloatArray, problem: Problem) -> bool:
+    """Whether a solution z (n + 1,) lies on a path.
+
+    It does where it is a point of that. Segment its points no distance tells, as branches come close to each
+    other: there the branch is found in the plane through the solution across the chord of the path that is
+    next to it, by Newton's method from that chord.
+    """
+    problem.measure(z)
+    scale = np.array(problem.scale)
+    points = (path.z - z) / scale
+    if float((points * points).sum(axis=1).min()) < SAME * SAME:
+        return True
+    newton = Newton(problem)
+    for i, part in _beside(points):
+        row = points[i + 1] - points[i]
+        newton.scale[:], newton.row[:] = scale, row / np.linalg.norm(row)
+        newton.z[:] = path.z[i] + part * (path.z[i + 1] - path.z[i])
+        if newton.correct(1.0) and np.linalg.norm((np.asarray(newton.z) - z) / scale) < SAME:
+            return True
+    return False
+
+
+def _beside(points: FloatArray) -> list[tuple[int, float]]:
+    """The chords between points next to which the origin lies, the nearest first, and where on them."""
+    chord = np.diff(points, axis=0)
+    square = np.maximum((chord * chord).sum(axis=1), np.finfo(float).tiny)  # of two points that are one
+    part = np.clip(-(points[:-1] * chord).sum(axis=1) / square, 0.0, 1.0)
+    off = np.linalg.norm(points[:-1] + part[:, None] * chord, axis=1)
+    near = np.argsort(off)[:CHORDS].tolist()
+    return [
+        (i, float(part[i]))
+        for i in near
+        if SAME < np.sqrt(square[i]) and off[i] < BESIDE * np.sqrt(square[i])
+    ]
+
+
+def through(
+    new_problem: Callable[[], Problem],
+    z: FloatArray,
+    span: tuple[float, float],
+    events: Events,
+    options: FollowOptions,
+    progress: Progress | None,
+    along: Follow,
+) -> Path:
+    """The whole branch through a solution, from its lower end where it has one; see `follow`."""
+    if z[-1] == span[0] or z[-1] == span[1]:
+        path = along(new_problem(), z, span, events, options, forward=z[-1] == span[0], progress=progress)
+        return path.backwards() if path.status is Status.COMPLETE and z[-1] == span[1] else path
+    path = along(new_problem(), z, span, events, options, forward=True, progress=progress)
+    if path.status is Status.CLOSED or path.z.shape[0] == 0:
+        return path
+    other = along(new_problem(), z, span, events, options, forward=False, progress=progress)
+    if other.z.shape[0] == 0:
+        return path
+    if other.status not in (Status.COMPLETE, Status.RETURNED):
+        path, other = other, path
+    whole = other.backwards().then(path)
+    falls = whole.status is Status.COMPLETE and whole.parameter[0] > whole.parameter[-1]
+    return whole.backwards() if falls else whole

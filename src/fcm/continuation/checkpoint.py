@@ -1,0 +1,75 @@
+"""How far the following of a curve has come: enough to go on from there, to the same points."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fcm.continuation.path import FloatArray, Path, Status
+from fcm.continuation.point_store import PointStore, Stored
+from fcm.continuation.stepper import Stepper
+
+
+class Checkpoint(NamedTuple):
+    """The points that are there, and the stepper of the curve."""
+
+    kept: Stored
+    z: FloatArray  # (n + 1,) of the stepper
+    scale: FloatArray  # (n + 1,)
+    tangent: FloatArray  # (n + 1,) in units of the scale
+    bend: FloatArray  # (n + 1,)
+    aside: FloatArray  # (n + 1,) of the next point, beyond a corner
+    cubic: tuple[FloatArray, FloatArray, bool, bool]  # second and third derivative; known, taken
+    margin: FloatArray
+    output: FloatArray
+    growth: FloatArray
+    orientation: float
+    step: float  # the next one
+    greatest: FloatArray  # of each output so far
+    size: float  # of the solution at the start
+    start: FloatArray  # (n + 1,)
+    heading: FloatArray  # (n + 1,) the direction there
+    interior: bool  # whether the start is inside the span
+    evaluations: int
+
+    def path(self, status: Status) -> Path:
+        """The points as a path."""
+        store = PointStore(self.z.size)
+        store.restore(self.kept)
+        return store.path(status, self.evaluations)
+
+
+_OF_PLACE = ("z", "tangent", "margin", "output", "growth")
+
+
+def state_of(stepper: Stepper) -> dict[str, Any]:
+    """What of a checkpoint the stepper knows."""
+    copies = {name: np.array(getattr(stepper.here, name)) for name in _OF_PLACE}
+    way = stepper.predictor
+    more = {
+        "scale": np.array(stepper.newton.scale),
+        "bend": np.array(way.bend),
+        "aside": np.array(stepper.aside),
+    }
+    cubic = np.array(way.second), np.array(way.third), bool(way.known), bool(way.cubic)
+    return {
+        **copies,
+        **more,
+        "cubic": cubic,
+        "orientation": stepper.here.orientation,
+        "evaluations": stepper.newton.evaluations,
+    }
+
+
+def put_back(stepper: Stepper, checkpoint: Checkpoint) -> None:
+    """Bring the stepper to where it was."""
+    for name in _OF_PLACE:
+        np.asarray(getattr(stepper.here, name))[:] = getattr(checkpoint, name)
+    stepper.here.orientation = checkpoint.orientation
+    np.asarray(stepper.newton.scale)[:] = checkpoint.scale
+    way = stepper.predictor
+    np.asarray(way.bend)[:] = checkpoint.bend
+    np.asarray(stepper.aside)[:] = checkpoint.aside
+    np.asarray(way.second)[:], np.asarray(way.third)[:], way.known, way.cubic = checkpoint.cubic
+    stepper.newton.evaluations = checkpoint.evaluations

@@ -1,0 +1,199 @@
+"""Newton's method for a point of a curve: the corrector.
+
+The point is sought in the plane through the guess whose normal is the row that closes the equations, see
+`bordered`. A row along the curve gives the next point; a row along the parameter holds that.
+"""
+
+from __future__ import annotations
+
+import cython
+from cython.cimports.libc.math import sqrt
+
+from fcm.continuation.bordered_system import BorderedSystem
+from fcm.continuation.options import NEWTON, NewtonOptions
+from fcm.continuation.problem import Problem
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.bordered_system import FAR
+else:
+    from fcm.continuation.bordered_system import FAR
+
+
+@cython.cclass
+class Newton(BorderedSystem):
+    """Fill z, scale and row; `correct` moves z to the curve and leaves its tangent and orientation.
+
+    close: the error that a point may have, estimated from the convergence.
+    """
+
+    def __init__(self, problem: Problem, options: NewtonOptions = NEWTON) -> None:
+        BorderedSystem.__init__(self, problem)
+        self.options = options
+        self.close = self.options.close
+        self.unsure = 0.0  # length of the last step of `correct`, if rounding made it
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def correct(self, reach: cython.double, most: cython.double = FAR) -> cython.bint:
+        """Whether z came to the curve; moved is then how far, and tangent and orientation are those there.
+
+        reach is the length, in scaled coordinates, that stands before the first step. Where that is longer
+        than the most, or the second neither slight nor half as long, it is given up; moved is then the first.
+        Converged is what is close, for convergence of the order 1.5, that of a force whose
+        slope changes as a root.
+        """
+        count: cython.int
+        step: cython.double
+        ratio: cython.double
+        before: cython.double = reach
+        i: cython.Py_ssize_t
+        for i in range(self.z.shape[0]):  # a copy of all at once takes ten times as long
+            self.guess[i] = self.z[i]
+        self.unsure = 0.0
+        for count in range(self.options.iterations):
+            if not self.factor():
+                return False
+            step = self.step()
+            if most < FAR and self.too_far(step, before, most, count):
+                return False
+            if self.problem.labelled and self.settled(step, step / before, count):
+                return self.direct()
+            noise: cython.bint = count > 0 and step > 0.25 * before and self.noise(step, count)
+            hasten: cython.bint = self.problem.labelled or self.problem.costly
+            worse: cython.double = self.options.hopeless if hasten else 2.0
+            if not step < FAR or (count > 2 and step > worse * before and not noise):
+                return False
+            _move(self)
+            ratio = step / before
+            # the first step says nothing of the convergence yet; that to a corner that is not seen never
+            if self.problem.labelled:
+                if count > 0 and step * ratio < self.options.chord and self.chords(step):
+                    return self.direct()
+                before = step
+                continue
+            if (count > 0 and step * ratio * sqrt(ratio) < self.close) or step < self.options.small:
+                return self.direct()
+            if noise:
+                self.unsure = step
+                return self.direct()
+            # the Jacobian hardly changes along a step that is shorter than the square of the one before
+            steady: cython.bint = count > 0 and (self.problem.costly or step < before * before)
+            if steady and step < self.options.brief and _again(self, step):
+                return self.direct()
+            before = step
+        return False
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def too_far(
+        self, step: cython.double, before: cython.double, most: cython.double, count: cython.int
+    ) -> cython.bint:
+        """Whether the first step is longer than the most, or the second neither slight nor half as long."""
+        if count == 0:
+            self.moved = step
+            return not step < most
+        if count == 1:  # of short steps the first may be rounding, in a stiff direction
+            return not step < max(0.5 * before, self.options.slight * most)
+        return not step < FAR
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def noise(self, step: cython.double, count: cython.int) -> cython.bint:
+        """Whether a step that has not shrunk is one that rounding makes.
+
+        Of what the equations lose to cancellation within them their derivatives know nothing.
+        """
+        if self.problem.labelled:
+            return False
+        if count > 2 and step < self.options.rough:
+            return True
+        return step < self.options.coarsest and step < self.options.roundings * self.rounding(self.options)
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def settled(self, step: cython.double, ratio: cython.double, count: cython.int) -> cython.bint:
+        """Whether z, from which a step would lead on, is as near to the curve as rounding lets it be.
+
+        Of the steps that rounding makes the next one may be longer.
+        """
+        if step < self.options.exact and ratio < 1.0:
+            return True
+        return (
+            count > 0 and ratio > 0.25 and step < (self.options.rough if ratio < 1.0 else self.options.left)
+        )
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def chords(self, before: cython.double) -> cython.bint:
+        """Whether z, to which a step has led, is on the curve; else it is moved on with the same Jacobian."""
+        return _chords(self, before, self.options.chords, 0.1)
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def look(self) -> cython.bint:
+        """Tangent and orientation at z as it stands; false if they are not determined there."""
+        self.guess[:] = self.z
+        return self.factor() and self.direct()
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def _again(newton: Newton, before: cython.double) -> cython.bint:
+    """Whether a step with the Jacobian from before the last, of a length, leads to the curve; else it is not
+    taken. What it leaves is less by as much again."""
+    newton.problem.probe(newton.z)
+    step: cython.double = newton.step()
+    if not step * step < newton.close * before:
+        return False
+    _move(newton)
+    return True
+
+
+def settle(newton: Newton, most: float) -> bool:
+    """As `correct` from a length of 1, where the direction does not matter: a Jacobian is kept as long as
+    steps with it shrink."""
+    count: cython.int
+    step: cython.double
+    before: cython.double = 1.0
+    newton.guess[:] = newton.z
+    for count in range(newton.options.iterations):
+        if not newton.factor():
+            return False
+        step = newton.step()
+        if newton.too_far(step, before, most, count):
+            return False
+        _move(newton)
+        if step < newton.options.small or _chords(
+            newton, step, newton.options.kept, newton.options.shrinking
+        ):
+            return bool(newton.direct())
+        before = step
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def _chords(newton: Newton, before: cython.double, most: cython.int, ratio: cython.double) -> cython.bint:
+    """Whether at most so many steps with the same Jacobian, each shorter than the one before by a ratio, lead
+    from z, to which a step has led, to the curve."""
+    count: cython.int
+    step: cython.double
+    for count in range(most):  # noqa: B007
+        newton.problem.probe(newton.z)
+        step = newton.step()
+        if step < newton.options.exact:
+            return True
+        if not step < ratio * before:
+            return False
+        _move(newton)
+        before = step
+    return False
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def _move(newton: Newton) -> cython.void:
+    """Take the step that is in delta."""
+    i: cython.Py_ssize_t
+    for i in range(newton.problem.unknowns + 1):
+        newton.z[i] += newton.scale[i] * newton.delta[i]

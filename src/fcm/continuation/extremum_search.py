@@ -1,0 +1,169 @@
+"""Roots of functions along a step of a problem whose points are costly: folds and peaks.
+
+A fold or a peak is the extreme of a value of which the slope is known too, so the cubic through both ends of
+the interval that holds it tells where it is, far better than the slopes alone. Where the curve has a corner
+the slope jumps, and no polynomial tells; but both sides are nearly straight close to it, and they meet there.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation.path import FloatArray
+from fcm.continuation.point import Point
+from fcm.continuation.stepper import Stepper
+
+HIGH = 1e-11  # of an output, to which a peak is known
+TURNED = 1e-15  # of the parameter, to which a fold is known
+CORNER = 1e-13  # and to which one in a corner is
+BETTER = 0.25  # of a slope, to which the next look has to reduce it: otherwise there is no cubic
+SHARPER = 4.0  # times the bend of the step: from there on there is a corner
+ASIDE = 0.1  # of the square of an interval over the step: how far from a corner, which they are to enclose
+COARSE = 1e-5  # length below which values are too nearly the same to tell more than their slopes
+FLAT = 0.1  # cosine of a turn, below which a length is no measure of the way
+
+
+class Sample(NamedTuple):
+    """A point on the curve, in the units of the stepper."""
+
+    at: float  # length from the beginning of the step
+    z: FloatArray  # scaled
+    tangent: FloatArray
+    slope: FloatArray  # of z by that length
+    output: FloatArray
+    growth: FloatArray  # by that length
+    orientation: float
+
+
+class ExtremumSearch:
+    """The points that are known of a step: every root is sought between the nearest of them."""
+
+    def __init__(self, stepper: Stepper) -> None:
+        self.stepper, self.scale = stepper, np.array(stepper.newton.scale)
+        self.known = [self._look(0.0, stepper.here), self._look(stepper.step, stepper.there)]
+
+    def extreme(self, output: int | None) -> Sample:
+        """Where an output is greatest, or without one the parameter, as near as the curve is found."""
+        low, high = self._between(output)
+        sense, steep = self._slope(low, output), self._bend(low, high, output)
+        upper, again, better = False, 0, True
+        for _ in range(self.stepper.options.events.most):
+            for end in (high, low):
+                if self._is_root(end, low, high, output):
+                    return end
+            if high.at - low.at <= self.stepper.options.events.fine * self.stepper.step:
+                return high
+            if better:
+                guess = _cubic(low, high, output)
+            elif self._bend(low, high, output) > SHARPER * steep:
+                guess = self._corner(low, high, upper, again)
+            else:
+                guess = _middle(low, high)
+            look = self._put(*guess) or self._put(*_middle(low, high))
+            if look is None:
+                return high
+            side = self._slope(look, output) * sense <= 0.0
+            better = abs(self._slope(look, output)) < BETTER * abs(self._slope(high if side else low, output))
+            again = again + 1 if side == upper else 0
+            upper, low, high = side, *((low, look) if side else (look, high))
+        return high
+
+    def _between(self, output: int | None) -> tuple[Sample, Sample]:
+        """The first neighbours whose slopes have different signs."""
+        for low, high in zip(self.known, self.known[1:], strict=False):
+            if self._slope(low, output) * self._slope(high, output) <= 0.0:
+                return low, high
+        return self.known[0], self.known[-1]
+
+    @staticmethod
+    def _slope(look: Sample, output: int | None) -> float:
+        return float(look.slope[-1] if output is None else look.growth[output])
+
+    def _is_root(self, look: Sample, low: Sample, high: Sample, output: int | None) -> bool:
+        """Whether the extreme is higher than this by no more than rounding."""
+        now, size = abs(self._slope(look, output)), abs(float(look.z[-1]))
+        smooth, corner = TURNED, CORNER
+        if output is not None:
+            size, smooth, corner = float(look.output[output]), HIGH, HIGH
+        if now * (high.at - low.at) < corner * size:
+            return True
+        return now * now < 2.0 * smooth * self._bend(low, high, output) * size
+
+    def _bend(self, low: Sample, high: Sample, output: int | None) -> float:
+        """Change of the slope over a unit of length."""
+        return abs(self._slope(high, output) - self._slope(low, output)) / (high.at - low.at)
+
+    def _corner(self, low: Sample, high: Sample, upper: bool, again: int) -> tuple[float, FloatArray]:
+        """A point close to where the tangents at both ends meet, on the side that was not looked at last.
+
+        The further beyond the more often it was not on that side.
+        """
+        width, bend = high.at - low.at, low.slope - high.slope
+        meet = low.at + float((high.z - high.slope * width - low.z) @ bend) / max(float(bend @ bend), 1e-300)
+        least = 0.25 * self.stepper.options.events.fine * self.stepper.step
+        aside = max(ASIDE * width * width / self.stepper.step, least) * 10.0**again
+        at = meet - aside if upper else meet + aside
+        if not low.at < at < high.at or aside > 0.5 * width:
+            at = meet = 0.5 * (low.at + high.at)
+        near = low if at < meet else high
+        return at, near.z + near.slope * (at - near.at)
+
+    def _put(self, at: float, guess: FloatArray) -> Sample | None:
+        """The point at a length, found from a guess; it is known from now on."""
+        stepper = self.stepper
+        if not stepper.near(at, self.scale * guess):
+            return None
+        look = self._look(at, stepper.between)
+        self.known = sorted((*self.known, look), key=lambda one: one.at)
+        return look
+
+    def _look(self, at: float, point: Point) -> Sample:
+        tangent = np.array(point.tangent)
+        along = max(float(tangent @ np.asarray(self.stepper.here.tangent)), FLAT)
+        growth = np.array(point.growth) / along
+        return Sample(
+            at, np.array(point.z) / self.scale, tangent, tangent / along, np.array(point.output), growth,
+            point.orientation,
+        )  # fmt: skip
+
+
+def _cubic(low: Sample, high: Sample, output: int | None) -> tuple[float, FloatArray]:
+    """Where the cubic of the value with the slopes at both ends turns, and the cubic of z there."""
+    width = high.at - low.at
+    if output is None:
+        rise, begin, end = float(high.z[-1] - low.z[-1]), float(low.slope[-1]), float(high.slope[-1])
+    else:
+        rise = float(high.output[output] - low.output[output])
+        begin, end = float(low.growth[output]), float(high.growth[output])
+    part = begin / (begin - end)
+    if width > COARSE:
+        part = _turn(begin, end, rise / width, part)
+    rest = 1.0 - part
+    z = low.z * (rest * rest * (1.0 + 2.0 * part)) + high.z * (part * part * (3.0 - 2.0 * part))
+    z += width * part * rest * (rest * low.slope - part * high.slope)
+    return low.at + part * width, z
+
+
+def _middle(low: Sample, high: Sample) -> tuple[float, FloatArray]:
+    at = 0.5 * (low.at + high.at)
+    return at, low.z + low.slope * (at - low.at)
+
+
+def _turn(begin: float, end: float, mean: float, otherwise: float) -> float:
+    """Where in (0, 1) the cubic with the slopes at 0 and 1, and a mean slope, has none.
+
+    >>> round(_turn(1.0, -1.0, 0.0, 0.0), 3), round(_turn(1.0, -2.0, -0.25, 0.0), 3)
+    (0.5, 0.457)
+    """
+    a, b = 3.0 * (begin + end - 2.0 * mean), 6.0 * mean - 4.0 * begin - 2.0 * end
+    root = b * b - 4.0 * a * begin
+    if root <= 0.0:
+        return otherwise
+    half = -0.5 * (b + sqrt(root) if b > 0.0 else b - sqrt(root))
+    for x in (begin / half if half != 0.0 else 2.0, half / a if a != 0.0 else 2.0):
+        if 0.0 < x < 1.0:
+            return x
+    return otherwise

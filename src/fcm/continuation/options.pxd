@@ -1,0 +1,27 @@
+cdef class NewtonOptions:
+    cdef readonly int iterations, chords, kept
+    cdef readonly double close, preliminary, small, exact, rough, left, chord, shrinking, brief, hopeless
+    cdef readonly double slight, coarsest, astray, roundings
+
+cdef class StepOptions:
+    cdef readonly double first, shortest, cosine, sharp, far, turn, miss, uneven, uneven_times, shrink, grow
+    cdef readonly double haste, share, after, resumed, shortened
+    cdef readonly int most
+    cdef readonly tuple back
+
+cdef class EventOptions:
+    cdef readonly int most
+    cdef readonly double fine, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
+
+cdef class SwitchingOptions:
+    cdef readonly int most, further, pieces, many
+    cdef readonly double known, known_label, past, before, touched, near, nearer, beyond, astray
+
+cdef class FollowOptions:
+    cdef readonly double max_step
+    cdef readonly bint hasty
+    cdef readonly NewtonOptions newton
+    cdef readonly StepOptions step
+    cdef readonly EventOptions events
+    cdef readonly SwitchingOptions switching
+    cdef readonly object labels

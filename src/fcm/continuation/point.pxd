@@ -1,0 +1,25 @@
+from fcm.continuation.problem cimport Problem
+
+cdef class Point:
+    cdef public double[::1] z
+    cdef public double[::1] tangent
+    cdef public double[::1] margin
+    cdef public int[::1] kind
+    cdef public double[::1] angle
+    cdef public double[::1] slope
+    cdef readonly Py_ssize_t group
+    cdef public double[::1] output
+    cdef public double[::1] growth
+    cdef public double orientation
+    cdef public double shift
+    cdef bint inclined
+    cdef int bounded(self, Problem problem) except -1
+    cdef int like(self, Point other, double unit) except -1
+    cpdef Py_ssize_t partner(self, Py_ssize_t k, int[::1] kind, double[::1] angle) except -2
+    cpdef double margin_at(self, Py_ssize_t k, Point other) except -1e300
+    cdef double asked(self, Py_ssize_t k, Problem problem) except -1e300
+    cdef int incline(self, Problem problem, double[::1] scale, double[::1] beside) except -1
+
+cdef Py_ssize_t nearest(
+    int wanted, double at, int[::1] kind, double[::1] angle, Py_ssize_t first, Py_ssize_t end
+) noexcept

@@ -1,0 +1,145 @@
+"""Where the next point of a curve is looked for: along its tangent, with what the way here tells of its bend.
+
+By a parabola: the tangent here, and the bend on the way of the last step. Where a problem is labelled, and so
+every point costly, the cubic through the last point and here with both tangents is the other predictor, and
+that one is taken which would have foretold the last step better.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import sqrt
+
+from fcm.continuation.point import Point
+
+FLAT = cython.declare(cython.double, 0.1)  # cosine of a turn, below which a step is no cubic any more
+
+
+@cython.cclass
+class Predictor:
+    """Of the point that is a length from here.
+
+    bend (n + 1,) is the second derivative of the parabola; second and third (n + 1,) those of the cubic, in
+    scaled coordinates; known says whether there is one, cubic whether it is taken.
+    """
+
+    def __init__(self, size: cython.Py_ssize_t) -> None:
+        self.bend, self.second, self.third = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.way = np.zeros(size)
+        self.known, self.cubic = False, False
+
+    @cython.ccall
+    @cython.exceptval(-1, check=False)
+    def straighten(self) -> cython.int:
+        """Predict by the tangent alone: nothing is known of the way here."""
+        self.bend[:] = 0.0
+        self.known, self.cubic = False, False
+        return 0
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def put(
+        self, here: Point, scale: cython.double[::1], step: cython.double, guess: cython.double[::1]
+    ) -> cython.void:
+        """Fill a guess of the point that is a step from here."""
+        i: cython.Py_ssize_t
+        second: cython.double
+        third: cython.double
+        for i in range(guess.shape[0]):
+            second = self.second[i] if self.cubic else self.bend[i]
+            third = self.third[i] if self.cubic else 0.0
+            guess[i] = here.z[i] + scale[i] * step * (
+                here.tangent[i] + step * (0.5 * second + step * third / 6.0)
+            )
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def rescale(
+        self,
+        here: Point,
+        point: Point,
+        scale: cython.double[::1],
+        new: cython.double[::1],
+        length: cython.double,
+    ) -> cython.double:
+        """Take the tangent of a point at a length from here, and the bend on the way there, to a new scale.
+
+        Returned is the unit of length in it.
+        """
+        i: cython.Py_ssize_t
+        unit: cython.double
+        ratio: cython.double
+        for i in range(self.bend.shape[0]):
+            ratio = scale[i] / new[i]
+            self.bend[i] = (point.tangent[i] - here.tangent[i]) / length * ratio if length > 0.0 else 0.0
+            point.tangent[i] *= ratio
+        unit = sqrt(along(point.tangent, point.tangent))
+        for i in range(self.bend.shape[0]):
+            point.tangent[i] /= unit
+        outwards: cython.double = along(point.tangent, self.bend)
+        for i in range(self.bend.shape[0]):
+            self.bend[i] = (self.bend[i] - outwards * point.tangent[i]) / unit
+        return unit
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def learn(
+        self,
+        here: Point,
+        point: Point,
+        scale: cython.double[::1],
+        new: cython.double[::1],
+        length: cython.double,
+    ) -> cython.void:
+        """Which prediction was the better one of a point at a length from here; and the next cubic."""
+        i: cython.Py_ssize_t
+        off: cython.double
+        parabola: cython.double = 0.0
+        cubic: cython.double = 0.0
+        if not (length > 0.0 and along(here.tangent, point.tangent) > FLAT):
+            self.known, self.cubic = False, False
+            return
+        for i in range(self.bend.shape[0]):
+            off = (point.z[i] - here.z[i]) / scale[i] - length * here.tangent[i]
+            parabola += (off - 0.5 * length * length * self.bend[i]) ** 2
+            cubic += (off - length * length * (0.5 * self.second[i] + length * self.third[i] / 6.0)) ** 2
+        self.cubic = self.known and cubic < parabola
+        self.known = True
+        self.curve(here, point, scale, new)
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def curve(
+        self, here: Point, point: Point, scale: cython.double[::1], new: cython.double[::1]
+    ) -> cython.void:
+        """The derivatives of the cubic back from a point through here, by its tangent, in a new scale."""
+        i: cython.Py_ssize_t
+        size: cython.Py_ssize_t = self.bend.shape[0]
+        back: cython.double = 0.0
+        slope: cython.double = 0.0
+        aside: cython.double
+        rate: cython.double
+        for i in range(size):
+            self.way[i] = point.tangent[i] * scale[i] / new[i]
+        unit: cython.double = sqrt(along(self.way, self.way))
+        for i in range(size):
+            self.way[i] /= unit
+            back += self.way[i] * (here.z[i] - point.z[i]) / new[i]
+            slope += self.way[i] * here.tangent[i] * scale[i] / new[i]
+        for i in range(size):
+            aside = (here.z[i] - point.z[i]) / new[i] - back * self.way[i]
+            rate = here.tangent[i] * scale[i] / (new[i] * slope) - self.way[i]
+            self.second[i] = 2.0 * (3.0 * aside - back * rate) / (back * back)
+            self.third[i] = 6.0 * (back * rate - 2.0 * aside) / (back * back * back)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def along(a: cython.double[::1], b: cython.double[::1]) -> cython.double:
+    """The product of two vectors."""
+    i: cython.Py_ssize_t
+    total: cython.double = 0.0
+    for i in range(a.shape[0]):
+        total += a[i] * b[i]
+    return total

@@ -1,0 +1,102 @@
+"""Points of a curve between two neighbours of a path."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.continuation.path import FloatArray, Path
+from fcm.continuation.problem import Problem
+
+FLAT = 0.1  # cosine of a turn, below which a length across the chord is no measure of the way
+
+
+class _Known(NamedTuple):
+    """A point on the curve, in the curve's own size."""
+
+    at: float  # its length along the chord
+    z: FloatArray
+    slope: FloatArray  # by that length
+
+
+class Segment:
+    """The curve from a point of a path to the next; `put` finds the point at a fraction of the way.
+
+    Guesses are corrected across the chord. The first lies on the cubic through both points with their
+    directions, another as far along the chord on that through the nearest points that have been found.
+    """
+
+    def __init__(self, problem: Problem, path: Path, first: int) -> None:
+        self.newton = Newton(problem)
+        problem.measure(np.ascontiguousarray(path.z[first]))
+        self._scale = np.array(problem.scale)
+        self._ends = path.z[first : first + 2] / self._scale
+        self._chord = self._ends[1] - self._ends[0]
+        self.length = float(np.linalg.norm(self._chord))  # of the chord, in the curve's own size
+        direction = path.direction[first : first + 2] / self._scale
+        size = np.linalg.norm(direction, axis=1, keepdims=True)
+        self._tangents = direction / np.where(size > 0.0, size, 1.0)
+        self._found = list[_Known]()
+
+    def put(self, part: float) -> bool:
+        """Whether there is a point at the part of the way, in [0, 1]; it is then z."""
+        if self.length == 0.0:
+            return False
+        self.newton.scale[:] = self._scale
+        self.newton.row[:] = self._chord / self.length
+        self.newton.z[:] = self._guess(part) * self._scale
+        if not (self.newton.correct(self.length) and self.newton.moved <= self.length):
+            return False
+        self._found.append(self._place(self.z / self._scale, np.array(self.newton.tangent)))
+        return True
+
+    def _guess(self, part: float) -> FloatArray:
+        """Where the point is looked for."""
+        first, last = (self._place(*end) for end in zip(self._ends, self._tangents, strict=True))
+        whole = _cubic(part, self._ends, self.length * self._tangents)
+        at = self._along(whole)
+        low = max((one for one in self._found if one.at <= at), key=lambda one: one.at, default=first)
+        high = min((one for one in self._found if one.at > at), key=lambda one: one.at, default=last)
+        if not self._found or not low.at < at < high.at:
+            return whole
+        width = high.at - low.at
+        slopes = width * np.array([low.slope, high.slope])
+        near: FloatArray = _cubic((at - low.at) / width, np.array([low.z, high.z]), slopes)
+        near += (at - self._along(near)) / self.length * self._chord
+        return near
+
+    def _along(self, z: FloatArray) -> float:
+        """The length along the chord of a point."""
+        return float((z - self._ends[0]) @ self._chord) / self.length
+
+    def _place(self, z: FloatArray, tangent: FloatArray) -> _Known:
+        """A point with its tangent, a unit vector to either side."""
+        cosine = float(tangent @ self._chord) / self.length
+        return _Known(self._along(z), z, tangent / np.copysign(max(abs(cosine), FLAT), cosine))
+
+    @property
+    def z(self) -> FloatArray:
+        """The point found last, (unknown + 1,)."""
+        return np.array(self.newton.z)
+
+    @property
+    def direction(self) -> FloatArray:
+        """Of the curve there, in the units of z."""
+        direction: FloatArray = np.asarray(self.newton.tangent) * self._scale
+        return direction
+
+    @property
+    def orientation(self) -> float:
+        """Sign of the determinant there."""
+        return float(self.newton.orientation)
+
+
+def _cubic(part: float, ends: FloatArray, slopes: FloatArray) -> FloatArray:
+    """At a part of the way between two ends (2, d), the slopes (2, d) by that part."""
+    rest = 1.0 - part
+    z: FloatArray = ends[0] * (rest * rest * (1.0 + 2.0 * part))
+    z += ends[1] * (part * part * (3.0 - 2.0 * part))
+    z += part * rest * (rest * slopes[0] - part * slopes[1])
+    return z

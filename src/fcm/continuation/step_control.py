@@ -1,0 +1,85 @@
+"""The step rule: which step is accepted, and how long the next one is.
+
+A step is good if the curve was where the parabola foretold it, turned gently, kept its orientation, and if
+what is reported changed as foreseen. The next step aims at what `StepOptions` says of turn, miss
+and unevenness.
+"""
+
+from __future__ import annotations
+
+import cython
+from cython.cimports.libc.math import acos, fabs, sqrt
+
+from fcm.continuation.options import StepOptions
+from fcm.continuation.stepper import Stepper
+
+if cython.compiled:
+    from cython.cimports.fcm.continuation.switching_functions import crosses
+else:
+    from fcm.continuation.switching_functions import crosses
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def good(stepper: Stepper) -> cython.bint:
+    """Whether the curve was where it was predicted, and went on as it did."""
+    options: StepOptions = stepper.options.step
+    if stepper.step <= options.sharp:
+        return stepper.cosine > 0.0
+    if not (kept(stepper) and stepper.missed < options.far and stepper.cosine > options.cosine):
+        return False
+    return unforeseen(stepper) < options.uneven_times * options.uneven
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def kept(stepper: Stepper) -> cython.bint:
+    """Whether the orientation is the same here and there: otherwise there may be the far side of a corner."""
+    return stepper.there.orientation == stepper.here.orientation
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def clear(stepper: Stepper, step: cython.double) -> cython.bint:
+    """Whether there is a good step of a length before a corner, and no margin changes its sign on it."""
+    return stepper.go(step) and kept(stepper) and good(stepper) and not crosses(stepper)
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def next_step(stepper: Stepper) -> cython.double:
+    """Length of the step that follows a good one."""
+    options: StepOptions = stepper.options.step
+    growth: cython.double = options.turn / max(acos(min(stepper.cosine, 1.0)), 1e-9)
+    growth = min(growth, sqrt(options.miss / max(stepper.missed, 1e-9)))
+    growth = min(growth, options.uneven / max(unforeseen(stepper), 1e-9))
+    most: cython.double = options.haste if stepper.options.hasty else options.grow
+    return min(
+        stepper.step * min(max(options.share * growth, options.shrink), most), stepper.options.max_step
+    )
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def unforeseen(stepper: Stepper) -> cython.double:
+    """Greatest change of the growth of an output over the step, as a change of the output over its
+    size."""
+    k: cython.Py_ssize_t
+    worst: cython.double = 0.0
+    size: cython.double
+    for k in range(stepper.problem.outputs):
+        size = max(stepper.here.output[k], stepper.there.output[k])
+        if size > 0.0:
+            worst = max(worst, fabs(stepper.there.growth[k] - stepper.here.growth[k]) * stepper.step / size)
+    return worst
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def extent(stepper: Stepper) -> cython.double:
+    """Greatest unit of the unknowns: the size of the solution."""
+    i: cython.Py_ssize_t
+    most: cython.double = 0.0
+    for i in range(stepper.problem.unknowns):
+        most = max(most, stepper.newton.scale[i])
+    return most

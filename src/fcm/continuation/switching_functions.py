@@ -1,0 +1,225 @@
+"""Switching functions (margins), whose change of sign is a corner: ahead of a step, and between its ends.
+
+What both ends of a step tell of the way between them is the same for the parameter and for outputs.
+"""
+
+from __future__ import annotations
+
+import cython
+from cython.cimports.libc.math import fabs, sqrt
+
+from fcm.continuation.stepper import Stepper
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def dip(stepper: Stepper) -> cython.double:
+    """Length at which a margin of one sign here and there has the other between them; 0 if none has.
+
+    As far as the cubic through both ends, with their slopes, tells.
+    """
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    at: cython.double
+    first: cython.double = stepper.step
+    for k in range(stepper.problem.margins):
+        i = stepper.here.partner(k, stepper.there.kind, stepper.there.angle)
+        if i >= 0 and stepper.here.margin[k] * stepper.there.margin[i] > 0.0:
+            at = lowest(
+                stepper.here.margin[k],
+                stepper.here.slope[k] * stepper.step,
+                stepper.there.margin[i],
+                stepper.there.slope[i] * stepper.step / stepper.spread(),
+            )
+            if 0.0 < at * stepper.step < first:
+                first = at * stepper.step
+    return first if first < stepper.step else 0.0
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def detour(stepper: Stepper, greatest: cython.double[::1]) -> cython.double:
+    """Length at which the parameter, or an output, may go the other way than here and there; 0 if none does.
+
+    There are two folds, or a peak and the least value after it, between then. As far as the cubics through
+    both ends tell; of outputs those near their greatest.
+    """
+    k: cython.Py_ssize_t
+    size: cython.double
+    step: cython.double = stepper.step
+    along: cython.double = step / stepper.spread()
+    if step <= stepper.options.events.blurred:
+        return 0.0
+    at: cython.double = turning(stepper)
+    for k in range(stepper.problem.outputs):
+        size = max(stepper.here.output[k], stepper.there.output[k])
+        if at == 0.0 and size >= stepper.options.events.nearly_greatest * greatest[k]:
+            at = opposite(
+                stepper.there.output[k] - stepper.here.output[k],
+                stepper.here.growth[k] * step,
+                stepper.there.growth[k] * along,
+                stepper.options.events.rise * size * step,
+                stepper.options.events.doubtful,
+            )
+    return at * step
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def turning(stepper: Stepper) -> cython.double:
+    """The part of the step where the parameter may go the other way than here and there; 0 if nowhere."""
+    n: cython.Py_ssize_t = stepper.problem.unknowns
+    unit: cython.double = stepper.step * stepper.newton.scale[n]
+    return opposite(
+        stepper.there.z[n] - stepper.here.z[n],
+        stepper.here.tangent[n] * unit,
+        stepper.there.tangent[n] * unit / stepper.spread(),
+        0.0,
+        stepper.options.events.doubtful,
+    )
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def even(stepper: Stepper) -> cython.bint:
+    """Whether the parameter goes on so evenly that corners within the step hide no pair of folds.
+
+    Beyond a corner its slope may change as a root, and back at the next one: the slope at the ends then
+    differs, or the way does from that at their mean. Either alone vanishes somewhere.
+    """
+    n: cython.Py_ssize_t = stepper.problem.unknowns
+    unit: cython.double = stepper.step * stepper.newton.scale[n]
+    begin: cython.double = stepper.here.tangent[n] * unit
+    end: cython.double = stepper.there.tangent[n] * unit / stepper.spread()
+    off: cython.double = fabs(2.0 * (stepper.there.z[n] - stepper.here.z[n]) - (begin + end))
+    return begin * end > 0.0 and max(off, fabs(end - begin)) < stepper.options.events.even * min(
+        fabs(begin), fabs(end)
+    )
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def opposite(
+    rise: cython.double,
+    begin: cython.double,
+    end: cython.double,
+    least: cython.double,
+    doubtful: cython.double,
+) -> cython.double:
+    """Where in (0, 1) the cubic that rises so much, with slopes of one sign at 0 and 1, goes the other way
+    most, or hardly onwards; 0 if it goes on, or the other way by less than the least slope.
+    """
+    if not begin * end > 0.0:
+        return 0.0
+    sign: cython.double = 1.0 if begin > 0.0 else -1.0
+    a: cython.double = sign * begin
+    b: cython.double = sign * (3.0 * rise - 2.0 * begin - end)
+    c: cython.double = sign * (begin + end - 2.0 * rise)
+    if not c > 0.0:
+        return 0.0
+    x: cython.double = -b / (3.0 * c)
+    return x if 0.0 < x < 1.0 and a + x * b < doubtful * min(a, sign * end) - least else 0.0
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def crosses(stepper: Stepper) -> cython.bint:
+    """Whether a margin changes sign from here to there."""
+    k: cython.Py_ssize_t
+    for k in range(stepper.problem.margins):
+        if stepper.here.margin[k] * stepper.here.margin_at(k, stepper.there) < 0.0:
+            return True
+    return False
+
+
+@cython.cfunc
+@cython.nogil
+@cython.exceptval(check=False)
+def lowest(
+    before: cython.double, begin: cython.double, after: cython.double, end: cython.double
+) -> cython.double:
+    """Where in (0, 1) the cubic with values of one sign and slopes at 0 and 1 is furthest beyond 0; 0 if it
+    is not."""
+    sign: cython.double = 1.0 if before > 0.0 else -1.0
+    a: cython.double = sign * begin
+    b: cython.double = sign * (3.0 * (after - before) - 2.0 * begin - end)
+    c: cython.double = sign * (begin + end - 2.0 * (after - before))
+    root: cython.double = b * b - 3.0 * a * c
+    if not (a < 0.0 and sign * end > 0.0 and root > 0.0):
+        return 0.0
+    x: cython.double = -a / (b + sqrt(root)) if b > 0.0 else (sqrt(root) - b) / (3.0 * c)
+    return x if 0.0 < x < 1.0 and sign * before + x * (a + x * (b + x * c)) < 0.0 else 0.0
+
+
+@cython.ccall
+@cython.exceptval(-1, check=False)
+def ahead(stepper: Stepper, step: cython.double) -> cython.double:
+    """The step, or where on it the prediction comes to the first change of sign of a margin: of which."""
+    count: cython.int
+    at: cython.double
+    before: cython.double
+    after: cython.double
+    low: cython.double = stepper.past
+    high: cython.double = step
+    width: cython.double = 2.0 * step
+    known: cython.double = stepper.options.switching.known
+    aside: cython.double = known / 3.0  # of the root, to come to either side of it
+    if stepper.problem.labelled:
+        return label_ahead(stepper, step)
+    if stepper.problem.margins == 0 or step <= low or not crossed(stepper, step):
+        return step
+    before, after = stepper.here.margin[stepper.which], stepper.here.asked(stepper.which, stepper.problem)
+    for count in range(stepper.options.switching.most):
+        if high - low < known * high:
+            break
+        at = (low * after - high * before) / (after - before) + aside * high
+        if not low < at < high or (count % 3 == 2 and high - low > 0.5 * width):
+            at = 0.5 * (low + high)
+        width = high - low if count % 3 == 0 else width
+        which: cython.Py_ssize_t = stepper.which
+        if crossed(stepper, at):
+            high, after, aside = at, stepper.here.asked(stepper.which, stepper.problem), -known / 3.0
+            before = before if which == stepper.which else -after  # of another: by halves at first
+        else:
+            low, aside = at, known / 3.0
+            before = stepper.here.asked(which, stepper.problem) or before
+    return high
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def label_ahead(stepper: Stepper, step: cython.double) -> cython.double:
+    """The step, or where on it a label of the prediction changes: a label has no root, but halves."""
+    count: cython.int
+    low: cython.double = 0.0
+    high: cython.double = step
+    if stepper.problem.margins == 0 or not crossed(stepper, step):
+        return step
+    for count in range(stepper.options.switching.most):  # noqa: B007
+        if high - low < stepper.options.switching.known_label * high:
+            break
+        if crossed(stepper, 0.5 * (low + high)):
+            high = 0.5 * (low + high)
+        else:
+            low = 0.5 * (low + high)
+    return high
+
+
+@cython.cfunc
+@cython.exceptval(-1, check=False)
+def crossed(stepper: Stepper, step: cython.double) -> cython.bint:
+    """Whether the prediction a step ahead has a margin of the other sign than here, or a label of
+    another value; which is then one of those."""
+    k: cython.Py_ssize_t
+    stepper.predictor.put(stepper.here, stepper.newton.scale, step, stepper.guess)
+    stepper.problem.bound(stepper.guess)
+    for k in range(stepper.problem.margins):
+        if stepper.problem.labelled:
+            changed: cython.bint = stepper.problem.margin[k] != stepper.here.margin[k]
+        else:
+            changed = stepper.here.asked(k, stepper.problem) * stepper.here.margin[k] < 0.0
+        if changed:
+            stepper.which = k
+            return True
+    return False
