@@ -141,11 +141,11 @@ def test_a_curve_goes_on_where_a_contact_has_lost_its_state(scene, monkeypatch):
     monkeypatch.setattr(legs, "follow", spied(legs.follow, calls))
     (curve,) = trace_exact(scene).curves
     assert curve.complete and np.isfinite(curve.orbits.held).tolist()[1:] == [[False, False], [False, True]]
-    begun = [(problem, stage) for problem, *_, stage, _ in calls if stage is not None]
+    begun = [(args[0], there) for args, options in calls if (there := options["checkpoint"]) is not None]
     assert len(begun) == 1
-    problem, stage = begun[0]
-    assert len(stage.kept.before.z) > 10
-    for z in (*stage.kept.before.z, stage.z):
+    problem, checkpoint = begun[0]
+    assert len(checkpoint.kept.before.z) > 10
+    for z in (*checkpoint.kept.before.z, checkpoint.z):
         assert problem.shot(z).residual < 1e-9 and problem.shot(z).cycle.states[1] == "E"
     (whole,) = trace_exact(scene, tolerance=None).curves
     for dof, peak in whole.peaks.items():
@@ -156,7 +156,7 @@ def spied(function, calls):
     """The same function, its calls noted."""
 
     def spy(*args, **options):
-        calls.append(args)
+        calls.append((args, options))
         return function(*args, **options)
 
     return spy

@@ -9,10 +9,10 @@ from dataclasses import field
 
 import cython
 
-if cython.compiled:
-    from cython.dataclasses import dataclass
-else:
+if not cython.compiled:
     from dataclasses import dataclass
+else:
+    from cython.dataclasses import dataclass  # type: ignore[no-redef]
 
 
 @cython.cclass
