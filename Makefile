@@ -21,7 +21,7 @@ KERNELS := $(shell sed -n 's/^.*sources = \["\([^"]*\)"\].*$$/\1/p' pyproject.to
 ALL        := src/fcm/on_demand.py src/fcm/signals.py src/fcm/rotation.py src/fcm/units.py src/fcm/untold.py src/fcm/files.py src/fcm/at_rest.py
 CONTACT    := $(ALL) $(wildcard src/fcm/contact/*.py src/fcm/contact/*/*.py)
 SOLVER     := $(CONTACT) tables/default.nc \
-	$(wildcard $(foreach part,scene table structure continuation harmonic accuracy branches results reduction run response,src/fcm/$(part)/*.py))
+	$(wildcard $(foreach part,scene table structure continuation harmonic stability accuracy branches results reduction run response,src/fcm/$(part)/*.py))
 SIMULATION := $(SOLVER) $(wildcard src/fcm/motion/*.py src/fcm/orbit/*.py)
 DRAWING    := $(ALL) src/fcm/plot/style.py src/fcm/plot/read.py src/fcm/plot/labels.py src/fcm/plot/dof.py src/fcm/plot/apart.py src/fcm/plot/layout.py src/fcm/cli/drawing.py
 LOOPS      := $(CONTACT) $(DRAWING) $(wildcard src/fcm/plot/loop*.py src/fcm/cli/loop*.py) src/fcm/plot/plane.py
@@ -38,7 +38,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence kept-modes demo picture paper figures test check tables \
+.PHONY: help design fuzz kills dist matrix wheels kernels extremes bench-time bench-others calibration published report convergence multipliers kept-modes demo picture paper figures test check tables \
 	clean bench study
 
 help:  ## this list
@@ -204,6 +204,13 @@ convergence: build/convergence.txt  ## error against run time with 1 to 15 harmo
 build/convergence.txt: src/fcm/report/convergence.py src/fcm/plot/convergence.py $(SIMULATION) $(VENV)/installed
 	@mkdir -p build
 	$(BIN)/python -m fcm.report convergence build/convergence.json --picture build/convergence.png > $@
+
+multipliers: build/multipliers.json  ## Floquet multipliers, balanced and exact, as the picture of the guide's page of stability
+	cp build/multipliers.png .github/multipliers.png
+
+build/multipliers.json: src/fcm/report/multipliers.py src/fcm/plot/multipliers.py $(SIMULATION) $(VENV)/installed
+	@mkdir -p build
+	$(BIN)/python -m fcm.report multipliers $@ --picture build/multipliers.png
 
 kept-modes: build/kept-modes.txt  ## error of peaks against the number of modes kept of a blade, in build
 	@cat $<

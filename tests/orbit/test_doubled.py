@@ -97,6 +97,8 @@ def test_the_program_follows_them_where_it_is_asked_to(tmp_path):
     assert once.code == twice.code == 0 and one["repeats"] == [1] and two["repeats"] == [1, 2]
     assert len(one["jumps"]) == 2 and not two["jumps"]  # the sweep goes on with two periods
     assert one["period_doubles"] == pytest.approx([jump["frequency"] for jump in one["jumps"]])
+    told = [{"kind": "period doubling", "frequency": at} for at in one["period_doubles"]]
+    assert one["bifurcations"] == told
     assert "places at which the period doubles: 2" in once.err and "--periods 2 follows" in once.err
     assert "(repeats): " in twice.err and ", after 2" in twice.err and "period doubles" not in twice.err
     (curve,) = trace_exact(fcm.load_scene(scene), periods=2).curves

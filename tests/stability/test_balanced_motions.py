@@ -21,7 +21,7 @@ from fcm.stability.bifurcation_functions import dip, seen
 from fcm.stability.bifurcations import stability, with_points
 from fcm.stability.floquet import multipliers
 from fcm.stability.multipliers import Multipliers
-from fcm.stability.verdict import Kind, Spectrum, Verdict, even
+from fcm.stability.verdict import Bifurcation, Spectrum, Verdict, even
 
 from ..motion.cases import SCENES, one_mode, yang
 
@@ -136,7 +136,10 @@ def test_flips_are_where_the_exact_motion_has_them():
     scene = yang(0.0)
     of, found = path(scene, 5, (0.7, 0.82))
     result = stability(of, found)
-    assert [crossing.kind for crossing in result.crossings] == [Kind.FLIP, Kind.FLIP]
+    assert [crossing.kind for crossing in result.crossings] == [
+        Bifurcation.PERIOD_DOUBLING,
+        Bifurcation.PERIOD_DOUBLING,
+    ]
     for crossing, inwards in zip(result.crossings, (1.0, -1.0), strict=True):
         assert 0.0 < found.parameter[crossing.after + 1] - crossing.frequency
         assert abs(multipliers(of, crossing.z)[0] + 1.0) < 1e-6
@@ -169,7 +172,10 @@ def test_a_window_between_two_points_is_found(n_0, damping, window, step):
         grown += [omega] if np.abs(multipliers(of, z)).max() > 1.0 else []
     assert window[0] < first < grown[0] < grown[-1] < last < window[1]
     assert last - first < grown[-1] - grown[0] + 2.0 * (window[1] - window[0]) / 24
-    assert [crossing.kind for crossing in result.crossings] == [Kind.FLIP, Kind.FLIP]
+    assert [crossing.kind for crossing in result.crossings] == [
+        Bifurcation.PERIOD_DOUBLING,
+        Bifurcation.PERIOD_DOUBLING,
+    ]
     whole = with_points(found, result.inserted)
     stable = np.insert(
         result.stable, [one.after + 1 for one in result.inserted], [one.stable for one in result.inserted]
@@ -334,15 +340,15 @@ def test_a_window_that_begins_beside_a_place_that_was_looked_at_is_found():
 
 def test_multipliers_beyond_all_bounds_are_no_trouble():
     one, other = (
-        seen(s, Verdict(0.0, g, Kind.REAL, values=(1e200 + 0j, 1e160 + 0j)))
+        seen(s, Verdict(0.0, g, Bifurcation.REAL, values=(1e200 + 0j, 1e160 + 0j)))
         for s, g in ((0.0, 9.0), (1.0, 8.0))
     )
     assert dip(one, other, [one, other]) is None
 
 
 def test_a_pair_and_a_flip_are_told_apart():
-    assert Spectrum([0.5 + 0j, *PAIR]).verdict().kind is Kind.PAIR
-    assert Spectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Kind.FLIP
+    assert Spectrum([0.5 + 0j, *PAIR]).verdict().kind is Bifurcation.NEIMARK_SACKER
+    assert Spectrum([0.5 + 0j, -1.2 + 0j]).verdict().kind is Bifurcation.PERIOD_DOUBLING
 
 
 def test_small_disturbances_grow_as_the_multipliers_say():

@@ -87,6 +87,7 @@ class System:
         self._march, self._derivative = March(self.flows), Derivative(self.flows)
         self._along, self.integrals = Directional(self.flows), Integrals(self.flows)
         none = np.zeros(m)
+        self.made = dict[str, Any]()  # what other packages make once for a scene
         self.slips = Powers(self.flows, none, none, none, none, everywhere=False)
         self.displaced, self.limits, self.reported, self.parts = self._scans()
         _LATEST.keep(scene, {name: what for name, what in vars(self).items() if name not in OWN})

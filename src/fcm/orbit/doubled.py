@@ -23,6 +23,7 @@ from fcm.orbit.sample import Sample
 from fcm.orbit.shooting import Shot
 from fcm.orbit.steady import Steady, steady
 from fcm.scene.model import FloatArray
+from fcm.stability.verdict import Bifurcation, bifurcation_of
 
 REACHES = (0.03, 0.1, 0.3)  # distances from a motion, relative to it, at which one of twice its periods is
 BESIDE = 4  # points to either side of a flip from which that is sought; further ones are beyond bends
@@ -87,17 +88,20 @@ def to_flips(problem: Doubled, points: list[Sample], branches: list[list[Sample]
     return points
 
 
-def flips(points: list[Sample]) -> Iterator[int]:
-    """The places k in a branch where the period doubles between the points k and k + 1."""
+def bifurcations(points: list[Sample]) -> Iterator[tuple[int, Bifurcation]]:
+    """The places k in a branch where stability changes between the points k and k + 1, but at no fold."""
     for k, (one, other) in enumerate(pairwise(points)):
-        unstable = other if one.stable else one
-        passes = one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD
-        if passes and unstable.multipliers[0].real < -1.0:
-            yield k
+        if one.stable != other.stable and not (one.mark | other.mark) & Mark.FOLD:
+            yield k, bifurcation_of((other if one.stable else one).multipliers.tolist())
+
+
+def flips(points: list[Sample]) -> Iterator[int]:
+    """Those where the period doubles."""
+    return (k for k, kind in bifurcations(points) if kind is Bifurcation.PERIOD_DOUBLING)
 
 
 def flip(points: list[Sample], k: int) -> Sample:
-    """The point at a flip, which belongs to the stable side."""
+    """The point at a bifurcation, which belongs to the stable side."""
     return points[k] if points[k].stable else points[k + 1]
 
 

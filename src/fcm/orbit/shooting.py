@@ -15,10 +15,9 @@ from fcm.motion.run import march_from
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.derivative import period_derivative
+from fcm.orbit.floquet import floquet_of
 from fcm.orbit.residual_friction import Choice, choices, overshoots, resting, stuck_of
 from fcm.scene.model import FloatArray, Scene
-
-LEAST = 1e-100  # part of the greatest scale, of those that matrices are balanced by: others overflow
 
 
 class Shot:
@@ -134,29 +133,17 @@ class Shot:
     @cached_property
     def others(self) -> npt.NDArray[np.complex128]:
         """Floquet's multipliers but the 1 of each contact that always sticks, whose slip motion w stays, and
-        of each that stays closed without friction, whose f = 0 does.
-
-        With w = u - f / k_u for the f of the first the others are those of the rest.
+        of each that stays closed without friction, whose f = 0 does; nor the 0 of a slider that forgets.
         """
-        system, seen = self.system, self.segments.seen()
-        stuck, by_state, scale = stuck_of(system, seen), self.derivative, self.scale
-        if closed := [j for j, states in enumerate(seen) if states == 1 << STICKING]:
-            places, by_state = system.f.start + np.array(stuck, dtype=int), by_state.copy()
-            by_state[:, system.q] += by_state[:, places] @ (
-                system.k_u[stuck, None] * system.tangential[stuck]
-            )
-            rest = np.ones(self.x.size, dtype=bool)
-            rest[system.f.start + np.array(closed)] = False
-            by_state, scale = by_state[rest][:, rest], scale[rest]
-        scale = np.maximum(scale, LEAST * scale.max(initial=0.0))
-        return np.linalg.eigvals(by_state * (scale / scale[:, None])).astype(np.complex128)
+        return floquet_of(self.system).multipliers(self.segments, self.duration)
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
         """Floquet's, the greatest first; 1 for each contact that always sticks, or stays closed smooth."""
-        values = self.others
-        if values.size < self.x.size:
-            values = np.append(values, np.ones(self.x.size - values.size))
+        values = np.zeros(self.x.size, dtype=np.complex128)
+        ones = sum(states == 1 << STICKING for states in self.segments.seen())
+        values[: self.others.size] = self.others
+        values[self.others.size : self.others.size + ones] = 1.0
         return values[np.argsort(-np.abs(values), kind="stable")]
 
 

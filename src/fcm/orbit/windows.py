@@ -21,7 +21,7 @@ from fcm.orbit.periodic import within_unit_circle
 from fcm.orbit.problem import OrbitProblem
 from fcm.scene.model import FloatArray
 from fcm.stability.bifurcation_functions import LEAST, MANY, Seen, dip, foretold, products, seen
-from fcm.stability.verdict import Kind, Verdict
+from fcm.stability.verdict import Bifurcation, Verdict
 
 ComplexArray = npt.NDArray[np.complex128]
 
@@ -152,7 +152,7 @@ def _seen(length: float, multipliers: ComplexArray, stable: bool) -> Seen:
     """A point; of contacts that always stick, or stay closed smooth, multipliers are 1 and tell nothing."""
     values = tuple(multipliers[multipliers != 1.0].tolist()[:MANY])
     growth = math.log(max((abs(value) for value in values), default=0.0) + 1e-300)
-    return seen(length, Verdict(float(stable), growth, Kind.PAIR, values=values))
+    return seen(length, Verdict(float(stable), growth, Bifurcation.NEIMARK_SACKER, values=values))
 
 
 def _known(path: Path, points: Sequence[Point]) -> _Known:

@@ -12,6 +12,7 @@ PAGES = {
     "others": ("fcm.report.others:others", "Other packages beside fcm."),
     "published": ("fcm.report.published:published", "Published numbers beside those obtained."),
     "convergence": ("fcm.report.convergence:convergence", "Error against run time with more harmonics."),
+    "multipliers": ("fcm.report.multipliers:multipliers_page", "Floquet multipliers, balanced and exact."),
     "kept-modes": ("fcm.report.kept_modes:kept_modes", "Error of peaks against the number of kept modes."),
 }
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.continuation import Mark
-from fcm.orbit.doubled import flip, flips
+from fcm.orbit.doubled import bifurcations, flip, flips
 from fcm.orbit.sample import Sample
 from fcm.reduction.held import NotKeptError, lost_by, whole_borne, whole_state, whole_states
 from fcm.response.groups import lost_curve
@@ -41,10 +41,12 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
         If a contact that is held would not have kept its state.
     """
     points, folds, scene = list[Sample | None](), list[float](), groups[0].problem.scene
+    changes = list[tuple[str, float]]()
     kept = list[FloatArray]()
     for group in groups:
         for found in group.points:
             folds += [point.frequency for point in found if point.mark & Mark.FOLD]
+            changes += [(kind.value, flip(found, k).frequency) for k, kind in bifurcations(found)]
             whole = found
             if scene.held:
                 kept += [_kept(scene, found)]
@@ -53,7 +55,7 @@ def orbit_curve(groups: Sequence[OrbitBranches], reason: str, search: Search) ->
     least = np.min(kept, axis=0) if kept else _kept(scene, [])
     if lost := lost_by(least).tolist():  # other motions beside such points are of no use
         raise NotKeptError(tuple(lost), reason)
-    curve = replace(_curve(scene.whole(), points, reason, search), folds=folds)
+    curve = replace(_curve(scene.whole(), points, reason, search), folds=folds, bifurcations=changes)
     if curve.orbits is not None:
         curve.orbits.periods = sum(group.problem.periods for group in groups)
         last = groups[-1].points

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -121,12 +121,14 @@ class _Followed:
     """A response with the points at which stability changes, and whether each point is stable.
 
     lost: how far the frequencies are off at which it changes without a fold, where harmonics are chosen.
-    exceeded: whether more harmonics have a higher branch, where they are given."""
+    exceeded: whether more harmonics have a higher branch, where they are given.
+    bifurcations: how stability changes without a fold, and where [rad/s]."""
 
     found: Accurate
     stable: list[FloatArray]
     lost: list[Lost]
     exceeded: bool = False
+    bifurcations: list[tuple[str, float]] = field(default_factory=list)
 
 
 def _with_jumps(followed: _Followed, accuracy: float) -> _Followed:
@@ -195,6 +197,7 @@ def _curve(followed: _Followed) -> Curve:
         reason=reason,
         peaks=_peaks(scene.modal.dofs, points, peak, rounding, stable),
         folds=points.z[(points.mark & Mark.FOLD) > 0, -1].tolist(),
+        bifurcations=followed.bifurcations,
         seconds=0.0,
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
@@ -242,12 +245,14 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
     to it, and is said not to: of that nothing is looked for where it has long lost that of more harmonics.
     """
     found, stable, lost = followed.found, list(followed.stable), list(followed.lost)
+    bifurcations = list(followed.bifurcations)
     short, known = accuracy is not None and not found.reached, len(stable)
     every = found.traced.branches.paths
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
         judged = stability(found.system, path, astray(error.truncation) if short else None)
         inserted = judged.inserted
+        bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:
             lost += lost_along(found.system, path, judged.crossings, accuracy)
         if not inserted:
@@ -271,7 +276,7 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
     branches = replace(found.traced.branches, paths=tuple(paths))
     traced = replace(found.traced, branches=branches)
     found = replace(found, traced=traced, shown=tuple(shown), errors=tuple(errors))
-    return replace(followed, found=found, stable=stable, lost=lost)
+    return replace(followed, found=found, stable=stable, lost=lost, bifurcations=bifurcations)
 
 
 def _with_reported(system: System, known: Reported, inserted: Sequence[Inserted], after: Rows) -> Reported:

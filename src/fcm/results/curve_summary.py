@@ -51,6 +51,10 @@ def curve_summary(curve: Curve, unit: str, contacts: Sequence[str] = ()) -> dict
     if curve.greatest is not None and contacts:
         out["contacts"] = _contacts(curve.greatest, contacts, unit)
     out["folds"] = in_unit(curve.folds, unit).tolist()
+    if curve.bifurcations:
+        out["bifurcations"] = [
+            {"kind": kind, "frequency": float(in_unit(at, unit))} for kind, at in curve.bifurcations
+        ]
     if curve.sensitivity is not None:
         out["sensitivity"] = _sensitivity(curve, curve.sensitivity, unit)
     if curve.level is not None:

@@ -58,6 +58,7 @@ class Curve:
     peaks: dict[str, Peak]  # of each dof
     folds: list[float]  # frequencies [rad/s] in the order along the curve
     seconds: float
+    bifurcations: list[tuple[str, float]] = field(default_factory=list)  # others: which, and where [rad/s]
     short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
     unsure: list[float] = field(default_factory=list)  # [rad/s] where branches may have been missed
     folds_unsure: list[float] = field(default_factory=list)  # [rad/s] from where no folds were followed

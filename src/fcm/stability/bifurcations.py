@@ -24,11 +24,11 @@ from fcm.scene.model import FloatArray
 from fcm.stability.along_branch import Verdicts
 from fcm.stability.bifurcation_functions import MANY, dip
 from fcm.stability.inserted import Crossing, Inserted, with_points
-from fcm.stability.verdict import FLIP_NEAR, Kind, Verdict
+from fcm.stability.verdict import FLIP_NEAR, Bifurcation, Verdict
 
 IntArray = npt.NDArray[np.intp]
 
-__all__ = ["Crossing", "Inserted", "Kind", "Stability", "stability", "with_points"]
+__all__ = ["Bifurcation", "Crossing", "Inserted", "Stability", "stability", "with_points"]
 
 SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up

@@ -10,7 +10,7 @@ import numpy as np
 
 from fcm.continuation import Mark, Path
 from fcm.scene.model import FloatArray
-from fcm.stability.verdict import Kind
+from fcm.stability.verdict import Bifurcation
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Crossing(Inserted):
     neither grows nor dies out there, but by what more harmonics make of that."""
 
     stable: float = math.nan
-    kind: Kind = Kind.PAIR
+    kind: Bifurcation = Bifurcation.NEIMARK_SACKER
 
     @property
     def mark(self) -> int:

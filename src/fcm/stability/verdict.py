@@ -21,12 +21,12 @@ NAN = cython.declare(cython.double, float("nan"))
 INFINITY = cython.declare(cython.double, float("inf"))
 
 
-class Kind(Enum):
-    """How stability ends, besides at a fold."""
+class Bifurcation(Enum):
+    """How stability changes, besides at a fold: where multipliers leave the unit circle."""
 
-    FLIP = "flip"
-    PAIR = "pair"
-    REAL = "real"  # through +1, of a motion that is smooth only on one side of the balance's
+    PERIOD_DOUBLING = "period doubling"  # one at -1
+    NEIMARK_SACKER = "Neimark-Sacker"  # a complex pair
+    REAL = "multiplier +1"  # one at +1 beside a fold: of a motion smooth only on one side of the balance's
 
 
 class Verdict(NamedTuple):
@@ -34,15 +34,15 @@ class Verdict(NamedTuple):
 
     stable: float  # 1, 0, or nan where it cannot be told
     growth: float  # logarithm of what a disturbance grows by in a period, other than at a fold
-    kind: Kind  # of what grows most
+    kind: Bifurcation  # of what grows most
     before_flip: float = math.pi  # [rad] from the negative real axis to the nearest pair that is not small
     passive: bool = False  # no contact slips or opens
     held: int = 0  # contacts that never slip, but for an extreme of a limit that holds the slider
     values: tuple[complex, ...] = ()  # the multipliers
 
 
-PASSIVE = Verdict(1.0, -math.inf, Kind.PAIR, passive=True)
-UNKNOWN = Verdict(math.nan, math.nan, Kind.PAIR)
+PASSIVE = Verdict(1.0, -math.inf, Bifurcation.NEIMARK_SACKER, passive=True)
+UNKNOWN = Verdict(math.nan, math.nan, Bifurcation.NEIMARK_SACKER)
 
 
 @cython.cclass
@@ -59,13 +59,13 @@ class Spectrum:
     real: cython.double  # greatest of the real ones above 1, which leave at folds; -inf if there is none
     real_but_nearest: cython.double
     other: cython.double  # greatest of the others, -inf if there is none
-    kind: Kind  # of that
+    kind: Bifurcation  # of that
     before_flip: cython.double  # as in `Verdict`
 
     def __init__(self, values: list[complex]) -> None:
         value: cython.doublecomplex
         size: cython.double
-        self.values, self.kind, self.before_flip = tuple(values), Kind.PAIR, PI
+        self.values, self.kind, self.before_flip = tuple(values), Bifurcation.NEIMARK_SACKER, PI
         self.nearest, self.odd, self.real, self.real_but_nearest = NAN, False, -INFINITY, -INFINITY
         self.other = 0.0
         for value in values:
@@ -74,7 +74,10 @@ class Spectrum:
                 self.leaves_at_folds(log(size))
                 continue
             if size > self.other:
-                self.other, self.kind = size, Kind.PAIR if value.imag != 0.0 else Kind.FLIP
+                self.other, self.kind = (
+                    size,
+                    Bifurcation.NEIMARK_SACKER if value.imag != 0.0 else Bifurcation.PERIOD_DOUBLING,
+                )
             if size > FAR_FROM_GROWTH and value.imag != 0.0:
                 self.before_flip = min(self.before_flip, PI - fabs(atan2(value.imag, value.real)))
         self.other = log(self.other) if self.other > 0.0 else -INFINITY
@@ -98,9 +101,18 @@ class Spectrum:
         kind = self.kind
         growth: cython.double = self.other
         if not growth >= most:
-            growth, kind = most, Kind.REAL
+            growth, kind = most, Bifurcation.REAL
         stable = 1.0 if growth <= STABLE else 0.0
         return Verdict(stable, growth, kind, self.before_flip, False, 0, self.values)
+
+
+def bifurcation_of(multipliers: Sequence[complex]) -> Bifurcation:
+    """By which an unstable motion has lost its stability, if that was not at a fold.
+
+    >>> bifurcation_of([-1.1, 0.3 + 0.2j, 0.3 - 0.2j]).value
+    'period doubling'
+    """
+    return Spectrum(list(multipliers)).verdict().kind
 
 
 def apart(verdict: Verdict) -> float:
@@ -177,7 +189,7 @@ def meeting(values: Sequence[complex]) -> tuple[float, float]:
 
 def to_flip(verdict: Verdict) -> float:
     """[rad] from the negative real axis to the nearest pair that is not small; 0 where one has come there."""
-    met = verdict.kind is Kind.FLIP and verdict.growth > log(SMALL)
+    met = verdict.kind is Bifurcation.PERIOD_DOUBLING and verdict.growth > log(SMALL)
     return 0.0 if met else verdict.before_flip
 
 
@@ -192,4 +204,4 @@ def either(pushed: Verdict, resting: Verdict) -> Verdict:
         return resting
     if pushed.stable == 1.0:
         return max(pushed, resting, key=lambda verdict: verdict.growth)
-    return pushed if pushed.kind is Kind.REAL else pushed._replace(stable=math.nan)
+    return pushed if pushed.kind is Bifurcation.REAL else pushed._replace(stable=math.nan)
