@@ -11,6 +11,8 @@ _MOST_STRETCHES = 3  # of frequencies in a sentence
 def short_of_accuracy(summary: Mapping[str, Any]) -> str:
     """How many curves have not the accuracy that was asked for, and why the first has not; empty if all."""
     short = [curve["short_of_accuracy"] for curve in summary["curves"] if curve.get("short_of_accuracy")]
+    if tracked := summary.get("tracked", {}).get("short_of_accuracy"):
+        return f"what is tracked has not the accuracy that was asked for: {tracked}"
     if not short:
         return ""
     count, verb = len(summary["curves"]), "has" if len(short) == 1 else "have"

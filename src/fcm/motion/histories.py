@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
+import numpy as np
+
+from fcm.at_rest import at_rest
 from fcm.motion.errors import SimulationError
 from fcm.motion.plan import Plan
 from fcm.motion.record import INTERRUPTED, Passed, Record, record, unfinished
@@ -80,7 +83,17 @@ def histories(scene: Scene, progress: Progress | None = None, kept: Kept | None 
     if not any(one.cycles for one in records) and records[-1].reason == INTERRUPTED:
         raise KeyboardInterrupt
     records += [unfinished(curve, plan) for curve in curves[len(records) :]]
-    return Histories(scene, plan, records, time.perf_counter() - begin)
+    return Histories(scene, plan, list(map(_without_rounding, records)), time.perf_counter() - begin)
+
+
+def _without_rounding(record: Record) -> Record:
+    """The record with amplitudes of 0 where a degree of freedom moves by rounding alone, as of curves."""
+    if not record.phases:
+        return record
+    rest = at_rest(np.fmax.reduce([phase.amplitude for phase in record.phases]))
+    phases = [replace(one, amplitude=np.where(rest, 0.0, one.amplitude)) for one in record.phases]
+    amplitude = np.where(rest & np.isfinite(record.amplitude), 0.0, record.amplitude)
+    return replace(record, phases=phases, amplitude=amplitude)
 
 
 def _record(number: int, curve: Scene, plan: Plan, progress: Progress | None, kept: Kept | None) -> Record:

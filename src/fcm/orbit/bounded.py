@@ -4,14 +4,34 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from fcm.orbit.periodic import Look
 
+if TYPE_CHECKING:
+    from fcm.harmonic.trace import Traced
+
 Found = TypeVar("Found")
 SELDOM = 0.05  # [s] between two looks at the processor time, which takes long to tell on some machines
+
+
+@dataclass
+class Doubts:
+    """Frequencies [rad/s] at which the balance that exact motions begin near may lack branches.
+
+    levels: where the level of the forces was not followed to its end; folds: from where its folds were not.
+    """
+
+    levels: list[float] = field(default_factory=list)
+    folds: list[float] = field(default_factory=list)
+
+    def take(self, found: Traced) -> None:
+        """Those of a traced balance, in the place of others."""
+        self.levels[:] = [one.omega for one in found.found if not one.complete]
+        self.folds[:] = found.folds_lost
 
 
 class Bounded:

@@ -12,7 +12,7 @@ from fcm.continuation import FollowOptions, Mark, Path, Status, all_branches, fo
 from fcm.continuation.all_branches import Branches, Follow
 from fcm.motion.errors import SimulationError
 from fcm.orbit.apart import ACCURACY, converged_balance, passes
-from fcm.orbit.bounded import Bounded
+from fcm.orbit.bounded import Bounded, Doubts
 from fcm.orbit.periodic import Look, Orbit, periodic, without_end
 from fcm.orbit.problem import OrbitProblem
 from fcm.orbit.raised import Raised, raised
@@ -98,9 +98,14 @@ def trace_orbits(
 
 
 def explore(
-    problem: OrbitProblem, along: Follow = follow, look: Look = without_end, most: float = np.inf
+    problem: OrbitProblem,
+    along: Follow = follow,
+    look: Look = without_end,
+    most: float = np.inf,
+    doubts: Doubts | None = None,
 ) -> tuple[list[Path], str]:
-    """All branches of a scene as paths, and what is missing, else ''.
+    """All branches of a scene as paths, and what is missing, else ''; doubts take those of the balance that
+    leads to them.
 
     That is why there is no solution at an end of the range, and why the search for further branches was given
     up: what leads to them may take so many seconds of processor time.
@@ -117,7 +122,7 @@ def explore(
     paths = branches(found).paths
     bounded, lacking, lost = Bounded(look, most), list[tuple[float, float]](), list[float]()
     if not sought:
-        paths = _with_others(problem, paths, apart, branches, bounded, lacking)
+        paths = _with_others(problem, paths, apart, branches, bounded, lacking, doubts or Doubts())
     if _broken(paths) >= BROKEN:
         bounded.note(f"{BROKEN} that were followed break off")
     if not bounded.given_up:
@@ -148,6 +153,7 @@ def _with_others(
     branches: Callable[..., Branches],
     bounded: Bounded,
     lacking: list[tuple[float, float]],
+    doubts: Doubts,
 ) -> tuple[Path, ...]:
     """Paths, and those of others that the converged balance and the level of the forces lead to.
 
@@ -157,6 +163,7 @@ def _with_others(
     scene, look = problem.scene, bounded.look
     high = True
     for balance in bounded.each(converged_balance(scene, apart, look)):
+        doubts.take(balance.traced)
         along = along_balance(problem, balance, bounded.outside)
         paths, high = _with(problem, paths, along.points, branches), along.alike
         lacking += along.lacking

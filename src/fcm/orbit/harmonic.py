@@ -82,16 +82,24 @@ def balanced_states(scene: Scene, frequency: float, look: Callable[[], None] | N
 
     look is called now and then.
     """
+    return balanced_there(scene, frequency, look)[0]
+
+
+def balanced_there(
+    scene: Scene, frequency: float, look: Callable[[], None] | None = None
+) -> tuple[list[State], bool]:
+    """The same, and whether the level of the forces was followed to its end, so that there are no more."""
     whole = scene.whole()
     if not (whole.modal.frequency.all() and whole.contacts):
-        return []
+        return [], True
     from fcm.harmonic.start import solutions
     from fcm.harmonic.system import System as Balanced
 
     balanced = Balanced(whole, FEW if len(whole.contacts) < MANY else (1,))
     balanced.work.look = look or balanced.work.look
-    found = solutions(balanced, frequency).solutions
-    return [computed_state(scene, balanced.harmonics, z) for z in found]
+    found = solutions(balanced, frequency)
+    states = [computed_state(scene, balanced.harmonics, z) for z in found.solutions]
+    return states, found.complete
 
 
 def computed_state(scene: Scene, harmonics: tuple[int, ...], z: FloatArray) -> State:

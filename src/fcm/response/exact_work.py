@@ -10,6 +10,7 @@ from functools import partial
 from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.system import System
 from fcm.motion.errors import SimulationError
+from fcm.orbit.bounded import Doubts
 from fcm.orbit.branch import explore, incomplete, reached, shown
 from fcm.orbit.doubled import Doubled, doubled_paths
 from fcm.orbit.problem import OrbitProblem
@@ -88,6 +89,7 @@ class _Followed:
     stiff: str  # what is said of a contact that is too stiff, where a curve is not complete
     periods: int
     before: list[tuple[OrbitProblem, Legs]] = field(default_factory=list)  # the last that were followed
+    doubts: Doubts = field(default_factory=Doubts)  # of the balance that these began near
 
     def lightly(self, scene: Scene) -> Curve:
         """The curve, followed without the contacts that keep their state all along it."""
@@ -116,7 +118,8 @@ class _Followed:
     def curve(self, scene: Scene) -> Curve:
         """The curve with all contacts that the scene computes."""
         groups, reason = self.branches(scene)
-        return _finished(partial(orbit_curve, groups), reason, Search(self.clock.look, self.report))
+        search = Search(self.clock.look, self.report)
+        return _doubted(_finished(partial(orbit_curve, groups), reason, search), self.doubts)
 
     def peaks(self, scene: Scene) -> Curve:
         """The peaks, folds and jumps alone."""
@@ -129,9 +132,9 @@ class _Followed:
             found = Alone(sorted(known, key=lambda one: one.frequency))
             return _finished(partial(peaks_curve, scene, found), reason, search)
         if alone is not None:
-            return _finished(partial(peaks_curve, scene, alone), "", search)
+            return _doubted(_finished(partial(peaks_curve, scene, alone), "", search), alone.doubts)
         groups, reason = self.branches(scene)
-        return _finished(partial(peaks_of, groups), reason, search)
+        return _doubted(_finished(partial(peaks_of, groups), reason, search), self.doubts)
 
     def branches(self, scene: Scene) -> tuple[list[OrbitBranches], str]:
         """All branches, and why they are not complete, else ''; what is stiff is said then, too.
@@ -147,7 +150,7 @@ class _Followed:
             for problem, found in self.before:
                 legs.take(Released(problem, problems[0]).legs(found.found(problem)))
             self.before[:] = [(problems[0], legs)]
-            paths, without = explore(problems[0], legs, legs.look, self.clock.share(BESIDE))
+            paths, without = explore(problems[0], legs, legs.look, self.clock.share(BESIDE), self.doubts)
             reason = incomplete(scene, paths, without)
             groups.append(OrbitBranches(problems[0], paths))
             while 2 * problems[-1].repeats <= self.periods and not reason:
@@ -177,6 +180,12 @@ def _finished(made: Callable[[str, Search], Curve], reason: str, search: Search)
     except KeyboardInterrupt:
         search.end()
         return made(f"{AT_END}; {reason}" if reason else AT_END, search)
+
+
+def _doubted(curve: Curve, doubts: Doubts) -> Curve:
+    """With where the balance that it began near may lack branches."""
+    curve.unsure, curve.folds_unsure = list(doubts.levels), list(doubts.folds)
+    return curve
 
 
 def _without(problem: OrbitProblem, lost: int) -> str:
@@ -211,10 +220,10 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
     around = replace(scene, frequency_range=(0.0, at[-1]))
     stiff, limit = _too_stiff(replace(scene, frequency_range=(at[0], at[-1])), limit)
     look = Clock(limit, report).look
-    visitor, others, reason = Visitor(around, look), list[Sample](), ""
+    visitor, others, reason, doubts = Visitor(around, look), list[Sample](), "", Doubts()
     try:
         visitor.run(at, report)
-        others.extend(unreached(scene, at, visitor.points, report, look))
+        others.extend(unreached(scene, at, visitor.points, report, look, doubts))
     except (KeyboardInterrupt, TimeOver) as stop:
         where = shown(scene, visitor.points[-1].frequency) if visitor.points else "the start"
         reason = _cut_off(stop, limit) + where
@@ -222,4 +231,5 @@ def _visited(scene: Scene, at: tuple[float, ...], report: Report, limit: float |
         reason = str(error)
     reason = reason or visitor.reason
     reason = reason + stiff if reason else ""
-    return _finished(partial(visited_curve, scene, visitor, others), reason, Search(look, report))
+    found = _finished(partial(visited_curve, scene, visitor, others), reason, Search(look, report))
+    return _doubted(found, doubts)

@@ -13,6 +13,7 @@ import numpy as np
 
 from fcm.continuation import Mark
 from fcm.motion.errors import SimulationError
+from fcm.orbit.bounded import Doubts
 from fcm.orbit.harmonic import state_of
 from fcm.orbit.located import SAME, Guess, located
 from fcm.orbit.periodic import Look
@@ -41,6 +42,7 @@ class Alone:
     points: list[Sample]
     jumps: list[Jump] = field(default_factory=list)
     periods: int = 0  # that were computed
+    doubts: Doubts = field(default_factory=Doubts)  # of the balance that they are near
 
 
 def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -> Alone | None:
@@ -71,7 +73,7 @@ def peaks_alone(scene: Scene, known: list[Sample], report: Report, look: Look) -
     there = [jump for jump in jumps if jump is not None]
     if len(there) < len(jumps):
         return None
-    return Alone(points, there, problem.periods)
+    return Alone(points, there, problem.periods, Doubts(balanced.unsure, balanced.folds_unsure))
 
 
 def peaks_curve(scene: Scene, alone: Alone, reason: str, search: Search) -> Curve:

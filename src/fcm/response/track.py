@@ -33,6 +33,7 @@ from fcm.run import (
     sweep,
 )
 from fcm.scene.draft import LEVEL, Number, number_of
+from fcm.scene.errors import counted
 from fcm.scene.model import Scene
 from fcm.structure.linear import linear_of
 from fcm.track.onset import KINDS as ONSETS
@@ -116,6 +117,8 @@ def track(
         outcome = _swept(work, curves, checkpoint, place, progress)
         for i, one in enumerate(curves):
             _add(response, one, next(iter(outcome.of(i)), None))
+        if wanted.harmonics is None:
+            response.tracking.short_of = _short_of(response.tracking, wanted.accuracy)
         if isinstance(keep, Path) and checkpoint is not None and not response.interrupted:
             checkpoint.done()
     response.seconds = time.perf_counter() - begin
@@ -168,6 +171,18 @@ def _add(response: Response, scene: Scene, found: Followed | Lost | None) -> Non
     response.tracking.interrupted |= found is None or STOPPED in problems
     where = ", ".join(f"{key} = {value:g}" for key, value in scene.parameters.items())
     response.tracking.problems += [f"{where}: {text}" if where else text for text in problems]
+
+
+def _short_of(tracking: Tracking, accuracy: float) -> str:
+    """What keeps tracked curves from an accuracy; empty if nothing is known to."""
+    told = [(one.relative, curve.number[one.point]) for curve in tracking.curves for one in curve.errors]
+    off = [(error, number) for error, number in told if not error <= accuracy]
+    if not off:
+        return ""
+    error, number = max(off, key=lambda one: np.inf if np.isnan(one[0]) else one[0])
+    what = "the error cannot be told" if np.isnan(error) else f"an estimated error of {error:.1e} remains"
+    count = counted(len(tracking.harmonics), "harmonic")
+    return f"with {count} {what} at {tracking.key} = {number:.6g}"
 
 
 def _check(scene: Scene, number: Number, span: tuple[float, float]) -> None:

@@ -8,15 +8,17 @@ that order, and computes the others, to the same last bit.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
+from fcm.response.incomplete import because, no_steady_states
 from fcm.response.loose import loose
 from fcm.results.result import INTERRUPTED
 from fcm.results.tracked import TrackedCurve, TrackedError
@@ -135,6 +137,11 @@ def as_curve(
     """A track in the words of its scene, with its stability and its errors as far as they were looked at."""
     corners = ["" if spot.corner is None else named(scene, spot.corner) for spot in one.spots]
     stopped = [ending for ending in one.endings if not ending.whole]
+    nowhere, count = _along_spots(way, one)
+    stable = np.full(one.s.size, np.nan) if stable is None else np.array(stable)
+    reason = _adrift(way.system, one.s, nowhere)
+    for which in nowhere.values():
+        stable[which] = 0.0  # what creeps away, or floats, is no steady state
     end = one.s[0] if not one.endings[0].whole else one.s[-1]
     return TrackedCurve(
         parameters=dict(scene.parameters),
@@ -145,23 +152,35 @@ def as_curve(
         corner=np.array(corners, dtype=str),
         turn=np.array([bool(spot.turn) for spot in one.spots]),
         trough=~one.greatest,
-        stable=np.full(one.s.size, np.nan) if stable is None else stable,
+        stable=stable,
         closings=tuple(one.turns()),
-        complete=one.whole,
-        reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else "",
+        complete=one.whole and not reason,
+        reason=f"stopped at {end:.6g}: {stopped[0].value}" if stopped else reason,
         errors=told,
-        loose=loose_points(way, one),
+        loose=count,
     )
 
 
-def loose_points(way: Way, one: Track) -> int:
-    """At how many points of a track a contact never slips beside one that may feel it."""
-    count = 0
-    for spot in one.spots:
+def _along_spots(way: Way, one: Track) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
+    """For each reason why points of a track are no steady states which they are (point,); and at how many a
+    contact never slips beside one that may feel it."""
+    count, lost = 0, dict[str, npt.NDArray[np.bool_]]()
+    for k, spot in enumerate(one.spots):
         system = moved(way.system, way.line.scene(way.system.scene, float(spot.z[-1])))
         z = np.array(spot.z[None, :-1])
         count += int(loose(system.scene, cycles(system, z, loops(system, z))[0]).sum())
-    return count
+        for why, which in no_steady_states(system, z, np.ones(1)).items():
+            lost.setdefault(why, np.zeros(len(one.spots), dtype=np.bool_))[k] = which[0]
+    return lost, count
+
+
+def _adrift(system: System, number: FloatArray, nowhere: Mapping[str, npt.NDArray[np.bool_]]) -> str:
+    """From where to where a track is of no steady states, and why; empty if it is nowhere."""
+    for why, which in nowhere.items():
+        if which.any():
+            ends = number[which]
+            return f"from {ends.min():.6g} to {ends.max():.6g} {because(system, why)}"
+    return ""
 
 
 def named(scene: Scene, condition: Condition) -> str:

@@ -17,8 +17,9 @@ from fcm.motion.errors import SimulationError
 from fcm.motion.state import State
 from fcm.motion.system import System
 from fcm.orbit.apart import states_across
+from fcm.orbit.bounded import Doubts
 from fcm.orbit.branch import shown
-from fcm.orbit.harmonic import balanced_states
+from fcm.orbit.harmonic import balanced_there
 from fcm.orbit.linear_motion import started_states
 from fcm.orbit.periodic import Look, Orbit, shoot, unloaded
 from fcm.orbit.problem import OrbitProblem
@@ -37,12 +38,20 @@ class Unreached:
 
     frequency: float  # [rad/s]
     samples: tuple[Sample, ...]
+    whole: bool = True  # whether the level of the forces was followed to its end there
 
 
 def unreached(
-    scene: Scene, frequencies: Sequence[float], visited: Sequence[Sample], report: Report, look: Look
+    scene: Scene,
+    frequencies: Sequence[float],
+    visited: Sequence[Sample],
+    report: Report,
+    look: Look,
+    doubts: Doubts,
 ) -> Iterator[Sample]:
     """The stable motions at each of some frequencies [rad/s] that are none of those visited; each saved.
+
+    doubts take the frequencies at which there may be more.
 
     look is called now and then.
     """
@@ -56,10 +65,11 @@ def unreached(
             look()
             report(1.0, f"other motions, {shown(scene, omega)}")
             here = [one for one in visited if one.frequency == omega]
-            guesses = [*balanced_states(scene, omega, look), *across.get(omega, ())]
-            guesses += started_states(scene, omega)
-            found = Unreached(omega, tuple(_beside(problem, omega, guesses, here, look)))
+            known, whole = balanced_there(scene, omega, look)
+            guesses = [*known, *across.get(omega, ()), *started_states(scene, omega)]
+            found = Unreached(omega, tuple(_beside(problem, omega, guesses, here, look)), whole)
             report.save(found)
+        doubts.levels += [] if found.whole else [omega]
         yield from found.samples
 
 

@@ -147,6 +147,7 @@ class Tracking:
     interrupted: bool = False
     # values of the number and frequencies [rad/s] where the ordinary curves begun from may lack branches
     unsure: list[tuple[float, float]] = field(default_factory=list)
+    short_of: str = ""  # what keeps it from the accuracy that was asked for, if anything
 
     @property
     def complete(self) -> bool:
@@ -164,5 +165,6 @@ class Tracking:
             "complete": self.complete,
             "problems": self.problems,
             "curves": [curve.summary(unit) for curve in self.curves],
+            **({"short_of_accuracy": self.short_of} if self.short_of else {}),
             "branches_unsure_at": [[number, float(in_unit(at, unit))] for number, at in self.unsure],
         }
