@@ -6,10 +6,11 @@ from dataclasses import replace
 import netCDF4
 import pytest
 
-from fcm.accuracy import outline
+from fcm.accuracy import outline, trust
 from fcm.branches import search
 from fcm.branches.isolas import Crossings
 from fcm.harmonic import cost, start
+from fcm.response import level
 
 from .test_doubts_of_analyses import CREEPING
 
@@ -150,3 +151,20 @@ def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
         assert "remains at contact.shroud.n_0" in found["tracked"]["short_of_accuracy"]
     else:
         assert all(curve["short_of_accuracy"] for curve in found["curves"])
+
+
+@pytest.mark.parametrize("analysis", [one for one in MISSED if one != "mode"])
+def test_where_stability_is_not_told_no_peak_is_without_that_word(fcm, tmp_path, monkeypatch, analysis):
+    for module in (trust, level):
+        monkeypatch.setattr(module, "BELIEVED", 0.0)
+    extra, options = ANALYSES[analysis]
+    (tmp_path / "s.toml").write_text(PAIR + extra)
+    said = fcm("respond", "s.toml", *FEW, *options).out
+    found = json.loads(fcm("respond", "s.toml", "--json", *FEW, *options).out)
+    assert "not told" in said
+    if analysis == "peaks tracked":
+        assert all(one["stability_untold"] for one in found["tracked"]["curves"])
+        return
+    assert all(curve["peak"]["u"]["stable"] is None for curve in found["curves"])
+    if analysis == "optimum":
+        assert found["optimum"][0]["at"][0]["stable"] is None and ", stability not told" in said

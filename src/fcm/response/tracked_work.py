@@ -16,6 +16,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
+from fcm.accuracy import trust
 from fcm.harmonic.record import cycles, loops
 from fcm.harmonic.system import System
 from fcm.response.incomplete import because, no_steady_states
@@ -139,6 +140,7 @@ def as_curve(
     stopped = [ending for ending in one.endings if not ending.whole]
     nowhere, count = _along_spots(way, one)
     stable = np.full(one.s.size, np.nan) if stable is None else np.array(stable)
+    stable[_disbelieved(told, one.s.size) & (stable == 1.0)] = np.nan
     reason = _adrift(way.system, one.s, nowhere)
     for which in nowhere.values():
         stable[which] = 0.0  # what creeps away, or floats, is no steady state
@@ -159,6 +161,19 @@ def as_curve(
         errors=told,
         loose=count,
     )
+
+
+def _disbelieved(told: Sequence[TrackedError], count: int) -> npt.NDArray[np.bool_]:
+    """The points (point,) next to a place, or between two, whose error is too great for the motion there to
+    be called stable, as of a response curve."""
+    far = np.zeros(count, dtype=np.bool_)
+    places = sorted((one.point, one.relative) for one in told)
+    for k, (_, error) in enumerate(places):
+        if error > trust.BELIEVED:
+            first = places[k - 1][0] if k else 0
+            last = places[k + 1][0] if k + 1 < len(places) else count - 1
+            far[first : last + 1] = True
+    return far
 
 
 def _along_spots(way: Way, one: Track) -> tuple[dict[str, npt.NDArray[np.bool_]], int]:
