@@ -12,6 +12,7 @@ import pytest
 from fcm import load_scene
 from fcm.cli.exact import remarks
 from fcm.motion import simulate
+from fcm.orbit.bounded import Doubts
 from fcm.response.exact import trace_exact
 from fcm.response.unreached import unreached
 from fcm.run import Report
@@ -46,7 +47,7 @@ def test_single_frequencies_have_what_sweeps_from_far_come_to():
 
 def test_they_go_on_as_they_are():
     scene = load_scene(HARMONIC / "isola.toml")
-    _, found = unreached(scene, [1.22], [], Report(lambda *_: None), lambda: None)
+    _, found = unreached(scene, [1.22], [], Report(lambda *_: None), lambda: None, Doubts())
     last = simulate(scene, 1.22, 200, found.state).measures(last=1)[0]
     assert last.amplitude == pytest.approx(found.measure.amplitude, rel=1e-9)
 

@@ -9,8 +9,8 @@ import pytest
 from fcm.accuracy import outline, trust
 from fcm.branches import search
 from fcm.branches.isolas import Crossings
-from fcm.harmonic import cost, start
-from fcm.response import level
+from fcm.harmonic import start
+from fcm.response import level, mode
 
 from .test_doubts_of_analyses import CREEPING
 
@@ -143,8 +143,10 @@ def test_what_creeps_is_no_steady_state(fcm, tmp_path, analysis):
 
 @pytest.mark.parametrize("analysis", [*MISSED])
 def test_what_misses_the_accuracy_says_so(fcm, tmp_path, monkeypatch, analysis):
-    for module, name in ((outline, "PATIENCE"), (outline, "DOUBTFUL"), (cost, "AGAIN")):
-        monkeypatch.setattr(module, name, 0.0)
+    for name in ("PATIENCE", "DOUBTFUL"):
+        monkeypatch.setattr(outline, name, 0.0)
+    for module in (level, mode):
+        monkeypatch.setattr(module, "with_twice_as_many", lambda *_: None)
     done, found = run(fcm, tmp_path, PAIR, analysis, "--accuracy", 1e-7)
     assert "not the accuracy that was asked for" in done.err, done.err
     if analysis == "peaks tracked":
