@@ -74,9 +74,10 @@ def write_comparison(
 
 def as_text(summary: dict[str, Any]) -> str:
     """The tables of a comparison."""
-    from fcm.compare.tables import every
+    from fcm.compare.tables import every, marked
 
-    return "\n\n".join(aligned(_to_the_left(rows), left=0) for rows in every(summary))
+    parts = [aligned(_to_the_left(rows), left=0) for rows in every(summary)]
+    return "\n\n".join([*parts, *filter(None, ["\n".join(marked(summary))])])
 
 
 def _to_the_left(rows: list[list[str]]) -> list[list[str]]:

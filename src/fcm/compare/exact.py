@@ -43,7 +43,7 @@ def _line(scene: Scene, curve: Curve) -> Line:
     }
     return Line(
         curve.frequency, amplitude(curve, scene), peaks, curve.folds, curve.complete, curve.reason, {},
-        curve.orbits.periods,
+        curve.orbits.periods, {dof: peak.stable for dof, peak in curve.peaks.items()},
     )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ class Line:
     reason: str = ""
     truncation: Mapping[str, float] = field(default_factory=dict)  # estimate at each peak [-]
     evaluations: int = 0  # of the equations; periods of the exact motion
+    stable: Mapping[str, float] = field(default_factory=dict)  # at each peak, as of a `Peak`
 
     @property
     def points(self) -> int:
@@ -50,7 +51,7 @@ def line_of(curve: Curve, scene: Scene) -> Line:
     estimate = {dof: peak.error for dof, peak in shown.items()}
     return Line(
         curve.frequency, amplitude(curve, scene), heights, curve.folds, curve.complete, curve.reason,
-        estimate, curve.evaluations,
+        estimate, curve.evaluations, {dof: peak.stable for dof, peak in shown.items()},
     )  # fmt: skip
 
 

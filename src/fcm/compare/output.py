@@ -11,6 +11,7 @@ import numpy as np
 import fcm
 from fcm.compare.comparison import Comparison, contributions
 from fcm.compare.errors import MARGIN, MEANINGS, MEASURES, Shown
+from fcm.compare.lines import Line
 from fcm.compare.methods import CLOSED_FORM, EXACT, Run
 from fcm.compare.startup import Startup
 from fcm.files import replacing
@@ -60,14 +61,20 @@ def peaks(out: Comparison) -> list[Json]:
                     {
                         "parameters": parameters,
                         "dof": dof,
-                        "exact": {"amplitude": true, "frequency": at / unit},
-                        "harmonic": {"amplitude": found, "frequency": found_at / unit},
+                        "exact": _peak(true, at / unit, one, dof),
+                        "harmonic": _peak(found, found_at / unit, other, dof),
                         "error": found / true - 1.0,
                         "frequency_error": found_at / at - 1.0,
                         "truncation_error": _number(other.truncation.get(dof, float("nan"))),
                     }
                 )
     return rows
+
+
+def _peak(amplitude: float, frequency: float, line: Line, dof: str) -> Json:
+    stable = line.stable.get(dof, float("nan"))
+    told = None if np.isnan(stable) else bool(stable)
+    return {"amplitude": amplitude, "frequency": frequency, "stable": told}
 
 
 def _reference(out: Comparison, name: str) -> Json:

@@ -12,6 +12,8 @@ Rows = list[list[str]]  # the first is the header
 Summary = Mapping[str, Any]
 NAMES = {EXACT: "exact periodic motion", CLOSED_FORM: "harmonic balance, closed form"}
 HEADS = ["peak", "its freq.", "folds", "points", "curve"]  # of MEASURES
+MARKS = {True: "", False: "!", None: "?"}  # beside a peak: the motion there is stable, is not, is not told
+SAID = {"!": "! unstable: none stays at this peak", "?": "? whether the motion is stable there is not told"}
 DIGITS = 6  # of amplitudes and frequencies
 
 
@@ -19,6 +21,12 @@ def every(summary: Summary) -> list[Rows]:
     """All tables that have rows, in their order."""
     makers = errors, contributions, peaks, costs, steps, references
     return [rows for rows in (maker(summary) for maker in makers) if len(rows) > 1]
+
+
+def marked(summary: Summary) -> list[str]:
+    """What the marks beside peaks mean, of those that there are."""
+    marks = {MARKS[one[kind]["stable"]] for one in summary["peaks"] for kind in ("exact", "harmonic")}
+    return [text for mark, text in SAID.items() if mark in marks]
 
 
 def references(summary: Summary) -> Rows:
@@ -82,9 +90,12 @@ def peaks(summary: Summary) -> Rows:
     for one in found:
         swept = [f"{value:.6g}" for value in one["parameters"].values()]
         pairs = [
-            f"{one[kind][key]:#.{DIGITS}g}"
+            cell
             for kind in ("exact", "harmonic")
-            for key in ("amplitude", "frequency")
+            for cell in (
+                f"{one[kind]['amplitude']:#.{DIGITS}g}{MARKS[one[kind]['stable']]}",
+                f"{one[kind]['frequency']:#.{DIGITS}g}",
+            )
         ]
         estimate = one["truncation_error"]
         cells = [f"{one['error']:+.1e}", f"{one['frequency_error']:+.1e}"]
