@@ -1,5 +1,7 @@
 """The tables of a comparison, from made-up summaries."""
 
+from typing import ClassVar
+
 import numpy as np
 
 from fcm.compare.comparison import Comparison
@@ -57,4 +59,4 @@ class Known:
 
     frequency, amplitude, folds = np.array([1.0]), np.array([[2.0, 1.0]]), []
     complete, reason, evaluations = True, "", 3
-    peaks = {"u": Peak(2.0, 1.0, 0.1, 0.0), "v": Peak(1.0, 1.0, 0.1, 1.0)}
+    peaks: ClassVar = {"u": Peak(2.0, 1.0, 0.1, 0.0), "v": Peak(1.0, 1.0, 0.1, 1.0)}
