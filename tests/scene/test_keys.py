@@ -56,11 +56,14 @@ def test_the_template_has_every_key():
                 assert re.search(rf"[#{{ \n\"]{re.escape(word)}\"? *=", text), (table, key)
 
 
+PLANE = "tangential = ["  # how the choice of two directions begins
+
+
 def test_what_the_template_has_in_comments_is_right():
     """Its comments taken away, all but one of each choice: a scene of matrices, with all tables."""
     text = printed("--template")
     lines = [line.removeprefix("# ") for line in text[text.index("[[contact]]") :].splitlines()]
-    dropped = ("accuracy", "gap", "areas", "nodes", "file ", "phase ", " ", "phase   =")
+    dropped = ("accuracy", "gap", "areas", "nodes", "file ", "phase ", " ", "phase   =", PLANE)
     kept = [line for line in lines if not line.startswith(dropped)]
     table = '[structure]\ndofs = ["40x","40y","41x","41y","71x","50z","7a"]\nmass = [1,1,1,1,1,1,1]\n'
     table += "stiffness = [1e5,2e5,3e5,4e5,5e5,6e5,7e5]\ndamping = 0.002\n"
@@ -73,6 +76,10 @@ def test_what_the_template_has_in_comments_is_right():
     scene = scene_from_dict(data)
     assert scene.loads and scene.schedule and scene.start and scene.units == ("m", "N")
     assert len(scene.curves) == 6 * 20 and scene.forces[0].power == 2
+    (two,) = (line for line in lines if line.startswith(PLANE))
+    data["contact"] = [one | tomllib.loads(two) for one in data["contact"]]
+    in_time = ("schedule", "start")  # of contacts on a line alone
+    assert scene_from_dict({key: value for key, value in data.items() if key not in in_time}).planar
 
 
 def test_neither_needs_the_solver():

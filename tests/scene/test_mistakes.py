@@ -86,7 +86,7 @@ CASES = [
     ("contact.0.normal", "x", 'unknown degree of freedom "x"; modal.dofs are "u", "v", "w.x"'),
     ("contact.0.normal", "w_x", 'did you mean "w.x"?'),
     ("contact.0.normal", "V", 'did you mean "v"?'),
-    ("contact.0.tangential", ["x", "z"], "must be one direction, not a list: a contact of a scene slides"),
+    ("contact.0.tangential", ["x", "z"], 'tangential[0]: unknown degree of freedom "x"'),
     ("contact.0.normal", 1, "must be a degree of freedom or a table of weights, is 1"),
     ("contact.0.normal", {}, 'contact[0] "shroud".normal: is an empty combination'),
     ("contact.0.normal", {"z": 1.0}, 'contact[0] "shroud".normal: unknown degree of freedom "z"'),

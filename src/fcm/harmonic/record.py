@@ -85,10 +85,13 @@ def loops(system: System, z: FloatArray) -> FloatArray:
     first = layout.directions + layout.stride * j
     out = np.zeros((z.shape[0], len(system.scene.contacts), 5))
     for i, (contact, x) in enumerate(zip(system.scene.contacts, _blocks(system, z), strict=True)):
-        U, V = (
-            x[:, first] + 1j * x[:, first + 1],
-            x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1],
-        )
+        V = x[:, first + 2 * normal] + 1j * x[:, first + 2 * normal + 1]
+        if contact.second is not None:  # no loop; the greatest displacement of the ellipse
+            out[:, i, :3] = np.nan
+            out[:, i, 3] = _greatest(*(x[:, first + p] + 1j * x[:, first + p + 1] for p in (0, 2)))
+            out[:, i, 4] = contact.k_u * out[:, i, 3]
+            continue
+        U = x[:, first] + 1j * x[:, first + 1]
         a = np.abs(U)
         stiffness = contact.k_u if contact.k_u > 0.0 else 1.0
         ratio = contact.mu / (stiffness * np.maximum(a, SMALLEST))
@@ -111,7 +114,7 @@ def cycles(system: System, z: FloatArray, loop: FloatArray) -> tuple[npt.NDArray
     for i, (c, state) in enumerate(_solved(system, z, borne)):
         if c.mu * c.k_u == 0.0:
             words.append(_without_friction(state))
-        elif harmonics != (1,):
+        elif harmonics != (1,) or system.scene.planar:
             words.append(_spelt(state))
         else:
             words.append(sequences(*loop[:, i, :3].T))
@@ -144,6 +147,15 @@ def _solved(
         if c.mu * c.k_u == 0.0:
             borne[i, :, 2] = 0.0
         yield c, state
+
+
+def _greatest(U: ComplexArray, V: ComplexArray) -> FloatArray:
+    """The greater half-axis of the ellipse of two displacements at right angles.
+
+    >>> _greatest(np.array([3.0, 1.0 + 0j]), np.array([4.0j, 1.0]))
+    array([4.        , 1.41421356])
+    """
+    return 0.5 * (np.abs(U + 1j * V) + np.abs(U - 1j * V))
 
 
 def _spelt(state: npt.NDArray[np.intc]) -> npt.NDArray[np.str_]:

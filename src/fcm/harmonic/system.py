@@ -14,6 +14,7 @@ import numpy as np
 from fcm.contact.closed_form import ClosedForm
 from fcm.contact.coefficient_law import CoefficientLaw
 from fcm.contact.periodic.workspace import periodic_contact
+from fcm.contact.plane.workspace import planar_contact
 from fcm.continuation.stepper import Stepper
 from fcm.harmonic.balance import Balance
 from fcm.harmonic.condensed import OPTIONS, Condensed, CondensedOptions, condensed_size, yielding
@@ -21,6 +22,7 @@ from fcm.harmonic.displacement import Displacements
 from fcm.harmonic.law import Law
 from fcm.harmonic.level import Level
 from fcm.harmonic.periodic import Periodic
+from fcm.harmonic.planar import Planar
 from fcm.harmonic.single import SingleHarmonic
 from fcm.harmonic.travelling import TravellingDisplacements
 from fcm.harmonic.work import Work
@@ -159,7 +161,9 @@ class System:
         if self.scene.loads:
             balance.rest[:] = linear.ports.T @ linear.flexibility @ linear.load
             shown.rest[:] = linear.dofs.T @ linear.flexibility @ linear.load
-        balance.coarse = self.table is not None and self.corrected and self.harmonics == (1,)
+        balance.coarse = (
+            self.table is not None and self.corrected and self.harmonics == (1,) and not self.scene.planar
+        )
         return balance
 
     @cached_property
@@ -172,8 +176,8 @@ class System:
         return yielding(linear.natural, linear.ports, linear.flexibility, springs, highest)
 
     def laws(self) -> list[Law]:
-        """The contacts; those of one harmonic in closed form, or by the table."""
-        if self.harmonics != (1,):
+        """The contacts; those on a line with one harmonic in closed form, or by the table."""
+        if self.harmonics != (1,) or self.scene.planar:
             return self.exact_laws(self.harmonics)
         exact = ClosedForm() if self.corrected else self.coarse
         contacts = self.scene.contacts
@@ -181,8 +185,12 @@ class System:
 
     def exact_laws(self, outputs: tuple[int, ...]) -> list[Law]:
         """The contacts with the exact forces of the motion, of which some harmonics are asked for."""
+        contacts = self.scene.contacts
+        if self.scene.planar:  # one on a line is one in whose second direction nothing moves
+            in_plane = planar_contact(self.harmonics, outputs)
+            return [Planar(in_plane, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
         kernel = periodic_contact(self.harmonics, outputs)
-        return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in self.scene.contacts]
+        return [Periodic(kernel, c.mu, c.k_u, c.k_v, c.n_0) for c in contacts]
 
     def springs(self, stuck: bool) -> FloatArray:
         """Stiffnesses of all contacts, (port,): all stuck, or all open."""

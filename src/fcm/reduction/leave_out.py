@@ -36,7 +36,8 @@ class Lighter:
     @property
     def idle_table(self) -> bool:
         """Whether no contact needs friction coefficients."""
-        return not (self.whole or any(has_friction(c) for s in self.curves for c in s.contacts))
+        planar = any(s.planar for s in self.curves)
+        return planar or not (self.whole or any(has_friction(c) for s in self.curves for c in s.contacts))
 
 
 def keep_all(curves: tuple[Scene, ...]) -> Lighter:
@@ -117,7 +118,8 @@ def _carries(scene: Scene, number: int) -> bool:
     contact: Contact = scene.contacts[number]
     normal = _springs_back(scene, contact)
     friction = has_friction(contact) and (normal or contact.n_0 > 0.0)
-    return normal or (friction and bool(_reaches(scene.modal, contact.tangential).any()))
+    along = contact.directions[:-1]
+    return normal or (friction and any(bool(_reaches(scene.modal, one).any()) for one in along))
 
 
 def _springs_back(scene: Scene, contact: Contact) -> bool:
@@ -127,7 +129,7 @@ def _springs_back(scene: Scene, contact: Contact) -> bool:
 
 def _moved(scene: Scene) -> BoolArray:
     """Which modes a force or a contact moves."""
-    along = [c.tangential for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0]
+    along = [one for c in scene.contacts if c.mu > 0.0 and c.k_u > 0.0 for one in c.directions[:-1]]
     along += [c.normal for c in scene.contacts if c.k_v > 0.0]
     along += scene.pushes()
     moved: BoolArray = np.logical_or.reduce([_reaches(scene.modal, direction) for direction in along])

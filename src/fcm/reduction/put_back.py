@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.continuation.corrector import Newton
+from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.record import amplitudes_at, cycles, loops
 from fcm.harmonic.system import System
 from fcm.reduction.leave_out import Lighter
@@ -53,6 +54,13 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     system, z = System(scene), unknowns(curve, scene, at, (1,))
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
     loop[at] = loops(system, z)
+    if scene.planar:
+        plane = in_plane(
+            System(scene, curve.harmonics or (1,)), unknowns(curve, scene, at, curve.harmonics or (1,))
+        )
+        rows = np.full(curve.frequency.size, -1)
+        rows[at] = np.arange(at.size)
+        curve.in_plane = None if plane is None else plane.at(rows)
     regime[at], cycle[at] = cycles(system, z, loop[at])
     loop[:, traced], regime[:, traced], cycle[:, traced] = curve.loop, curve.regime, curve.cycle
     error, of_greatest = np.full(cycle.shape, np.nan), np.full(cycle.shape[1:], np.nan)

@@ -5,9 +5,14 @@ from __future__ import annotations
 from fcm.harmonic.further import HIGHEST
 from fcm.response.wanted import ResponseError, Wanted
 from fcm.scene.cyclic import WHOLE_RING, lacks
+from fcm.scene.errors import quoted
 from fcm.scene.model import Scene
 
 MOST_NAMED = 6  # harmonics in a sentence
+PLANE = (
+    "is computed of contacts on a line alone, between whose events the structure is linear; while one slips "
+    "in a plane its direction turns with the motion: more harmonics (--harmonics, --accuracy) come as near"
+)
 
 
 def refuse_ring(scene: Scene, what: str) -> None:
@@ -20,6 +25,13 @@ def check_no_ring(scene: Scene, what: str) -> None:
     """Raise ResponseError for a sector of a ring, of which this is not computed."""
     if scene.ring is not None:
         raise ResponseError(f"{scene.name}: cyclic: {what} of a ring of sectors are not computed")
+
+
+def refuse_plane(scene: Scene, what: str) -> None:
+    """Raise ResponseError where the motion in time is asked for of contacts that slide in a plane."""
+    if scene.planar:
+        names = [quoted(one.name) for one in scene.contacts if one.second is not None]
+        raise ResponseError(f"{scene.name}: contact {names[0]}: {what} {PLANE}")
 
 
 def check_modes(scene: Scene, wanted: Wanted) -> None:

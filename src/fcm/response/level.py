@@ -21,6 +21,7 @@ from fcm.accuracy.trust import BELIEVED
 from fcm.continuation import Mark, Status
 from fcm.continuation.path import Path
 from fcm.harmonic.cost import with_twice_as_many
+from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.linear_contacts import highest
 from fcm.harmonic.record import cycles, loops, recorded_at_levels
 from fcm.harmonic.rest import RestError
@@ -220,11 +221,13 @@ def _points(system: System, path: Path, inside: Rows, omega: float) -> dict[str,
     }
     if len(system.harmonics) > 1:
         of_points["harmonic"] = X
+    plane = in_plane(system, z)
     folds = level[(path.mark[inside] & Mark.FOLD) > 0]
     of_curve = {
         "level_folds": folds.tolist(),
         "loose": int(loose(system.scene, words).sum()),
         "reason": _lost(system, level, lost),
+        "in_plane": None if plane is None else plane.at(rows),
     }
     return {name: pick(values, rows) for name, values in of_points.items()} | of_curve
 

@@ -41,14 +41,16 @@ def loose(scene: Scene, states: npt.NDArray[np.str_]) -> npt.NDArray[np.bool_]:
 def _felt(scene: Scene, closed: npt.NDArray[np.bool_], stuck: npt.NDArray[np.bool_]) -> bool:
     """Whether the residual friction of a contact that sticks changes the load of another, if both stay so."""
     modal, contacts = scene.modal, scene.contacts
-    along = np.array([modal.shapes @ contact.tangential for contact in contacts])
+    slides = [(i, way) for i, contact in enumerate(contacts) for way in contact.directions[:-1]]
+    whose = np.array([i for i, _ in slides])
+    along = np.array([modal.shapes @ way for _, way in slides])
     across = np.array([modal.shapes @ contact.normal for contact in contacts])
     k_u, k_v = (np.array([getattr(contact, name) for contact in contacts]) for name in ("k_u", "k_v"))
-    stiffness: FloatArray = (along.T * (k_u * stuck)) @ along + (across.T * (k_v * closed)) @ across
+    stiffness: FloatArray = (along.T * (k_u * stuck)[whose]) @ along + (across.T * (k_v * closed)) @ across
     stiffness += np.diag(modal.mass * modal.frequency**2)
     try:
-        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, by whose friction)
+        load = k_v[:, None] * (across @ np.linalg.solve(stiffness, along.T))  # (contact, friction)
     except np.linalg.LinAlgError:  # a mode is free to drift with it
         return True
-    np.fill_diagonal(load, 0.0)
-    return bool((np.abs(load[:, stuck]) > FELT).any())
+    load[whose, np.arange(whose.size)] = 0.0
+    return bool((np.abs(load[:, stuck[whose]]) > FELT).any())

@@ -13,6 +13,7 @@ from fcm.accuracy.borne import relative
 from fcm.accuracy.options import PAIR
 from fcm.continuation import Mark, Status
 from fcm.harmonic.cost import with_twice_as_many
+from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.mode import Mode, ModeError, half_peak_to_peak, nonlinear_mode, truncation
 from fcm.harmonic.mode_forced import flanks, modal_force, resonances, resonant_level
 from fcm.harmonic.record import cycles, loops
@@ -177,6 +178,7 @@ def _recorded(
         harmonics=system.harmonics,
         harmonic=X if len(system.harmonics) > 1 else None,
         mode=_along(mode, number, levels),
+        in_plane=in_plane(system, mode.contacts),
     )
     curve.greatest = greatest_of(curve)
     return curve

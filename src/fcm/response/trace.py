@@ -16,6 +16,7 @@ from fcm.accuracy.stability_limits import Lost, lost_along, moved
 from fcm.accuracy.trust import astray, disbelieved
 from fcm.branches.options import FOLDS
 from fcm.continuation import Mark
+from fcm.harmonic.in_plane import in_plane
 from fcm.harmonic.record import Record, cycles, loops, recorded
 from fcm.harmonic.reported import Reported, reported_at
 from fcm.harmonic.rest import RestError
@@ -168,7 +169,7 @@ def _curve(followed: _Followed) -> Curve:
     scene, first = system.scene, system.harmonics.index(1)
     ends, rows = np.flatnonzero(np.diff(points.path)) + 1, np.arange(points.path.size)
     rows = np.insert(rows, ends, -1) if ends.size else rows
-    loop = loops(system, points.z)
+    loop, plane = loops(system, points.z), in_plane(system, points.z)
     words, borne = cycles(system, points.z, loop)
     X = 1j * points.X  # from Re(X exp(i theta)) to Im(X exp(i theta))
     reason, nowhere = incomplete(found, points)
@@ -202,6 +203,7 @@ def _curve(followed: _Followed) -> Curve:
         evaluations=sum(path.evaluations for path in paths),
         harmonics=system.harmonics,
         harmonic=pick(X, rows) if len(system.harmonics) > 1 else None,
+        in_plane=None if plane is None else plane.at(rows),
         loose=int(loose(scene, words).sum()),
         unsure=[one.omega for one in found.traced.found if not one.complete],
         folds_unsure=list(found.traced.folds_lost),

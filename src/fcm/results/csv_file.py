@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fcm.files import replacing
+from fcm.results.in_plane import csv_columns, csv_values
 from fcm.results.meanings import CYCLE, ORBIT_KINDS
 from fcm.results.orbits import Orbits
 from fcm.results.result import Curve, Response
@@ -26,7 +27,8 @@ def write_csv(response: Response, path: str | Path) -> None:
         writer = csv.writer(file)
         writer.writerow(_columns(response))
         for number, curve in enumerate(response.curves):
-            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit))
+            planar = [i for i, name in enumerate(response.contacts) if name in response.directions]
+            writer.writerows([number, *row] for row in _rows(curve, response.frequency_unit, planar))
 
 
 def _columns(response: Response) -> list[str]:
@@ -49,10 +51,11 @@ def _columns(response: Response) -> list[str]:
     for name in response.contacts:
         for (kind, _), own in zip(CYCLE, of_contact, strict=True):
             columns += [f"{kind} {name}{f' [{own}]' if own else ''}", f"{kind}_error {name}"]
+    columns += csv_columns(response.contacts, tuple(response.directions), response.units)
     return [*columns, *LAST_COLUMNS, *(ORBIT_COLUMNS if exact else ())]
 
 
-def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
+def _rows(c: Curve, unit: str, planar: Sequence[int]) -> Iterator[list[Any]]:
     """The points of a curve, without its number."""
     orbits, frequency = c.orbits, in_unit(c.frequency, unit)
     own = () if orbits is None else tuple(getattr(orbits, kind) for kind in ORBIT_KINDS)
@@ -65,7 +68,12 @@ def _rows(c: Curve, unit: str) -> Iterator[list[Any]]:
         row += [] if c.level is None else [repr(float(c.level[k]))]
         row += [] if c.mode is None else [repr(float(x[k])) for x in (c.mode.amplitude, c.mode.damping)]
         row += map(repr, values[k].tolist())
-        row += [*c.regime[k].tolist(), *map(repr, borne[k].tolist()), f"{c.stable[k]:g}"]
+        row += [
+            *c.regime[k].tolist(),
+            *map(repr, borne[k].tolist()),
+            *csv_values(c, int(k), planar),
+            f"{c.stable[k]:g}",
+        ]
         row += [repr(float(c.table_error[k])), repr(float(c.truncation_error[k]))]
         yield row + ([] if orbits is None else _of_orbit(orbits, int(k)))
 

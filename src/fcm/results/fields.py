@@ -12,6 +12,7 @@ import numpy.typing as npt
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_fields import curve_fields, gist_fields, scatter_fields, sensitivity_fields
 from fcm.results.field import Field
+from fcm.results.in_plane import plane_fields
 from fcm.results.meanings import (
     CYCLE,
     CYCLE_ERROR,
@@ -117,6 +118,8 @@ def _point_fields(response: Response) -> dict[str, Field]:
         _add_mode(found)
     _add_motion(found)
     _add_contacts(found)
+    if any(c.in_plane is not None for c in found.curves):
+        found.out |= plane_fields(found.curves)
     _add_trust(found)
     if any(c.harmonic is not None for c in found.curves):
         found.out |= _harmonic_fields(found.curves)
@@ -163,7 +166,10 @@ def _add_motion(found: _Points) -> None:
 
 def _add_contacts(found: _Points) -> None:
     """What the contacts do."""
-    states = "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation"
+    states = (
+        "states of the contact over a cycle: E stick, P, N positive and negative slip, S separation; "
+        "P slip in whatever direction, of a contact in a plane"
+    )
     found.add("regime", lambda c: c.regime, ("contact",), long_name=states)
     for i, (name, meaning, units) in enumerate(LOOP):
         found.add(name, partial(_of_loop, column=i), ("contact",), long_name=meaning, **units)

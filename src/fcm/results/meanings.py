@@ -10,7 +10,11 @@ LOOP: tuple[tuple[str, str, dict[str, str]], ...] = (  # of Curve.loop: name, me
     ("n0_bar", "mu (n_0 + k_v mean v) / (k_u a) of the loop", {"units": "1"}),
     ("b_bar", "mu k_v b / (k_u a) of the loop", {"units": "1"}),
     ("phi", "phase of the normal motion before the tangential, of the loop", {"units": "radian"}),
-    ("tangential_amplitude", "amplitude a of the tangential motion across the contact", {}),
+    (
+        "tangential_amplitude",
+        "amplitude a of the tangential motion across the contact; in a plane its half-axis",
+        {},
+    ),
     ("spring_force", "k_u a, by which the loop's forces are divided", {}),
 )
 
@@ -70,11 +74,11 @@ ORBITS: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {  # variables that 
 LENGTHS = (
     "amplitude", "mean", "fundamental", "peak_amplitude", "tangential_amplitude", "displacement",
     "cycle_amplitude", "cycle_mean", "cycle_greatest", "cycle_least", "family_greatest", "family_least",
-    "harmonic_amplitude", "slip_path", "peak_slip_path", "peak_percentile", "tracked_amplitude",
-    "optimum_peak",
+    "harmonic_amplitude", "contact_amplitude", "contact_mean", "slip_path", "peak_slip_path",
+    "peak_percentile", "tracked_amplitude", "optimum_peak",
 )  # fmt: skip
 FORCES = (
     "spring_force", "greatest_normal_force", "greatest_friction_force", "peak_greatest_normal_force",
-    "peak_greatest_friction_force",
+    "peak_greatest_friction_force", "friction_x", "friction_y", "contact_n_0",
 )  # fmt: skip
 ENERGIES = ("dissipated_energy", "peak_dissipated_energy")

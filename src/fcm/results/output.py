@@ -14,6 +14,7 @@ import fcm
 from fcm.files import replacing
 from fcm.results.field import Field
 from fcm.results.fields import fields_of, swept_names
+from fcm.results.in_plane import DIRECTIONS
 from fcm.results.padded import CHUNK, Padded
 from fcm.results.result import Response
 from fcm.results.scatter import scatter, summary_of
@@ -37,6 +38,10 @@ def summary(response: Response) -> dict[str, Any]:
         "units": dict(zip(("length", "force"), response.units, strict=True)),
         "seconds": response.seconds,
     }
+    if response.directions:
+        data["directions"] = {
+            name: dict(zip(DIRECTIONS, along, strict=True)) for name, along in response.directions.items()
+        }
     if response.curves and (found := scatter(response)):
         unit = response.frequency_unit
         data["scatter"] = [summary_of(one, response.dofs, unit) for one in found]

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from fcm.contact.limits import FloatArray
 from fcm.results.curve_summary import curve_summary
+from fcm.results.directions import directions_of
 from fcm.results.gist import Gist
 from fcm.results.greatest import Greatest
 from fcm.results.jumps import Jump, Swept, swept
@@ -19,6 +20,7 @@ from fcm.results.peak import Peak
 from fcm.scene.model import Scene
 
 if TYPE_CHECKING:
+    from fcm.harmonic.in_plane import InPlane
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
     from fcm.results.nonlinear_mode import NonlinearMode
@@ -77,6 +79,7 @@ class Curve:
     mode: NonlinearMode | None = None
     digits: bool = False  # whether displacements far below the greatest have digits, as contacts are stiff
     sensitivity: Sensitivities | None = None  # of the peaks
+    in_plane: InPlane | None = None  # of contacts that slide in a plane, where there is one
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """From another process or a file: what is the same in all curves is there once."""
@@ -141,6 +144,7 @@ class Response:
     histories: Histories | None = None  # of the scene's schedule
     defects: list[str] = field(default_factory=list)  # tracebacks, of curves that were lost to them
     peaks_only: bool = False  # whether the curves were asked for without their points
+    directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
 
     @staticmethod
@@ -149,6 +153,7 @@ class Response:
         contacts = tuple(contact.name for contact in scene.contacts)
         response = Response(scene.title, scene.modal.dofs, contacts, curves, method, scene.frequency_unit)
         response.notes, response.units, response.drawn = list(scene.notes), scene.units, scene.drawn
+        response.directions = directions_of(scene)
         return response
 
     @staticmethod

@@ -142,8 +142,13 @@ def _arrays(parts: Mapping[str, Any]) -> Iterator[tuple[str, Address]]:
     for index in range(0 if shapes is None else len(shapes)):
         yield f"modal.shapes.{index}", ("modal", "shapes", index)
     for kind, keys in (("contact", ("tangential", "normal")), ("force", ("dof",)), ("load", ("dof",))):
-        for prefix, index, _ in _named(parts, kind):
-            yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys)
+        for prefix, index, draft in _named(parts, kind):
+            if "second" in draft:  # of a contact in a plane the two are numbered, as they are in a list
+                yield f"{prefix}.tangential.0", (kind, index, "tangential")
+                yield f"{prefix}.tangential.1", (kind, index, "second")
+                yield f"{prefix}.normal", (kind, index, "normal")
+            else:
+                yield from ((f"{prefix}.{key}", (kind, index, key)) for key in keys)
 
 
 def _named(parts: Mapping[str, Any], kind: str) -> Iterator[tuple[str, int, dict[str, Any]]]:

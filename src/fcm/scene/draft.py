@@ -86,7 +86,9 @@ class Draft:
             | {"dofs": type(modal["dofs"])(names), "shapes": shapes[:, used[: shapes.shape[1]]]}
         }
         for table, keys in DIRECTIONS.items():
-            parts[table] = [draft | {key: draft[key][used] for key in keys} for draft in parts[table]]
+            parts[table] = [
+                draft | {key: draft[key][used] for key in keys if key in draft} for draft in parts[table]
+            ]
         return Draft(parts, self.swept)
 
 

@@ -16,8 +16,8 @@ from fcm.scene.rules import ANY, RULES
 from fcm.scene.section import Section
 
 TRANSLATIONS = ("x", "y", "z")
-DIRECTIONS = {  # keys that are arrays over the degrees of freedom
-    "contact": ("tangential", "normal"), "force": ("dof",), "load": ("dof",)
+DIRECTIONS = {  # keys that are arrays over the degrees of freedom; second is of contacts in a plane alone
+    "contact": ("tangential", "second", "normal"), "force": ("dof",), "load": ("dof",)
 }  # fmt: skip
 BASE = "\0base"  # of the displacement that the base's acceleration works on; no name of a file begins so
 LOAD = "\0load"  # of the displacement that a distributed load works on
@@ -172,7 +172,7 @@ def with_displacements(parts: dict[str, Any], columns: dict[str, FloatArray]) ->
     more = np.zeros(len(columns))
     for table, keys in DIRECTIONS.items():
         parts[table] = [
-            draft | {key: np.append(draft[key], more) for key in keys if draft[key] is not None}
+            draft | {key: np.append(draft[key], more) for key in keys if draft.get(key) is not None}
             for draft in parts[table]
         ]
     parts["load"] = [

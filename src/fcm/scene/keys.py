@@ -93,7 +93,7 @@ TABLES: dict[str, dict[str, Key]] = {
     },
     "contact": {
         "name": Key("of the contact", "string"),
-        "tangential": Key("the displacement u along which it slides", _DIRECTION),
+        "tangential": Key("the displacement u along which it slides; in a plane a list of two", _DIRECTION),
         "nodes": Key("pairs [[a, b], ...], or a .csv file, instead of one contact; u and v are of a less b",
                      "list or file", "none"),
         "areas": Key("of the pairs: k_u, k_v and n_0, also swept ones, are totals, shared by them",

@@ -186,18 +186,25 @@ def without_others(top: Section, parts: Parts, reported: tuple[str, ...]) -> Par
     modal = parts["modal"] | {"dofs": RowNames(dofs[i] for i in kept)}
     parts = parts | {"modal": modal | {"shapes": parts["modal"]["shapes"][:, kept]}}
     for kind, keys in DIRECTIONS.items():
-        parts[kind] = [draft | {key: draft[key][kept] for key in keys} for draft in parts[kind]]
+        parts[kind] = [
+            draft | {key: draft[key][kept] for key in keys if key in draft} for draft in parts[kind]
+        ]
     return parts
 
 
 def _directions(parts: Mapping[str, Any]) -> list[FloatArray]:
-    found = (draft[key] for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys)
+    found = (draft.get(key) for kind, keys in DIRECTIONS.items() for draft in parts[kind] for key in keys)
     return [direction for direction in found if direction is not None]
 
 
 def _springs(parts: Mapping[str, Any], loads: int) -> FloatArray:
     """Stiffness of the contacts along their directions, which are the first of all loads; 0 along others."""
-    own = [draft[key] for draft in parts["contact"] for key in ("k_u", "k_v")]
+    own = [
+        draft["k_v" if key == "normal" else "k_u"]
+        for draft in parts["contact"]
+        for key in DIRECTIONS["contact"]
+        if key in draft
+    ]
     return np.array([*own, *np.zeros(loads - len(own))])
 
 

@@ -92,7 +92,11 @@ def _directions(scene: Scene) -> dict[str, FloatArray]:
     """Directions of contacts and forces by their key paths."""
     found = {}
     for contact in scene.contacts:
-        found[f"contact.{contact.name}.tangential"] = contact.tangential
+        if contact.second is None:
+            found[f"contact.{contact.name}.tangential"] = contact.tangential
+        else:
+            found[f"contact.{contact.name}.tangential.0"] = contact.tangential
+            found[f"contact.{contact.name}.tangential.1"] = contact.second
         found[f"contact.{contact.name}.normal"] = contact.normal
     for number, force in enumerate(scene.forces):
         found[f"force.{_name(scene, force) or number}"] = force.direction

@@ -41,6 +41,7 @@ from fcm.scene.parts import (
     read_units,
     response_table,
 )
+from fcm.scene.plane import check_plane, notes_of_planes
 from fcm.scene.schedule import read_schedule, read_start, with_schedule
 from fcm.scene.section import Parts, Section
 from fcm.scene.shared_normal import note_of_shared_normals
@@ -50,6 +51,10 @@ from fcm.scene.toml import read_toml
 
 CANCELLED = 1e-14  # of the sizes of forces: where no more is left of their sum, it is rounding
 MASS_RATIO = 1e20  # of modes: beyond it, sums over the modes lose the heavy ones to rounding
+NOT_IN_PLANE = (
+    "simulates contacts on a line alone, between whose events the structure is linear; a contact with two "
+    "tangential directions has a response by harmonics, without [[schedule]]"
+)
 
 
 def bundled_scenes() -> tuple[str, ...]:
@@ -124,6 +129,8 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
     harmonics, accuracy = read_harmonics(response)
     schedule = read_schedule(top, unit)
     parts, reported, notes = _parts(top, files, unit, response, with_schedule(ends, schedule))
+    if schedule and any("second" in one for one in parts["contact"]):
+        top.wrong("schedule", NOT_IN_PLANE)
     start = read_start(top, parts)
     draft = Draft(parts, tuple(read_sweep(top, parts)))
     notes = [*notes, *questions(top, parts, draft.swept)]
@@ -167,6 +174,7 @@ def _made(name: str, fields: dict[str, Any]) -> Scene:
             *note_of_stability(scene),
             *note_of_start(scene),
             *note_of_shared_normals(scene),
+            *notes_of_planes(scene),
         ),
     )
 
@@ -215,8 +223,9 @@ def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
             what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
             mistakes.add(where, f"{what}: beside the light ones nothing is left of the heavy ones")
         for contact in curve.contacts:
-            if not contact.tangential.any():
+            if not all(direction.any() for direction in contact.directions[:-1]):
                 mistakes.add(where, f"contact {quoted(contact.name)} has only zero tangential weights")
+            check_plane(contact, mistakes, where)
     mistakes.raise_if_any()
 
 

@@ -40,7 +40,10 @@ class Modal:
 
 @dataclass(frozen=True)
 class Contact:
-    """A contact; its relative displacements are ``u = tangential @ x`` and ``v = normal @ x``."""
+    """A contact; its relative displacements are ``u = tangential @ x`` and ``v = normal @ x``.
+
+    In a plane it slides along ``second @ x``, too.
+    """
 
     name: str
     tangential: FloatArray  # (dof,)
@@ -49,6 +52,19 @@ class Contact:
     k_u: float
     k_v: float
     n_0: float  # preload, negative for a gap
+    second: FloatArray | None = None  # (dof,) at right angles to the other, of a contact in a plane
+
+    @property
+    def directions(self) -> tuple[FloatArray, ...]:
+        """Those along which it slides, and the normal."""
+        if self.second is None:
+            return self.tangential, self.normal
+        return self.tangential, self.second, self.normal
+
+    def at(self, used: npt.NDArray[np.bool_]) -> Contact:
+        """The same at some of the degrees of freedom."""
+        second = None if self.second is None else self.second[used]
+        return replace(self, tangential=self.tangential[used], second=second, normal=self.normal[used])
 
 
 @dataclass(frozen=True)
@@ -197,9 +213,17 @@ class Scene:
         return replace(self._at(used, modals), curves=curves, draft=draft)
 
     @property
+    def planar(self) -> bool:
+        """Whether a contact slides in a plane."""
+        return any(contact.second is not None for contact in self.contacts)
+
+    @property
     def directions_of_contact(self) -> int:
-        """In how many directions each contact moves: along itself, and along its normal."""
-        return 2
+        """In how many directions each contact moves, along its normal too.
+
+        Beside one in a plane those on a line have a second direction as well, in which nothing moves.
+        """
+        return 3 if self.planar else 2
 
     def directions(self) -> list[FloatArray]:
         """The directions of all contacts, forces and loads, each (dof,)."""
@@ -207,16 +231,18 @@ class Scene:
 
     def directions_of_contacts(self) -> list[FloatArray]:
         """Those of the contacts, each (dof,), as many of each as `directions_of_contact`."""
-        return [one for contact in self.contacts for one in (contact.tangential, contact.normal)]
+        if not self.planar:
+            return [one for contact in self.contacts for one in contact.directions]
+        still = np.zeros(len(self.modal.dofs))
+        pairs = ((one, still if one.second is None else one.second) for one in self.contacts)
+        return [along for one, second in pairs for along in (one.tangential, second, one.normal)]
 
     def pushes(self) -> list[FloatArray]:
         """The directions of all forces and loads, each (dof,)."""
         return [*(force.direction for force in self.forces), *(load.direction for load in self.loads)]
 
     def _at(self, used: npt.NDArray[np.bool_], modals: dict[int, Modal]) -> Scene:
-        contacts = tuple(
-            replace(one, tangential=one.tangential[used], normal=one.normal[used]) for one in self.contacts
-        )
+        contacts = tuple(one.at(used) for one in self.contacts)
         forces = tuple(replace(one, direction=one.direction[used]) for one in self.forces)
         loads = tuple(replace(one, direction=one.direction[used]) for one in self.loads)
         ring = None if self.ring is None else self.ring.at(used)

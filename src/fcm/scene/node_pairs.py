@@ -91,7 +91,11 @@ def read_direction(section: Section, key: str) -> dict[str, float]:
     """A direction such as "x" or { x = 0.6, y = 0.8 }, as weights; empty after a mistake."""
     if section.missing(key, "a direction of the nodes, as x or { x = 0.6, y = 0.8 }"):
         return {}
-    value = section.data[key]
+    return direction_in(section, section.data[key], key)
+
+
+def direction_in(section: Section, value: Any, key: str) -> dict[str, float]:
+    """The same of a value, which stands at a key."""
     terms = {value: 1.0} if isinstance(value, str) else value
     if not isinstance(terms, Mapping) or not terms or not set(map(str, terms)) <= set(DIRECTIONS):
         section.wrong(key, f"must be one of {', '.join(DIRECTIONS)}, or a table of weights of them")

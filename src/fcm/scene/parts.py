@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import nan
 from typing import Any
 
@@ -14,6 +15,7 @@ from fcm.scene.names import Names, same_names, unfit_name
 from fcm.scene.node_pairs import (
     along,
     check_nodes,
+    direction_in,
     load_key,
     read_direction,
     read_numbers,
@@ -21,6 +23,7 @@ from fcm.scene.node_pairs import (
     shares,
 )
 from fcm.scene.pair_file import PairTable
+from fcm.scene.plane import check_axes, read_directions
 from fcm.scene.rules import (
     FRACTION,
     MOST_HARMONICS,
@@ -58,34 +61,40 @@ def _contacts(section: Section, dofs: Dofs, files: Files) -> list[dict[str, Any]
     if isinstance(section.data.get("name"), str) and (fault := unfit_name(name)):
         section.wrong("name", fault)
     section.only(*names("contact"))
-    keys = ("tangential", "normal")
     if "nodes" not in section.data:
         shares(section, PairTable([]))
         draft: dict[str, Any] = {key: section.number(key, RULES[key]) for key in ("mu", "k_u", "k_v")}
         load = load_key(section)
         draft[load] = section.number(load, RULES[load]) if load in section.data else nan
-        return [draft | {"name": name} | {key: section.weights(key, dofs) for key in keys}]
+        found = read_directions(
+            section,
+            lambda key: section.weights(key, dofs),
+            lambda value, key: section.weights_in(value, key, dofs),
+        )
+        return [draft | {"name": name} | found]
     table = read_pairs(section, files)
     numbers, parts = read_numbers(section, table, files), shares(section, table)
-    directions = {key: read_direction(section, key) for key in keys}
+    directions = read_directions(section, partial(read_direction, section), partial(direction_in, section))
     check_nodes(section, directions.values(), table.pairs, dofs)
+    check_axes(section, directions)
     return [
         {key: values[i] for key, values in numbers.items()}
         | {"name": f"{name}_{i + 1}", "group": name, "share": parts[i]}
-        | {key: along(directions[key], pair, dofs) for key in keys}
+        | {key: along(weights, pair, dofs) for key, weights in directions.items()}
         for i, pair in enumerate(table.pairs)
     ]
 
 
 def contact_of(draft: dict[str, Any]) -> Contact:
     """The contact of what was read: a gap becomes the preload -k_v * gap."""
-    for key in ("tangential", "normal"):
-        draft[key].flags.writeable = False
+    for key in ("tangential", "second", "normal"):
+        if key in draft:
+            draft[key].flags.writeable = False
     share = draft.get("share", {})
     shared: tuple[str, ...] = ("k_u", "k_v", "n_0")
     numbers = {key: draft[key] * share.get(key, 1.0) for key in shared if key in draft}
     n_0 = numbers.pop("n_0") if "n_0" in numbers else -numbers["k_v"] * draft["gap"]
-    numbers |= {key: draft[key] for key in ("name", "tangential", "normal", "mu")}
+    numbers |= {key: draft[key] for key in ("name", "tangential", "second", "normal", "mu") if key in draft}
     return Contact(n_0=n_0 + 0.0, **numbers)  # + 0.0: a zero without its sign
 
 

@@ -116,6 +116,7 @@ RULES = {
     "shapes": ANY,
     "participation": ANY,
     "tangential": ANY,
+    "second": ANY,
     "normal": ANY,
     "mu": NOT_NEGATIVE,
     "k_u": NOT_NEGATIVE,

@@ -150,14 +150,10 @@ class Section:
         """A degree of freedom, or a table of weights, as an array over the dofs; None after a mistake."""
         if self.missing(key, "a degree of freedom, or a combination such as { tip = 1.0, neighbour = -1.0 }"):
             return None
-        value = self.data[key]
-        if key == "tangential" and isinstance(value, list):
-            self.wrong(
-                key,
-                "must be one direction, not a list: a contact of a scene slides along a line, a degree of "
-                "freedom or a table of weights; the function fcm.planar_forces takes two directions",
-            )
-            return None
+        return self.weights_in(self.data[key], key, dofs)
+
+    def weights_in(self, value: object, key: str, dofs: Names | None) -> FloatArray | None:
+        """The same of a value, which stands at a key."""
         if not isinstance(value, str | Mapping):
             self.wrong(key, f"must be a degree of freedom or a table of weights, is {described(value)}")
             return None

@@ -27,20 +27,18 @@ def note_of_shared_normals(scene: Scene) -> list[str]:
         return []
     names = "; ".join(" and ".join(quoted(one.name) for one in group[:3]) for group in doubled[:MOST_NAMED])
     more = f"; {counted(len(doubled), 'such place')} in all" if len(doubled) > MOST_NAMED else ""
-    size = len(doubled[0])
-    share = "half" if size == 2 else f"one {size}th"
     return [
         f"contacts {names} have the same normal displacement and different tangential ones{more}: their "
         "preloads and normal stiffnesses add up there, as those of several contacts side by side. If it is "
-        f"one contact that slides in several directions, give each {share} of n_0 and of k_v and {size} "
-        "times mu: the sums are then right, and along each direction the limit of friction is mu n"
+        "one contact that slides in a plane, write it once with two directions, as in "
+        'tangential = ["x", "y"]'
     ]
 
 
 def _counts_twice(group: list[Contact]) -> bool:
     """Whether several contacts of one normal carry a load, in different directions of friction."""
     carrying = [one for one in group if one.n_0 != 0.0 or one.k_v != 0.0]
-    return len({_line(one.tangential) for one in carrying if one.mu > 0.0}) > 1
+    return len({tuple(map(_line, one.directions[:-1])) for one in carrying if one.mu > 0.0}) > 1
 
 
 def _line(direction: FloatArray) -> bytes:

@@ -27,6 +27,7 @@ from fcm.stability.eigenvalues import eigenvalues
 from fcm.stability.finer import PORTS, Finer, beyond
 from fcm.stability.many_monodromy import ManyMonodromy
 from fcm.stability.monodromy import Monodromy
+from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.propagator import Propagator
 from fcm.stability.refined import Refined
 from fcm.stability.stiffness import Stiffness
@@ -51,8 +52,8 @@ NEUTRAL = 1e-5  # distance from 1 of the multipliers of a mode adrift, which not
 class Followed(NamedTuple):
     """A balanced motion by its states, and what follows its disturbances through them."""
 
-    states: BalancedSequence
-    monodromy: Monodromy | ManyMonodromy
+    states: BalancedSequence | PlanarSequence
+    monodromy: Monodromy | ManyMonodromy | PlanarMonodromy
 
 
 class Multipliers:
@@ -72,7 +73,12 @@ class Multipliers:
         summed = linear.ports.shape[1] <= PORTS
         seen = linear.receptance(np.array(finer, dtype=np.float64), summed)
         self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
-        self.far, self.states = far, (BalancedSequence(contact, finer), BalancedSequence(contact, harmonics))
+        self.far = far
+        self.states: tuple[BalancedSequence, BalancedSequence] | tuple[PlanarSequence, PlanarSequence]
+        if system.scene.planar:
+            self.states = PlanarSequence(contact, tuple(finer)), PlanarSequence(contact, tuple(harmonics))
+        else:
+            self.states = BalancedSequence(contact, finer), BalancedSequence(contact, harmonics)
         self.fine, self.plain = self._followed()
         self.further: tuple[Refined, Multipliers] | None = None
 
@@ -90,15 +96,20 @@ class Multipliers:
 
     def _followed(self) -> list[Followed]:
         """The finer motion and that of the balanced harmonics."""
+        fine, plain = self.states
+        if isinstance(fine, PlanarSequence) or isinstance(plain, PlanarSequence):
+            linear = self.system.linear
+            structure = linear.ports, linear.natural, linear.damping, self.far
+            return [Followed(one, PlanarMonodromy(*structure, one)) for one in (fine, plain)]
         make = _many if len(self.contact) >= MANY_CONTACTS else _few
-        return make(self.system, self.far, self.contact, self.states)
+        return make(self.system, self.far, self.contact, (fine, plain))
 
     def of(self, z: FloatArray) -> list[complex] | None:
         """The multipliers at z (unknown + 1,) of the finer motion; None where they are not finite."""
         self.finer.at(z)
         return self._values(self.fine, z[-1]) if self.see(self.fine.states, self.finer.x) else None
 
-    def see(self, states: BalancedSequence, x: FloatArray) -> bool:
+    def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """Let states look at the motion x; false where a number is not finite."""
         return bool(states.look(x))
 

@@ -20,6 +20,7 @@ from fcm.scene.ring import Ring
 from fcm.stability.balanced_sequence import BalancedSequence
 from fcm.stability.finer import Finer, beyond
 from fcm.stability.multipliers import Followed, Multipliers, far_above
+from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
 from fcm.stability.ring_monodromy import RingMonodromy
 from fcm.stability.stiffness import Stiffness
 from fcm.stability.verdict import Verdict
@@ -76,20 +77,27 @@ class RingMultipliers(Multipliers):
         self.unknown = bool(stability_unknown(system, highest))
         around = modes_around(linear, ring)
         far = far_above(around.natural, highest, harmonics)
-        soft = None
-        if far.any():
-            soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
-        near = around.some(~far)
-        stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
-        source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
         self.adrift = int(np.count_nonzero(linear.adrift))
         seen = linear.receptance(np.array(finer, dtype=np.float64))
         self.finer = Finer(seen, system.exact_laws(tuple(finer)), harmonics)
-        self.fine, self.plain = (
-            Followed(states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source))
-            for states in (BalancedSequence(contact, numbers) for numbers in (finer, harmonics))
-        )
-        self.ring = ring
+        self.ring, self.planar = ring, system.scene.planar
+        if self.planar:  # of the whole period
+            structure = around.ports, around.natural, around.damping, far
+            self.fine, self.plain = (
+                Followed(states, PlanarMonodromy(*structure, states))
+                for states in (PlanarSequence(contact, tuple(numbers)) for numbers in (finer, harmonics))
+            )
+        else:
+            soft = None
+            if far.any():
+                soft = (around.ports[far].T * around.natural[far] ** -2.0) @ around.ports[far]
+            near = around.some(~far)
+            stiffness = Stiffness(near.ports, near.natural, near.damping, soft, contact)
+            source = np.roll(np.arange(n * self.contacts), behind(ring) * self.contacts)
+            self.fine, self.plain = (
+                Followed(states, RingMonodromy(stiffness, states, 2.0 * np.pi / n, near.renumber, source))
+                for states in (BalancedSequence(contact, numbers) for numbers in (finer, harmonics))
+            )
         self.shifts = {
             len(numbers): np.exp(1j * np.outer(np.arange(n), _phases(ring, numbers)))
             for numbers in (finer, harmonics)
@@ -99,25 +107,30 @@ class RingMultipliers(Multipliers):
         """As `Multipliers._values`; None where modes are missing, or there are too many."""
         return None if self.unknown else Multipliers._values(self, followed, omega)
 
-    def see(self, states: BalancedSequence, x: FloatArray) -> bool:
+    def see(self, states: BalancedSequence | PlanarSequence, x: FloatArray) -> bool:
         """As `Multipliers.see`, with the unknowns of one sector."""
-        count = (states.width - 2) // 4
+        d = 3 if self.planar else 2
+        count = (states.width // d - 1) // 2
         blocks = np.asarray(x)[: self.contacts * states.width].reshape(self.contacts, states.width)
         shift = self.shifts[count]
-        pairs = np.ascontiguousarray(blocks[:, 2:]).view(np.complex128).reshape(self.contacts, count, 2)
+        pairs = np.ascontiguousarray(blocks[:, d:]).view(np.complex128).reshape(self.contacts, count, d)
         shifted = pairs[None] * shift[:, None, :, None]  # (sector, contact, harmonic, direction)
         whole = np.empty((len(shift), self.contacts, states.width))
-        whole[..., :2] = blocks[:, :2]
-        whole[..., 2:] = shifted.reshape(len(shift), self.contacts, 2 * count).view(np.float64)
+        whole[..., :d] = blocks[:, :d]
+        whole[..., d:] = shifted.reshape(len(shift), self.contacts, d * count).view(np.float64)
         return bool(states.look(whole.ravel()))
 
     def verdict(self, z: FloatArray, turning: bool = False, enough: Sequence[float] = ()) -> Verdict:
         """As `Multipliers.verdict`; in a part of a period multipliers turn by as much less towards -1."""
         found = Multipliers.verdict(self, z, turning, enough)
+        if self.planar:
+            return found
         return found._replace(before_flip=min(found.before_flip * self.ring.period, np.pi))
 
     def of_period(self, values: list[complex]) -> list[complex]:
         """Magnitudes of a whole period, with the angles of its part."""
+        if self.planar:
+            return values
         return [abs(value) ** (self.ring.period - 1) * value for value in values]
 
 

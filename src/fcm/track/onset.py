@@ -11,6 +11,11 @@ corners alone, as a contact that does not slip has them: a slider that began at 
 
     upper limit  min(p + mu n)                      is positive, and
     lower limit  max(p - mu n)                      negative; else at the limit
+
+In a plane the slider is held by discs about p of radius mu n. By t these have to grow to have a place in
+common: -2 t is what "slip" is on a line, and a slider that began at 0 rests there while
+
+    start        min(mu n - |p|)                    is positive.
 """
 
 from __future__ import annotations
@@ -21,11 +26,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.harmonic.law import Law
+from fcm.harmonic.planar import Planar
 from fcm.scene.model import FloatArray
 from fcm.structure.layout import Layout
 
 KINDS = ("separation", "closing", "slip")
 LIMITS = ("upper limit", "lower limit")
+START = "start"  # in a plane, in the place of these
 NORMAL = -1  # of the directions of a contact
 SAMPLES = 24  # of a period of the highest harmonic, among which an extreme is sought
 REFINED = 4  # Newton steps from there
@@ -42,7 +49,9 @@ class Onset(NamedTuple):
 
 
 def onset(law: Law, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
-    """One of KINDS or LIMITS of a contact at its unknowns."""
+    """One of `kinds_of` a contact at its unknowns."""
+    if isinstance(law, Planar) and kind in ("slip", START):
+        return _in_plane(law, x, kind, harmonics)
     load = _polynomial(x, law, NORMAL) * law.k_v
     load[0] += law.n_0
     if kind == "slip" or kind in LIMITS:
@@ -79,6 +88,8 @@ def values(laws: list[Law], x: FloatArray, harmonics: tuple[int, ...]) -> FloatA
     """
     if not laws:
         return np.zeros(0)
+    if isinstance(laws[0], Planar):
+        return np.concatenate([_values_in_plane(law, x, i, harmonics) for i, law in enumerate(laws)])
     blocks = x[: len(laws) * laws[0].width].reshape(len(laws), -1)
     numbers = np.array([(law.mu, law.k_u, law.k_v, law.n_0) for law in laws])
     mu, k_u, k_v, n_0 = numbers.T
@@ -113,8 +124,59 @@ def _all_least(c: ComplexArray, harmonics: tuple[int, ...]) -> FloatArray:
     return c[:, 0].real + (np.exp(1j * np.outer(at, h)) * wave).real.sum(axis=1)  # type: ignore[no-any-return]
 
 
+def _values_in_plane(law: Law, x: FloatArray, i: int, harmonics: tuple[int, ...]) -> FloatArray:
+    """Those of contact number i."""
+    block = np.ascontiguousarray(x[i * law.width : (i + 1) * law.width])
+    open_, shut, slip, start = (onset(law, block, kind, harmonics).value for kind in (*KINDS, START))
+    return np.array([open_, shut, slip, start if slip > 0.0 else 1.0])
+
+
+def _in_plane(law: Planar, x: FloatArray, kind: str, harmonics: tuple[int, ...]) -> Onset:
+    """Of the discs that hold a slider in a plane.
+
+    Those that hold the place which all miss least do so with weights by which their directions vanish, and
+    with the same weights the distances change; the place may move, and makes no difference.
+    """
+    numbers, block = (law.mu, law.k_u, law.k_v, law.n_0), np.ascontiguousarray(x)
+    grown = law.bounds.overlap(block, *numbers, kind == START)
+    resting, motion = law.bounds.resting, law.bounds.motion
+    if kind == START:
+        angles, place = np.array([resting.angle]), -np.array([motion.mean_x, motion.mean_y])
+    else:
+        angles = np.asarray(resting.basis)[: resting.held, 3]
+        place = np.array([resting.w_x, resting.w_y])
+    along = [_places(law, x, direction) for direction in range(3)]
+    waves = np.array([_waves(theta, harmonics) for theta in angles])
+    means = np.zeros(3) if kind == START else x[:2].tolist()
+    u = [waves @ x[along[0]] - means[0], waves @ x[along[1]] - means[1]]
+    v = waves @ x[along[2]]
+    d = law.k_u * np.stack(u, axis=1) - motion.scale * (place if kind != START else 0.0)
+    size = np.linalg.norm(d, axis=1)
+    e = d / np.where(size > 0.0, size, 1.0)[:, None]
+    weight = _weights(e)
+    times = -1.0 if kind == START else -2.0
+    slope, by = np.zeros(x.size), np.zeros(4)
+    for one, at, (e_x, e_y), load in zip(weight, waves, e, v, strict=True):
+        for direction, factor in ((0, e_x * law.k_u), (1, e_y * law.k_u), (2, -law.mu * law.k_v)):
+            slope[along[direction]] += times * one * factor * at
+        of_u = e_x * (at @ x[along[0]]) + e_y * (at @ x[along[1]])
+        by += times * one * np.array([-(law.n_0 + law.k_v * load), of_u, -law.mu * load, -law.mu])
+    if kind != START:  # the place moves with the mean of u, and what holds it does not
+        slope[:2] = 0.0
+    return Onset(times * grown, slope, by)
+
+
+def _weights(e: FloatArray) -> FloatArray:
+    """With which directions (disc, 2) vanish, of sum 1."""
+    matrix = np.vstack((e.T, np.ones(len(e))))
+    found: FloatArray = np.linalg.lstsq(matrix, np.array([0.0, 0.0, 1.0]), rcond=None)[0]
+    return found if len(e) > 1 else np.ones(len(e))
+
+
 def kinds_of(law: Law) -> tuple[str, ...]:
     """Those that a contact can have."""
+    if isinstance(law, Planar):
+        return (*(KINDS[:2] if law.k_v > 0.0 else ()), *(("slip", START) if law.mu * law.k_u > 0.0 else ()))
     return (*(KINDS[:2] if law.k_v > 0.0 else ()), *((*KINDS[2:], *LIMITS) if law.mu * law.k_u > 0.0 else ()))
 
 

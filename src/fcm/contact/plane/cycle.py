@@ -34,6 +34,8 @@ PERIODS = cython.declare(cython.int, 100)
 # Of the radius, by which a slider may be off after a period that nothing improves: at the slip limit itself
 # the fixed point is double, and as uncertain as the square root of the rounding.
 DOUBLE = cython.declare(cython.double, 1e-9)
+SLIGHT = cython.declare(cython.double, 0.02)  # of the radius, by which the discs of a slider miss one place
+INSIDE = cython.declare(cython.double, 0.1)  # and by which it lies within one of them, at least
 CLOSES = cython.declare(cython.int, 0)
 OPENS = cython.declare(cython.int, 1)
 
@@ -154,6 +156,17 @@ class Cycle:
         r = r / speed if speed > 0.0 else 0.0
         w_x: float = self.motion.value[SCAN, 0] - r * self.motion.value[SCAN, 3]
         w_y: float = self.motion.value[SCAN, 1] - r * self.motion.value[SCAN, 4]
+        # a slider that slips hardly at all, and sticks between, is drawn ever so slowly to the place that the
+        # discs miss least
+        if self.resting.overlap < SLIGHT * self.motion.reach:
+            self.resting.encloses(True)
+            self.resting.farthest(self.resting.w_x, self.resting.w_y)
+            least = -INSIDE * self.motion.reach
+            for j in range(self.resting.nodes):
+                if self.resting.gap[j] < least:
+                    least = self.resting.gap[j]
+                    begin = self.resting.step * (j + 0.1171)
+                    w_x, w_y = self.resting.w_x, self.resting.w_y
         change: float
         before: float = 1e300
         nearest: float = 1e300

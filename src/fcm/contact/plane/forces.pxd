@@ -27,6 +27,7 @@ cdef class PlanarContact:
     ) noexcept nogil
     cdef void stick(self) noexcept nogil
     cdef void slip(self) noexcept nogil
+    cdef void press(self) noexcept nogil
     cdef void stick_gradient(self, double s_x, double s_y) noexcept nogil
     cdef void held_by_one(self, double s_x, double s_y) noexcept nogil
     cdef void held_by_two(self) noexcept nogil

@@ -164,15 +164,13 @@ class PlanarContact:
         k: cython.int
         row: cython.Py_ssize_t
         self.forces[0], self.forces[1] = -self.cycle.slider.w_x, -self.cycle.slider.w_y
-        self.forces[2] = self.motion.mean[LOAD]
+        self.press()
         for k in range(self.motion.count):
             for i in range(self.outputs):
                 if self.output[i] == self.motion.number[k]:
                     row = 3 + 6 * i
                     self.forces[row], self.forces[row + 1] = self.motion.re[X, k], self.motion.im[X, k]
                     self.forces[row + 2], self.forces[row + 3] = self.motion.re[Y, k], self.motion.im[Y, k]
-                    self.forces[row + 4] = self.motion.re[LOAD, k]
-                    self.forces[row + 5] = self.motion.im[LOAD, k]
 
     def slip(self) -> None:
         """The forces from their integrals."""
@@ -198,12 +196,28 @@ class PlanarContact:
             x_re, x_im = x_re + self.sums.re, x_im + self.sums.im
             self.sums.product(h, SLIPS_Y, REACH)
             y_re, y_im = y_re + self.sums.re, y_im + self.sums.im
-            self.sums.product(h, CONTACT, LOAD)
             self.forces[row], self.forces[row + step] = factor * x_re, factor * y_re
-            self.forces[row + 2 * step] = factor * self.sums.re
             if i >= 0:
                 self.forces[row + 1], self.forces[row + 3] = factor * x_im, factor * y_im
+            if self.cycle.behaviour == CLOSED:
+                continue
+            self.sums.product(h, CONTACT, LOAD)
+            self.forces[row + 2 * step] = factor * self.sums.re
+            if i >= 0:
                 self.forces[row + 5] = factor * self.sums.im
+        if self.cycle.behaviour == CLOSED:
+            self.press()
+
+    def press(self) -> None:
+        """The normal force of a contact that never opens: that of its motion, and nothing else."""
+        i: cython.int
+        k: cython.int
+        self.forces[2] = self.motion.mean[LOAD]
+        for k in range(self.motion.count):
+            for i in range(self.outputs):
+                if self.output[i] == self.motion.number[k]:
+                    self.forces[7 + 6 * i] = self.motion.re[LOAD, k]
+                    self.forces[8 + 6 * i] = self.motion.im[LOAD, k]
 
     def stick_gradient(self, s_x: float, s_y: float) -> None:
         """Of a contact that never slips."""

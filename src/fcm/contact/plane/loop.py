@@ -83,7 +83,7 @@ class PlanarLoop:
         t = begin[0] + np.mod(angle[slips] - begin[0], 2.0 * np.pi)
         at = np.searchsorted(begin, t, side="right") - 1
         panel = self._panels[at]
-        tangent = _between(panel[:, 4:], np.clip((t - panel[:, 0]) / panel[:, 1], 0.0, 1.0))
+        tangent = between(panel[:, 4:], np.clip((t - panel[:, 0]) / panel[:, 1], 0.0, 1.0))
         turned = np.exp(2j * np.arctan(tangent)) * (panel[:, 2] + 1j * panel[:, 3])
         found[slips] = np.stack((turned.real, turned.imag), axis=-1)
         return found
@@ -157,7 +157,7 @@ def planar_loop(
     contact = _solved(harmonics, x, parameters)
     slider, scale = contact.cycle.slider, contact.motion.scale
     length = scale / k_u if k_u > 0.0 else 0.0
-    regions = _visible(contact)
+    regions = visible(contact)
     since = np.array([begin for _, begin, _ in regions]) - regions[0][1]
     angles = np.mod(regions[0][1] + since, 2.0 * np.pi)
     angles[angles >= 2.0 * np.pi] = 0.0  # the remainder of a tiny negative angle rounds to 2 pi
@@ -194,7 +194,7 @@ def _solved(harmonics: list[int], x: FloatArray, parameters: FloatArray) -> Plan
         most = contact.cycle.slider.panels
 
 
-def _visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float]]]:
+def visible(contact: PlanarContact) -> list[tuple[str, float, tuple[float, float]]]:
     """(state, angle at which it begins, place of the slider), without what is rounding, neighbours joined."""
     slider = contact.cycle.slider
     begin = np.asarray(slider.begin)[: slider.pieces]
@@ -224,7 +224,7 @@ def _greatest(loop: PlanarLoop, harmonics: int) -> float:
     return float(max(size.max(), np.hypot(*np.moveaxis(loop.force(near), -1, 0)).max()))
 
 
-def _between(tangent: FloatArray, part: FloatArray) -> FloatArray:
+def between(tangent: FloatArray, part: FloatArray) -> FloatArray:
     """The polynomials of panels (point, s), which are 0 at their start, at a part of each."""
     rule = radau(STAGES)
     nodes = np.concatenate(([0.0], rule.nodes))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -32,6 +33,7 @@ class Radau(NamedTuple):
     bary: FloatArray
 
 
+@lru_cache
 def radau(stages: int) -> Radau:
     """The rule of so many points, after Golub (1973).
 

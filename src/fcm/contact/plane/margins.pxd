@@ -1,0 +1,21 @@
+from fcm.contact.periodic.crossings cimport Crossings
+from fcm.contact.plane.cycle cimport Cycle
+from fcm.contact.plane.motion cimport PlaneMotion
+from fcm.contact.plane.resting cimport Resting
+
+cdef class PlanarMargins:
+    cdef readonly PlaneMotion motion
+    cdef readonly Cycle cycle
+    cdef readonly Resting resting
+    cdef readonly Crossings crossings
+    cdef readonly int most, count
+    cdef readonly double[::1] value, angle
+    cdef readonly int[::1] kind
+    cdef void hold(self, double[::1] x, double mu, double k_u, double k_v, double n_0, bint start) noexcept nogil
+    cdef int find(self, double[::1] x, Py_ssize_t first, double mu, double k_u, double k_v, double n_0) noexcept nogil
+    cdef void note(self, int kind, double angle, double value) noexcept nogil
+    cdef void loads(self, int behaviour) noexcept nogil
+    cdef void rests(self, double s_x, double s_y) noexcept nogil
+    cdef void pushes(self) noexcept nogil
+    cdef void within(self, int p, double end) noexcept nogil
+    cdef double outside(self, int p, double theta) noexcept nogil

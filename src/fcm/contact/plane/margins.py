@@ -1,0 +1,206 @@
+"""Kernel: how far a contact in its plane is from another regime, as signed functions of its motion.
+
+As on a line, the derivatives of its forces jump, or begin like a root, where
+
+- an extreme of the load passes zero: the contact closes once more, or opens once more;
+- all discs come to have a place in common, or no longer: it begins to slip;
+- the place where the slider of a contact that never slips began leaves what is common to them;
+- a disc that passes a resting slider comes to touch it: another slip begins, and leaves it elsewhere.
+
+Where a slip halts, lambda vanishing for an instant, the derivatives are continuous.
+"""
+
+from __future__ import annotations
+
+import cython
+import numpy as np
+from cython.cimports.libc.math import fabs, hypot, sqrt
+
+if cython.compiled:
+    from cython.cimports.fcm.contact.periodic.crossings import Crossings
+    from cython.cimports.fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN
+    from cython.cimports.fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from cython.cimports.fcm.contact.plane.motion import SCAN
+    from cython.cimports.fcm.contact.plane.slider import SLIP, STICK
+else:
+    from fcm.contact.periodic.crossings import Crossings
+    from fcm.contact.periodic.motion import CLOSED, LOAD, LOAD_RATE, MIXED, OPEN, UNKNOWN
+    from fcm.contact.plane.cycle import STUCK, UNSOLVED, Cycle
+    from fcm.contact.plane.motion import SCAN
+    from fcm.contact.plane.slider import SLIP, STICK
+
+TWO_PI = cython.declare(cython.double, 6.283185307179586)
+CLOSES = cython.declare(cython.int, 0)  # kinds of margins; those of the load as on a line
+OPENS = cython.declare(cython.int, 1)
+SLIPS = cython.declare(cython.int, 2)
+STARTS = cython.declare(cython.int, 3)
+PUSHES = cython.declare(cython.int, 5)
+MINIMUM = cython.declare(cython.int, 7)
+MAXIMUM = cython.declare(cython.int, 8)
+FIXED = cython.declare(cython.int, 4)  # kinds of which there is one each
+PAST = cython.declare(cython.double, 1.0)  # a margin of which only the sign is known
+FAR = cython.declare(cython.double, 1e300)
+STEPS = cython.declare(
+    cython.double, 12.0
+)  # to a radian of the highest harmonic, between which one is sought
+
+
+@cython.cclass
+class PlanarMargins:
+    """`find` gives those of a motion: value, kind, angle (margin,), the first `count` of `most`.
+
+    Values are divided by the scale of the load or of the motion; angles [rad] are those of the extremes.
+    """
+
+    def __init__(self, cycle: Cycle) -> None:
+        self.cycle, self.motion, self.resting = cycle, cycle.motion, cycle.resting
+        self.crossings = Crossings(cycle.motion.normal)
+        self.most, self.count = FIXED + self.crossings.capacity + 4 * cycle.motion.highest + 4, 0
+        self.value, self.angle = np.zeros(self.most), np.zeros(self.most)
+        self.kind = np.zeros(self.most, dtype=np.intc)
+
+    def find(
+        self, x: cython.double[::1], first: cython.Py_ssize_t, mu: float, k_u: float, k_v: float, n_0: float
+    ) -> cython.int:
+        """Of the motion x[first:] of a contact; see `PlanarContact`."""
+        behaviour: cython.int = self.motion.load(x, first, mu, k_u, k_v, n_0)
+        self.count = 0
+        if behaviour == UNKNOWN:
+            return UNKNOWN
+        s_x: float = -self.motion.mean_x
+        s_y: float = -self.motion.mean_y
+        kind: cython.int = self.cycle.solve(behaviour, s_x, s_y, False)
+        self.loads(behaviour)
+        if not mu * k_u > 0.0 or kind in (OPEN, UNKNOWN):
+            return kind
+        if kind == STUCK:
+            self.rests(s_x, s_y)
+            return kind
+        if self.cycle.behaviour == CLOSED:
+            self.resting.encloses(True)
+            beyond: float = self.resting.overlap if self.resting.overlap > 0.0 else PAST
+            if self.cycle.slider.pieces == 1:  # slip all around begins like a root
+                beyond = sqrt(beyond * self.motion.reach)
+            self.note(SLIPS, 0.0, beyond)
+        else:
+            self.note(SLIPS, 0.0, PAST)
+        if kind != UNSOLVED:
+            self.pushes()
+        return kind
+
+    def overlap(
+        self, x: cython.double[::1], mu: float, k_u: float, k_v: float, n_0: float, start: bool
+    ) -> float:
+        """How far all discs of a motion x have to grow to have a place in common [force]; see `resting`.
+
+        With start, so that they hold the slider where it began.
+        """
+        self.hold(x, mu, k_u, k_v, n_0, start)
+        reach: float = self.resting.beyond if start else self.resting.overlap
+        grown: float = reach * self.motion.scale
+        return grown
+
+    def hold(
+        self,
+        x: cython.double[::1],
+        mu: float,
+        k_u: float,
+        k_v: float,
+        n_0: float,
+        start: cython.bint,
+    ) -> None:
+        """Let `resting` look at a motion."""
+        self.motion.load(x, 0, mu, k_u, k_v, n_0)
+        self.resting.sampled = False
+        if start:
+            self.resting.sample()
+            self.resting.farthest(-self.motion.mean_x, -self.motion.mean_y)
+        else:
+            self.resting.encloses(True)
+
+    def note(self, kind: cython.int, angle: float, value: float) -> None:
+        """One more, if there is room."""
+        if self.count < self.most:
+            self.kind[self.count], self.angle[self.count], self.value[self.count] = kind, angle, value
+            self.count += 1
+
+    def loads(self, behaviour: cython.int) -> None:
+        """Extremes of the load; where they cannot matter, numbers of their sign."""
+        i: cython.int
+        value: float
+        self.note(CLOSES, 0.0, PAST if behaviour == CLOSED else -PAST)
+        self.note(OPENS, 0.0, self.value[0])
+        if behaviour != MIXED:
+            return
+        self.motion.normal.sample()
+        self.value[0] = self.value[1] = self.motion.normal.at[LOAD, 0]
+        self.crossings.begin()
+        self.crossings.search(LOAD_RATE, MINIMUM, MAXIMUM)
+        for i in range(self.crossings.count):
+            value, _ = self.motion.normal.evaluate(LOAD, self.crossings.angle[i])
+            self.note(self.crossings.kind[i], self.crossings.angle[i], value)
+            self.value[0], self.value[1] = max(self.value[0], value), min(self.value[1], value)
+
+    def rests(self, s_x: float, s_y: float) -> None:
+        """Of a contact that never slips: how far it is from that, and the start from where it cannot stay."""
+        if not self.resting.sampled:  # far inside
+            self.note(SLIPS, 0.0, -PAST)
+            self.note(STARTS, 0.0, PAST)
+            return
+        corner: cython.bint = self.resting.held == 2
+        self.resting.farthest(s_x, s_y)
+        starts: float = -self.resting.beyond
+        self.resting.encloses(True)
+        room: float = max(-self.resting.overlap, 0.0)
+        # a corner of what is common to the discs moves as its root, and so do the forces
+        self.note(SLIPS, 0.0, -sqrt(room * self.motion.reach) if corner else -room)
+        self.note(STARTS, 0.0, starts)
+
+    def pushes(self) -> None:
+        """Of every stick: the discs that nearly touch its slider, and how far the next slip takes it."""
+        p: cython.int
+        n: cython.int = self.cycle.slider.pieces
+        for p in range(n):
+            if self.cycle.slider.state[p] != STICK or n == 1:
+                continue
+            last: cython.bint = p + 1 == n
+            follows: cython.int = 0 if last else p + 1
+            end: float = self.cycle.slider.begin[follows]
+            while end <= self.cycle.slider.begin[p]:
+                end += TWO_PI
+            self.within(p, end)
+            if self.cycle.slider.state[follows] == SLIP:
+                after: cython.int = 0 if follows + 1 == n else follows + 1
+                halt: float = self.cycle.slider.begin[after]
+                while halt <= end:
+                    halt += TWO_PI
+                self.note(PUSHES, halt, self.outside(p, halt))
+
+    def within(self, p: cython.int, end: float) -> None:
+        """The discs within a stick that come nearest to its slider."""
+        begin: float = self.cycle.slider.begin[p]
+        step: float = 1.0 / (STEPS * max(self.motion.highest, 1))
+        steps: cython.int = cython.cast(cython.int, (end - begin) / step) + 2
+        i: cython.int
+        step = (end - begin) / steps
+        older: float = self.outside(p, begin)
+        old: float = self.outside(p, begin + step)
+        for i in range(2, steps + 1):
+            new: float = self.outside(p, begin + i * step)
+            if old > older and old >= new:
+                self.resting.x, self.resting.y = self.cycle.slider.rest_x[p], self.cycle.slider.rest_y[p]
+                self.resting.beyond = -FAR
+                self.resting.refine(begin + (i - 1) * step)
+                if begin < self.resting.angle < end:
+                    self.note(PUSHES, self.resting.angle, min(self.resting.beyond, 0.0))
+            older, old = old, new
+
+    def outside(self, p: cython.int, theta: float) -> float:
+        """How far the slider of a stick is outside the disc of an angle."""
+        self.motion.place(SCAN, theta)
+        gap: float = hypot(
+            self.motion.value[SCAN, 0] - self.cycle.slider.rest_x[p],
+            self.motion.value[SCAN, 1] - self.cycle.slider.rest_y[p],
+        )
+        gap -= fabs(self.motion.value[SCAN, 2])
+        return gap

@@ -1,0 +1,37 @@
+"""How a scene names the directions of contacts that slide in a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fcm.scene.model import FloatArray, Scene
+
+SHOWN = 6  # digits of a weight
+
+
+def directions_of(scene: Scene) -> dict[str, tuple[str, ...]]:
+    """How the scene names the directions of each contact in a plane.
+
+    >>> import fcm
+    >>> directions_of(fcm.load_scene("yang1998"))
+    {}
+    """
+    names = scene.modal.dofs
+    return {
+        one.name: tuple(_combination(along, names) for along in one.directions)
+        for one in scene.contacts
+        if one.second is not None
+    }
+
+
+def _combination(direction: FloatArray, names: Sequence[str]) -> str:
+    """As "ax - bx", or "0.6 ax + 0.8 ay"."""
+    text = ""
+    for i in np.flatnonzero(direction).tolist():
+        weight = float(direction[i])
+        sign = "-" if weight < 0.0 else "+"
+        size = "" if abs(weight) == 1.0 else f"{abs(weight):.{SHOWN}g} "
+        text += f" {sign} {size}{names[i]}" if text else f"{'-' if weight < 0.0 else ''}{size}{names[i]}"
+    return text

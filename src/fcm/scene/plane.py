@@ -1,0 +1,100 @@
+"""The directions along which a contact slides: one, or two at right angles, in a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+import numpy as np
+
+from fcm.scene.errors import Mistakes, quoted
+from fcm.scene.model import Contact, FloatArray, Scene
+from fcm.scene.section import Section
+
+SAME = 1e-9  # relative: directions that differ by no more are one
+SQUARE = 1e-6  # cosine of the angle between two directions at right angles, at most
+TWO = 'two directions at right angles, such as ["x", "y"], for one that slides in a plane'
+
+Read = TypeVar("Read")
+
+
+def read_directions(
+    section: Section, read: Callable[[str], Read], part: Callable[[object, str], Read]
+) -> dict[str, Read]:
+    """`tangential`, `normal`, and in a plane `second`, of the table of a contact.
+
+    read takes what stands at a key, part a value of a list there; a list that is none of two is a mistake.
+    """
+    value = section.data.get("tangential")
+    if not isinstance(value, list | tuple):
+        return {key: read(key) for key in ("tangential", "normal")}
+    if len(value) != 2:
+        section.wrong("tangential", f"must be one direction, or {TWO}; is a list of {len(value)}")
+        return {"normal": read("normal")}
+    one, other = (part(item, f"tangential[{i}]") for i, item in enumerate(value))
+    return {"tangential": one, "second": other, "normal": read("normal")}
+
+
+def check_axes(section: Section, directions: Mapping[str, Mapping[str, float]]) -> None:
+    """Note two directions along the axes of nodes that are not at right angles, or not of the same length."""
+    one, other = (directions.get(key) for key in ("tangential", "second"))
+    if not one or not other:
+        return
+    axes = sorted({*one, *other})
+    a, b = (np.array([weights.get(axis, 0.0) for axis in axes]) for weights in (one, other))
+    size = np.linalg.norm(a), np.linalg.norm(b)
+    if not size[0] or not size[1]:
+        section.wrong("tangential", "has a direction with only zero weights, so it moves nothing")
+    elif abs(size[0] - size[1]) > SQUARE * max(size):
+        section.wrong("tangential", _scales(float(size[1] / size[0])))
+    elif abs(a @ b) > SQUARE * size[0] * size[1]:
+        angle = np.degrees(np.arccos(min(abs(a @ b) / (size[0] * size[1]), 1.0)))
+        section.wrong("tangential", f"must be {TWO}; these are {angle:.4g} degrees apart")
+
+
+def check_plane(contact: Contact, mistakes: Mistakes, where: str) -> None:
+    """Note two directions of a contact that no displacement tells apart, or of different scale."""
+    one, other = contact.tangential, contact.second
+    if other is None or not one.any() or not other.any():
+        return
+    name = f"the tangential directions of contact {quoted(contact.name)}"
+    if _line(one) == _line(other):
+        mistakes.add(where, f"{name} are one: no displacement tells them apart; give {TWO}")
+        return
+    sizes = [np.sort(np.abs(direction[direction != 0.0])) for direction in (one, other)]
+    if sizes[0].size == sizes[1].size:
+        ratio = sizes[1] / sizes[0]
+        if np.ptp(ratio) <= SAME * ratio[0] and abs(ratio[0] - 1.0) > SAME:
+            mistakes.add(where, f"{name}: {_scales(float(ratio[0]))}")
+
+
+def notes_of_planes(scene: Scene) -> list[str]:
+    """One sentence on contacts whose two directions weigh the same displacements, and not at right angles."""
+    oblique = [one.name for one in scene.contacts if _oblique(one)]
+    if not oblique:
+        return []
+    names = " and ".join(quoted(name) for name in oblique[:3]) + (" and others" if oblique[3:] else "")
+    return [
+        f"the two tangential directions of contact {names} share degrees of freedom without being at right "
+        "angles, if those are of right-angled axes; k_u and mu n are meant for two at right angles"
+    ]
+
+
+def _oblique(contact: Contact) -> bool:
+    if contact.second is None:
+        return False
+    one, other = contact.tangential, contact.second
+    return bool(abs(one @ other) > SQUARE * np.linalg.norm(one) * np.linalg.norm(other))
+
+
+def _scales(ratio: float) -> str:
+    return (
+        f"has directions of different scale, the second {ratio:.6g} times the first; both are displacements "
+        "in the same unit, with weights of the same size"
+    )
+
+
+def _line(direction: FloatArray) -> bytes:
+    """The same of directions that are equal up to sign and scale."""
+    largest: Any = direction[int(np.abs(direction).argmax())]
+    return (np.round(direction / largest / SAME) * SAME + 0.0).tobytes() if largest else b""

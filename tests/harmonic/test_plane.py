@@ -1,0 +1,233 @@
+"""Responses of contacts that slide in a plane, against closed forms, marches in time, and those on a line."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from importlib.resources import files
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.harmonic.reported import reported_at
+from fcm.harmonic.start import solutions
+from fcm.harmonic.system import System
+from fcm.response import ResponseError
+from fcm.response.exact import trace_exact
+from fcm.response.level import trace_levels
+from fcm.scene import scene_from_dict
+from fcm.stability.floquet import multipliers
+from fcm.stability.planar_monodromy import PlanarMonodromy, PlanarSequence
+
+from .plane_march import Oscillators
+
+ALIKE, FEW = (1.0, 1.0, 2.0), (0.05, 0.05, 0.3)
+QUARTER = pi / 2
+CIRCLE = Oscillators(ALIKE, FEW, (1.0, 1.0, 0.0), (0.0, QUARTER, 0.0), 0.5, 1.0, 0.0, 1.0)
+OBLIQUE = replace(CIRCLE, lag=(0.0, 0.0, 0.0))
+ELLIPSE = Oscillators((1.0, 1.3, 2.0), FEW, (1.0, 0.6, 0.5), (0.0, 1.0, 0.4), 0.5, 1.0, 1.0, 1.0)
+OPENS = replace(ELLIPSE, force=(1.0, 0.6, 2.0), n_0=0.3)
+
+
+def single(name, **more):
+    """A bundled scene without its sweep, as a dict."""
+    data = tomllib.loads((files("fcm") / "scenes" / f"{name}.toml").read_text(encoding="utf-8"))
+    return {key: value for key, value in data.items() if key not in ("sweep", "schedule")} | more
+
+
+def with_still(data):
+    """The same with contacts in a plane, in whose second direction nothing moves."""
+    modal = data["modal"] | {
+        "dofs": [*data["modal"]["dofs"], "still"],
+        "shapes": [[*row, 0.0] for row in data["modal"]["shapes"]],
+    }
+    contacts = [one | {"tangential": [one["tangential"], "still"]} for one in data["contact"]]
+    return data | {"modal": modal, "contact": contacts}
+
+
+def amplitudes(scene, omega, harmonics):
+    """Half the peak-to-peak of the one solution at a frequency."""
+    system = System(scene, tuple(range(1, harmonics + 1)))
+    z = solutions(system, omega).solutions[0]
+    return system, z, reported_at(system, z[None], np.zeros((1, z.size))).amplitude[0]
+
+
+def test_a_mass_driven_in_a_circle():
+    """One harmonic is exact: the radial part of the force is k r^2 / a, the other k r sqrt(1 - (r / a)^2)."""
+    scene = CIRCLE.scene((0.6, 1.8))
+    response = fcm.respond(scene, "closed-form", harmonics=1)
+    w, a = response.frequency.values[0], response.amplitude.values[0, :, 0]
+    r = CIRCLE.mu * CIRCLE.n_0 / CIRCLE.k_u
+    assert (a > r).all()
+    force = (1.0 - w**2 + 0.1j * w) * a + r * r / a + 1j * r * np.sqrt(1.0 - (r / a) ** 2)
+    assert np.abs(np.abs(force) - 1.0).max() < 1e-12
+    assert response.regime.values[0, 5, 0] == "P"
+    # far above r the peak is where the mass resonates with the radial part: the real part vanishes
+    fine = np.linspace(0.9, 1.3, 400001)
+    peak = max(_circle(one, r) for one in fine[::4000])
+    top = float(response.peak_frequency.sel(dof="x")[0])
+    near = max(_circle(one, r) for one in np.linspace(top - 1e-3, top + 1e-3, 41))
+    assert response.peak_amplitude.sel(dof="x")[0] == pytest.approx(near, rel=1e-6)
+    assert near >= peak
+
+
+def _circle(w, r):
+    """The radius of the motion: where the size of the force is 1, by bisection."""
+    low, high = r, 100.0
+    for _ in range(80):
+        a = 0.5 * (low + high)
+        force = complex((1.0 - w * w) * a + r * r / a, 0.1 * w * a + r * sqrt(1.0 - (r / a) ** 2))
+        low, high = (a, high) if abs(force) < 1.0 else (low, a)
+    return low
+
+
+@pytest.mark.parametrize(
+    ("oscillators", "omega", "sequence"),
+    [
+        (CIRCLE, 0.9, "P"),
+        (OBLIQUE, 0.9, "EPEP"),
+        (ELLIPSE, 1.25, "EPEP"),
+        (ELLIPSE, 0.9, "EPEP"),
+        (OPENS, 1.25, "PS"),
+    ],
+)
+def test_motions_against_a_march(oscillators, omega, sequence):
+    scene = oscillators.scene((0.5, 2.0))
+    marched = oscillators.extrapolated(omega, 50, 200)
+    found = amplitudes(scene, omega, 9)[2]
+    moves = marched > 0.0
+    assert found[moves] == pytest.approx(marched[moves], rel=1e-4)
+    response = trace_levels(scene, [omega], (0.9, 1.1), harmonics=(1, 2, 3))
+    point = np.abs(response.curves[0].level - 1.0).argmin()
+    assert response.curves[0].regime[point, 0] == sequence
+
+
+@pytest.mark.parametrize(
+    ("oscillators", "omega"), [(CIRCLE, 0.9), (OBLIQUE, 0.9), (ELLIPSE, 0.9), (ELLIPSE, 1.25), (OPENS, 1.25)]
+)
+def test_multipliers_against_marches_from_disturbed_states(oscillators, omega):
+    """Each state disturbed by itself, and what becomes of that in a period: a matrix with the same values."""
+    system, z, _ = amplitudes(oscillators.scene((0.5, 2.0)), omega, 7)
+    found = multipliers(system, z)
+    steps, little = 2000, 1e-6
+    rest, _ = oscillators.march(omega, 40, steps)
+    columns = []
+    for i in range(8):
+        sides = []
+        for sign in (1.0, -1.0):
+            state = list(rest)
+            state[i] += sign * little
+            sides.append(oscillators.march(omega, 1, steps, state)[0])
+        columns.append(np.subtract(*sides) / (2.0 * little))
+    marched = np.linalg.eigvals(np.array(columns).T)
+    marched = np.array(sorted(marched, key=abs, reverse=True))[: found.size]
+    assert np.abs(found[:6]) == pytest.approx(np.abs(marched[:6]), abs=6e-3)
+
+
+def test_multipliers_do_not_depend_on_the_steps():
+    """Halving all steps changes them by less than a hundred thousandth."""
+    system, z, _ = amplitudes(OPENS.scene((0.5, 2.0)), 1.25, 5)
+    contact = np.array([[OPENS.mu, OPENS.k_u, OPENS.k_v, OPENS.n_0]])
+    found = []
+    for part in (1.0, 0.5):
+        sequence = PlanarSequence(contact, system.harmonics)
+        known = sequence.options
+        sequence.options = replace(known, step=part * known.step, turn=part * known.turn)
+        assert sequence.look(z)
+        linear = system.linear
+        near = np.zeros(3, dtype=bool)
+        monodromy = PlanarMonodromy(linear.ports, linear.natural, linear.damping, near, sequence)
+        monodromy.follow(1.25)
+        found.append(np.sort(np.abs(np.linalg.eigvals(monodromy.matrix()))))
+    assert found[0] == pytest.approx(found[1], abs=1e-5)
+
+
+@pytest.mark.parametrize("harmonics", [1, 3])
+@pytest.mark.parametrize("name", ["yang1998-n5", "two-contacts"])
+def test_a_second_direction_that_never_moves_is_a_line(name, harmonics):
+    """Peaks, folds, errors and stability are those of contacts on a line."""
+    data = single(name)
+    line, plane = (
+        fcm.respond(scene_from_dict(one), "closed-form", harmonics=harmonics)
+        for one in (data, with_still(data))
+    )
+    dofs = line.dof.values
+    for variable in ("peak_amplitude", "peak_frequency", "peak_stable"):
+        other = plane[variable].sel(dof=dofs).values
+        # where the two curves have a top is told to the square root of the rounding
+        rel = 1e-6 if variable == "peak_frequency" else 1e-9
+        assert other == pytest.approx(line[variable].values, rel=rel, nan_ok=True)
+    assert plane.fold_frequency.values == pytest.approx(line.fold_frequency.values, rel=1e-9)
+    assert plane.peak_error.sel(dof=dofs).values == pytest.approx(line.peak_error.values, rel=0.02, abs=1e-6)
+    assert _changes(plane) == pytest.approx(_changes(line), abs=2e-3)
+
+
+def _changes(response):
+    """Frequencies at which what is told of stability changes."""
+    stable, w = response.stable.values[0], response.frequency.values[0]
+    told = ~np.isnan(stable)
+    at = np.flatnonzero(np.diff(stable[told]))
+    return w[told][at].tolist()
+
+
+def test_turned_axes_turn_the_response():
+    """A structure whose modes and forces are turned has the same amplitudes along its own axes."""
+    c, s = np.cos(0.7), np.sin(0.7)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    shapes = np.array([[1.0, 0.2, 0.1], [-0.2, 1.0, 0.3], [0.1, -0.3, 1.0]])
+    found = []
+    for along, push in ((shapes, np.eye(3)), (shapes @ turn, turn)):
+        forces = [
+            {"dof": dict(zip("xyz", (push[i] @ np.eye(3)).tolist(), strict=True)), "amplitude": f, "phase": p}
+            for i, (f, p) in enumerate(((1.0, 0.0), (0.6, 1.0)))
+        ]
+        scene = ELLIPSE.scene((0.8, 1.2), force=forces)
+        modal = replace(scene.modal, shapes=np.ascontiguousarray(along))
+        system = System(replace(scene, modal=modal), (1, 2, 3))
+        z = solutions(system, 1.0).solutions[0]
+        shown = reported_at(system, z[None], np.zeros((1, z.size)))
+        found.append(shown.X[0])
+    assert np.abs(found[0] @ turn - found[1]).max() < 1e-9 * np.abs(found[0]).max()
+
+
+def test_a_line_beside_a_plane():
+    """A contact on a line in a scene with one in a plane is one whose second direction nothing moves."""
+    data = single("two-contacts", response={"frequency": [0.8, 1.2], "harmonics": 3})
+    mixed = with_still(data)
+    mixed["contact"] = [mixed["contact"][0], *data["contact"][1:]]
+    one, other = (fcm.respond(scene_from_dict(each), "closed-form") for each in (data, mixed))
+    peaks = other.peak_amplitude.sel(dof=one.dof.values).values
+    assert peaks == pytest.approx(one.peak_amplitude.values, rel=1e-9)
+
+
+def test_the_exact_motion_is_refused_with_the_reason():
+    with pytest.raises(ResponseError, match=r'contact "pad": the exact motion .* in a plane'):
+        trace_exact(ELLIPSE.scene((0.9, 1.1)))
+
+
+def test_what_the_file_says_of_a_contact_in_a_plane():
+    response = fcm.respond(ELLIPSE.scene((0.95, 1.05)), "closed-form", harmonics=3)
+    assert response.direction.values.tolist() == ["x", "y", "normal"]
+    point = {"curve": 0, "point": 3, "contact": 0}
+    u_x, u_y, v = (
+        response.contact_amplitude.isel(**point, direction=i).values
+        * np.exp(1j * response.contact_phase.isel(**point, direction=i).values)
+        / 1j
+        for i in range(3)
+    )
+    means = response.contact_mean.isel(**point).values
+    loop = fcm.planar_loop(
+        *(np.append(mean, u) for mean, u in zip(means, (u_x, u_y, v), strict=True)),
+        ELLIPSE.mu, ELLIPSE.k_u, ELLIPSE.k_v, ELLIPSE.n_0,
+    )  # fmt: skip
+    assert response.regime.isel(**point).item() == loop.sequence
+    assert response.dissipated_energy.isel(**point).item() == pytest.approx(loop.dissipation, rel=1e-6)
+    assert response.slip_path.isel(**point).item() == pytest.approx(loop.slip_path, rel=1e-6)
+    assert response.greatest_friction_force.isel(**point).item() == pytest.approx(
+        loop.greatest_force, rel=1e-5
+    )
+    f_x, f_y, _ = fcm.planar_forces(loop.u_x, loop.u_y, loop.v, loop.mu, loop.k_u, loop.k_v, loop.n_0)
+    assert response.friction_x.isel(**point).item() == pytest.approx(abs(f_x[1]), rel=1e-9)
+    assert response.friction_y.isel(**point).item() == pytest.approx(abs(f_y[1]), rel=1e-9)

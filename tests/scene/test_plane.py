@@ -1,0 +1,111 @@
+"""Contacts of a scene that slide in a plane: what is read, what is refused, what is said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fcm
+from fcm.scene import SceneError, scene_from_dict
+
+DOFS = ["ax", "ay", "az", "bx", "by", "bz"]
+CONTACT = {"name": "joint", "normal": {"az": 1.0, "bz": -1.0}, "mu": 0.3, "k_u": 1.0, "k_v": 2.0, "n_0": 5.0}
+PLANE = {"tangential": [{"ax": 1.0, "bx": -1.0}, {"ay": 1.0, "by": -1.0}]}
+NODES = {"nodes": [["a", "b"]], "tangential": ["x", "y"], "normal": "z"}
+
+
+def data(contact, **more):
+    shapes = [[1.0 if i == j else 0.1 for j in range(6)] for i in range(6)]
+    return {
+        "modal": {
+            "dofs": DOFS, "frequency": [1.0 + 0.3 * i for i in range(6)], "damping": 0.05, "shapes": shapes,
+        },
+        "contact": [CONTACT | contact],
+        "force": [{"dof": "ax", "amplitude": 1.0}],
+        "response": {"frequency": [0.5, 1.2], "harmonics": 1, "max_step": 0.2},
+    } | more  # fmt: skip
+
+
+def refused(contact, **more):
+    with pytest.raises(SceneError) as error:
+        scene_from_dict(data(contact, **more))
+    return str(error.value)
+
+
+def test_two_directions_of_a_contact():
+    (contact,) = scene_from_dict(data(PLANE)).contacts
+    assert contact.second is not None
+    assert contact.tangential.tolist() == [1.0, 0.0, 0.0, -1.0, 0.0, 0.0]
+    assert contact.second.tolist() == [0.0, 1.0, 0.0, 0.0, -1.0, 0.0]
+
+
+def test_pairs_of_nodes_have_the_same():
+    (of_nodes,), (written,) = (scene_from_dict(data(one)).contacts for one in (NODES, PLANE))
+    for one, other in zip(of_nodes.directions, written.directions, strict=True):
+        assert one.tolist() == other.tolist()
+
+
+def test_turned_axes_of_nodes():
+    turned = NODES | {"tangential": [{"x": 0.6, "y": 0.8}, {"x": -0.8, "y": 0.6}]}
+    (contact,) = scene_from_dict(data(turned)).contacts
+    assert contact.second[:2].tolist() == [-0.8, 0.6]
+
+
+@pytest.mark.parametrize(
+    ("contact", "said"),
+    [
+        ({"tangential": ["ax"]}, "must be one direction, or two directions at right angles"),
+        ({"tangential": ["ax", "ay", "az"]}, "is a list of 3"),
+        ({"tangential": []}, "is a list of 0"),
+        ({"tangential": ["ax", "ax"]}, "no displacement tells them apart"),
+        ({"tangential": ["ax", {"ax": -2.0}]}, "no displacement tells them apart"),
+        ({"tangential": ["ax", {"ay": 2.0}]}, "of different scale, the second 2 times the first"),
+        ({"tangential": ["ax", "nowhere"]}, "unknown degree of freedom"),
+        ({"tangential": ["ax", {"ay": 0.0}]}, "has only zero weights"),
+        ({"tangential": ["ax", 3]}, "must be a degree of freedom or a table of weights, is 3"),
+        (NODES | {"tangential": ["x", "x"]}, "these are 0 degrees apart"),
+        (NODES | {"tangential": ["x", {"x": 0.6, "y": 0.8}]}, "these are 53.13 degrees apart"),
+        (NODES | {"tangential": ["x", {"y": 3.0}]}, "of different scale, the second 3 times the first"),
+        (NODES | {"tangential": ["x", "w"]}, "must be one of"),
+    ],
+)
+def test_directions_that_cannot_be_right_are_refused(contact, said):
+    assert said in refused(contact)
+
+
+def test_all_mistakes_of_both_directions_at_once():
+    text = refused({"tangential": ["nowhere", {"ay": "one"}]})
+    assert "tangential[0]" in text
+    assert "tangential[1].ay" in text
+
+
+def test_a_schedule_is_refused():
+    text = refused(PLANE, schedule=[{"frequency": 1.0, "cycles": 3}])
+    assert "schedule: simulates contacts on a line alone" in text
+
+
+def test_directions_that_share_displacements_are_asked_about():
+    oblique = {"tangential": ["ax", {"ax": 0.6, "ay": 0.8}]}
+    (note,) = (one for one in scene_from_dict(data(oblique)).notes if "right angles" in one)
+    assert '"joint"' in note
+    assert not any("right angles" in one for one in scene_from_dict(data(PLANE)).notes)
+
+
+def test_weights_are_swept_by_the_number_of_their_direction():
+    swept = scene_from_dict(data(PLANE, sweep={"contact.joint.tangential.1.by": [-1.0, -0.9]}))
+    assert [curve.contacts[0].second[4] for curve in swept.curves] == [-1.0, -0.9]
+    with pytest.raises(SceneError, match="no such number"):
+        scene_from_dict(data(PLANE, sweep={"contact.joint.tangential.by": [-1.0, -0.9]}))
+
+
+def test_modes_of_a_structure_keep_the_second_direction():
+    """Matrices instead of modes: rows that only the second direction needs are kept, and its flexibility."""
+    K = np.diag([2.0, 2.2, 2.4, 2.6, 2.8, 3.0]) + 0.1
+    structure = {"dofs": DOFS, "mass": np.eye(6).tolist(), "stiffness": K.tolist(), "damping": 0.05}
+    whole = data(PLANE, structure=structure | {"modes": 6})
+    whole.pop("modal")
+    few = data(PLANE, structure=structure | {"modes": 3})
+    few.pop("modal")
+    answers = [fcm.respond(scene_from_dict(one), "closed-form") for one in (whole, few)]
+    peaks = [one["peak_amplitude"].sel(dof="ax").item() for one in answers]
+    assert peaks[1] == pytest.approx(peaks[0], rel=5e-3)
