@@ -1,4 +1,4 @@
-"""A solid of many rows, its factorisation by either package: python -m tests.benchmarks.solid [NX NY NZ]
+"""A solid of many rows, its factorisation by each package: python -m tests.benchmarks.solid [NX NY NZ]
 
 Bricks of eight nodes, one face clamped. Each package factorises the stiffness, solves it once, and
 reduces the structure to 10 modes with five contacts, as `fcm plot modes` does, in a process of its own.
@@ -11,13 +11,14 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import scipy.sparse
 from tests.structure.solids import bricks
 
-from fcm.structure import factor
+from fcm.structure import eigen
 from fcm.structure.factor import FactorOptions, has_cholmod, solver
 
 SIZE = (87, 23, 23)  # elements: 150,336 rows
@@ -61,8 +62,7 @@ def modes(package: str, scene: str) -> None:
     from fcm.scene import load_scene
     from fcm.scene.listing import listing
 
-    if package == "SuperLU":
-        factor.has_cholmod = lambda: False
+    eigen.solver = partial(solver, options=FactorOptions(package=package))
     begin = time.process_time()
     first = listing(load_scene(scene))["modes"][0]["frequency"]
     print(f"{package}: first mode {first:.6g}, {time.process_time() - begin:.1f} s in all")
@@ -81,7 +81,7 @@ def main() -> None:
     size = (int(arguments[0]), int(arguments[1]), int(arguments[2])) if len(arguments) == 3 else SIZE
     with tempfile.TemporaryDirectory() as folder:
         scene = scene_files(Path(folder), size)
-        for package in ("CHOLMOD", "SuperLU") if has_cholmod() else ("SuperLU",):
+        for package in ("CHOLMOD", "fronts", "SuperLU")[not has_cholmod() :]:
             for rest in (("factorise", package, *map(str, size)), ("modes", package, str(scene))):
                 subprocess.run([sys.executable, "-m", "tests.benchmarks.solid", *rest], check=True)
 

@@ -11,13 +11,18 @@ from scipy.sparse.linalg import splu
 
 from fcm.scene import scene_from_dict
 from fcm.structure.eigen import StructureError, system_of
-from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, nested_dissection, solver
+from fcm.structure.elimination_tree import FrontOptions, tree_of
+from fcm.structure.factor import FactorOptions, NotPositiveError, has_cholmod, solver
+from fcm.structure.multifrontal import Factor
 
 from .solids import bricks
 
 PACKAGES = [
     FactorOptions("SuperLU"),
     FactorOptions("SuperLU", dissected=0),
+    FactorOptions("fronts"),
+    FactorOptions("fronts", fronts=FrontOptions(zeros=0.0, zeros_of_few=0.0)),
+    FactorOptions("fronts", fronts=FrontOptions(zeros=1.0)),
     pytest.param(
         FactorOptions("CHOLMOD", small=0),
         marks=pytest.mark.skipif(not has_cholmod(), reason="needs scikit-sparse"),
@@ -60,9 +65,50 @@ def filled(matrix, order):
 
 def test_nested_dissection_fills_less_than_the_order_of_the_mesh():
     K = bricks(6, 6, 6)[0]
-    order = nested_dissection(K)
+    order = tree_of(K).order
     assert sorted(order) == list(range(K.shape[0]))
     assert filled(K, order) < 0.8 * filled(K, np.arange(K.shape[0]))
+
+
+@pytest.mark.parametrize("options", [FactorOptions("fronts"), FactorOptions("SuperLU")])
+def test_inertia_of_random_matrices(options):
+    """Also of pivots that none of the fronts has positive, and in Hermitian matrices."""
+    rng = np.random.default_rng(1)
+    for number in range(12):
+        rows = int(rng.integers(4, 90))
+        part = scipy.sparse.random_array((rows, rows), density=3 / rows, rng=rng)
+        if number % 2:
+            part = part * (1.0 + 1j)
+        matrix = scipy.sparse.csc_array(
+            part + part.conj().T + scipy.sparse.diags_array(rng.normal(0, 3, rows))
+        )
+        value = np.linalg.eigvalsh(matrix.toarray())
+        with pytest.raises(NotPositiveError) as refused:
+            solver(matrix, options=options)
+        assert refused.value.negative in ((value < 0).sum(), None)
+        if options.package == "fronts":
+            assert refused.value.negative == (value < 0).sum()
+            loads = rng.standard_normal((rows, 2)).astype(matrix.dtype)
+            found = solver(matrix, definite=False, options=options)(loads)
+            assert matrix @ found == pytest.approx(loads, abs=1e-8)
+
+
+def test_a_singular_matrix_is_said():
+    with pytest.raises(NotPositiveError) as refused:
+        solver(
+            scipy.sparse.csc_array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            options=FactorOptions("fronts"),
+        )
+    assert refused.value.negative == 0
+
+
+def test_fronts_keep_one_triangle():
+    """Less than SuperLU keeps in the same order, whose copy of its pivots took as much again."""
+    K = bricks(12, 8, 8)[0]
+    tree = tree_of(K)
+    factor = Factor(K, tree)
+    kept = sum(front.pivots.size + front.beneath.size for front in factor._fronts)
+    assert kept == tree.entries < 0.8 * filled(K, tree.order)
 
 
 @pytest.mark.parametrize("coupled", [False, True])
@@ -72,7 +118,7 @@ def test_rows_that_nothing_couples_are_ordered(coupled):
     if coupled:
         K[3, 7] = 1e-300
     loads = np.ones(40)
-    solve = solver(K, options=FactorOptions(dissected=0))
+    solve = solver(K, options=FactorOptions("fronts"))
     assert solve(loads) == pytest.approx(1.0 / np.arange(1.0, 41.0), rel=1e-12)
 
 

@@ -1,20 +1,23 @@
 """Factors of sparse symmetric or Hermitian matrices that are positive definite.
 
-CHOLMOD (the package scikit-sparse) where it is installed and the matrix is large, else SuperLU with a
-symmetric ordering: nested dissection by METIS of large matrices, minimum degree of small ones. All give the
-same solutions to rounding; tests/benchmarks/solid.py measures them.
+By CHOLMOD where its package scikit-sparse is installed, else by fronts where the factor has many entries, by
+SuperLU where it has few. All give the same solutions to rounding; tests/benchmarks/solid.py measures them.
+SuperLU keeps both triangles, and its pivots can be had only by a copy of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.linalg import splu
+
+from fcm.structure.elimination_tree import FrontOptions, Tree, tree_of
+from fcm.structure.multifrontal import Factor, SingularError
 
 FloatArray = npt.NDArray[np.float64]
 Matrix = Any  # scipy sparse array or matrix
@@ -25,9 +28,11 @@ Solve = Callable[[FloatArray], FloatArray]  # loads (row,) or (row, load) to dis
 class FactorOptions:
     """How matrices are factorised."""
 
-    package: str = ""  # "CHOLMOD" or "SuperLU"; the first of them that is installed where it is empty
+    package: str = ""  # "CHOLMOD", "fronts" or "SuperLU"; by the number of rows where it is empty
     small: int = 600  # rows up to which SuperLU is taken: there the orderings of CHOLMOD gain nothing
-    dissected: int = 5000  # rows from which on SuperLU takes the ordering of METIS: 3 times faster at 150,000
+    dissected: int = 5000  # rows from which on nested dissection pays
+    light: int = 5_000_000  # entries of a factor up to which SuperLU and its copy take little memory
+    fronts: FrontOptions = field(default_factory=FrontOptions)
 
 
 class NotPositiveError(ValueError):
@@ -70,37 +75,23 @@ def solver(matrix: Matrix, definite: bool = True, options: FactorOptions | None 
     """
     options = options or FactorOptions()
     matrix = scipy.sparse.csc_array(matrix)
-    large = matrix.shape[0] > options.small
-    if large and (options.package == "CHOLMOD" or (not options.package and has_cholmod())):
+    rows = matrix.shape[0]
+    if options.package == "CHOLMOD" or (not options.package and rows > options.small and has_cholmod()):
         solve = _cholmod(matrix)
         if solve is not None:
             return solve
-    if matrix.shape[0] < options.dissected:
+    if rows < options.dissected and options.package != "fronts":
         return _superlu(matrix, definite)
-    order = nested_dissection(matrix)
+    tree = tree_of(matrix, options.fronts)
+    if options.package == "fronts" or (not options.package and tree.entries > options.light):
+        return _fronts(matrix, definite, tree)
+    order = tree.order
     solve, back = _superlu(matrix[order][:, order], definite, "NATURAL"), np.argsort(order)
     return lambda loads: solve(np.asarray(loads)[order])[back]
 
 
-def nested_dissection(matrix: Matrix) -> npt.NDArray[np.intp]:
-    """The order of the rows (row,) in which the factors of a symmetric matrix have few entries.
-
-    Source: G. Karypis and V. Kumar, A fast and high quality multilevel scheme for partitioning irregular
-    graphs, SIAM J. Sci. Comput. 20 (1998) 359; the package pymetis.
-    """
-    from pymetis import CSRAdjacency
-    from pymetis import nested_dissection as dissected
-
-    pattern = scipy.sparse.csr_array((np.ones(matrix.nnz), matrix.indices, matrix.indptr), shape=matrix.shape)
-    graph = pattern + pattern.T  # METIS needs both triangles, and no diagonal
-    graph = scipy.sparse.csr_array(graph - scipy.sparse.diags_array(graph.diagonal()))
-    graph.eliminate_zeros()
-    order, _ = dissected(CSRAdjacency(adj_starts=graph.indptr, adjacent=graph.indices))
-    return np.asarray(order, dtype=np.intp)
-
-
 def _cholmod(matrix: Matrix) -> Solve | None:
-    """By CHOLMOD; None where the matrix is not positive definite, which SuperLU tells more of."""
+    """By CHOLMOD; None where the matrix is not positive definite, which others tell more of."""
     from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
 
     try:
@@ -108,6 +99,18 @@ def _cholmod(matrix: Matrix) -> Solve | None:
     except CholmodNotPositiveDefiniteError:
         return None
     return lambda loads: np.asarray(factor(np.asarray(loads)))
+
+
+def _fronts(matrix: Matrix, definite: bool, tree: Tree) -> Solve:
+    try:
+        factor = Factor(matrix, tree)
+    except SingularError:
+        raise NotPositiveError(0) from None
+    except MemoryError:
+        raise TooLargeError(matrix.shape[0], matrix.nnz) from None
+    if definite and factor.negative:
+        raise NotPositiveError(factor.negative)
+    return factor.solve
 
 
 def _superlu(matrix: Matrix, definite: bool, ordering: str = "MMD_AT_PLUS_A") -> Solve:
