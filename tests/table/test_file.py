@@ -1,5 +1,7 @@
 """The file: a CF grid that any program reads, written whole, refused when it is not sound."""
 
+import os
+import random
 import sys
 from pathlib import Path
 
@@ -96,7 +98,14 @@ def test_missing_file(tmp_path):
 
 
 def test_folder(tmp_path):
-    refused(tmp_path, "not a netCDF file")
+    refused(tmp_path, "is a folder")
+
+
+def test_pipe_and_loop_of_links(tmp_path):
+    os.mkfifo(tmp_path / "pipe.nc")
+    refused(tmp_path / "pipe.nc", r"is a pipe \(fifo\), not a file")
+    (tmp_path / "loop.nc").symlink_to("loop.nc")
+    refused(tmp_path / "loop.nc", "is a loop of symbolic links")
 
 
 @pytest.mark.parametrize("content", [b"", b"x", b"plain text\n" * 50, seal.START + b"00000000\n"])
@@ -115,12 +124,15 @@ def test_netcdf_of_another_program(tmp_path):
 def test_another_layout(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file.layout = np.int32(99)
+    refused(copy, "damaged, it was changed or cut off after it was written")
+    seal.attach(copy)
     refused(copy, "layout 99")
 
 
 def test_values_that_are_not_finite(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file["F_c"][1, 1, 1] = np.nan
+    seal.attach(copy)
     refused(copy, "F_c holds values that are not finite")
 
 
@@ -135,7 +147,24 @@ def test_not_finite_even_if_sealed(tmp_path, tiny_file):
 def test_values_that_were_changed(copy):
     with netCDF4.Dataset(copy, "r+") as file:
         file["F_s"][1, 1, 1] = 0.123
+    refused(copy, "damaged, it was changed or cut off after it was written")
+    seal.attach(copy)
     refused(copy, "checksum")
+
+
+def test_the_library_never_sees_a_file_that_is_not_whole(tmp_path, tiny_file, monkeypatch):
+    """On damaged bytes it may end this process, or never return."""
+    monkeypatch.setattr(netCDF4, "Dataset", None)
+    content = tiny_file.read_bytes()
+    rng = random.Random(0)
+    for number in range(60):
+        damaged = bytearray(content if number % 2 else content[: -seal.LENGTH])
+        for _ in range(2 ** rng.randrange(8)):
+            damaged[rng.randrange(min(len(damaged), 10 ** rng.randrange(2, 7)))] ^= 0x55
+        if number % 3 == 0:
+            damaged = damaged[: rng.randrange(len(damaged))]
+        (tmp_path / "t.nc").write_bytes(damaged)
+        refused(tmp_path / "t.nc", "damaged|not a netCDF file|not a table")
 
 
 def test_every_cut_is_refused(tmp_path, tiny_file):

@@ -118,14 +118,14 @@ class _Front:
     def forward(self, loads: Array) -> Array:
         """S L^-1 loads."""
         if self.signs is not None:
-            return self.signs[:, None] * (self.pivots @ loads)
+            return np.asarray(self.signs[:, None] * (self.pivots @ loads))
         return _triangular(self.pivots, loads, 0)
 
     def backward(self, mine: Array, below: Array) -> Array:
         """L^-H (mine - S (B L^-H)^H below)."""
         taken = (below.conj().T @ self.beneath).conj().T
         if self.signs is not None:
-            return (self.pivots.conj().T) @ (mine - self.signs[:, None] * taken)
+            return np.asarray(self.pivots.conj().T @ (mine - self.signs[:, None] * taken))
         return _triangular(self.pivots, mine - taken, 2)
 
 

@@ -6,7 +6,6 @@ import errno
 import json
 import zlib
 from collections.abc import Mapping
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import fcm
-from fcm.files import real, replacing
+from fcm.files import NOT_THERE, no_file, real, replacing
 from fcm.table import TableError, seal
 from fcm.table.arrays import VARIABLES, Arrays, decode, expected
 from fcm.table.atlas import FloatArray
@@ -116,21 +115,22 @@ def load(path: str | Path) -> tuple[FloatArray, FloatArray, dict[str, Any], Part
         If the file is missing, is not a table, is of another layout, or is damaged.
     """
     name = Path(path)
+    if what := no_file(name):
+        raise TableError(f"{name}: {'no such file' if what == NOT_THERE else what}")
     try:
         content = seal.check(name)
+        if content is None:
+            raise TableError(f"{name}: {_unsealed(name)}")
         attributes, arrays = _read(name, content)
     except (TableError, MemoryError, ImportError):
         raise
-    except FileNotFoundError:
-        raise TableError(f"{name}: no such file") from None
     except seal.BrokenSealError as reason:
         raise TableError(f"{name}: damaged, {reason}; {REMEDY}") from None
     except Exception as reason:
         if getattr(reason, "errno", 0) == errno.ENOMEM:
             raise MemoryError(str(reason)) from reason
-        # else whatever the library makes of bytes that are not netCDF, or were once
-        raise TableError(f"{name}: {_what_instead(name)} ({reason})") from None
-    if damage := _damage(attributes, arrays, content is not None):
+        raise TableError(f"{name}: not a netCDF file ({reason}); {REMEDY}") from None
+    if damage := _damage(attributes, arrays):
         raise TableError(f"{name}: damaged, {damage}; {REMEDY}")
     part = _part(attributes)
     return *decode(arrays, part), json.loads(attributes["measured_error"]), part
@@ -145,19 +145,21 @@ def _part(attributes: Mapping[str, Any]) -> Part:
     return Part(whole.resolution, *((ends[k], ends[k + 1]) for k in (0, 2, 4, 6)))
 
 
-def _what_instead(path: Path) -> str:
-    """What a file is that cannot be read."""
-    with suppress(OSError, ValueError), path.open("rb") as file:
-        if file.read(len(HDF5)) == HDF5:
-            return "damaged or cut off, it cannot be read as netCDF"
+def _unsealed(path: Path) -> str:
+    """What a file is whose bytes nothing vouches for: on such the library may end this process, or circle."""
+    content = path.read_bytes()
+    if TITLE.encode() in content:
+        return f"damaged, it was changed or cut off after it was written; {REMEDY}"
+    if content.startswith(HDF5):
+        return f"not a table made by fcm tabulate, or a damaged one; {REMEDY}"
     return "not a netCDF file"
 
 
-def _read(path: Path, content: bytes | None) -> tuple[dict[str, Any], Arrays]:
-    """Attributes and arrays of a table, from its content or else from the file."""
+def _read(path: Path, content: bytes) -> tuple[dict[str, Any], Arrays]:
+    """Attributes and arrays of a table, from its content."""
     import netCDF4
 
-    with netCDF4.Dataset(path, memory=content) if content else netCDF4.Dataset(path) as file:
+    with netCDF4.Dataset(path, memory=content) as file:
         file.set_auto_mask(False)
         attributes = {key: file.getncattr(key) for key in file.ncattrs()}
         _check_kind(path, attributes)
@@ -172,7 +174,7 @@ def _check_kind(path: Path, attributes: Mapping[str, Any]) -> None:
         raise TableError(f"{path}: {found}; {REMEDY}")
 
 
-def _damage(attributes: Mapping[str, Any], arrays: Arrays, sealed: bool) -> str:
+def _damage(attributes: Mapping[str, Any], arrays: Arrays) -> str:
     """What is wrong with a file that says it is a table; empty if nothing is."""
     if missing := sorted({"measured_error", "resolution", "checksum"} - set(attributes)):
         return f"attribute {', '.join(missing)} missing"
@@ -181,8 +183,6 @@ def _damage(attributes: Mapping[str, Any], arrays: Arrays, sealed: bool) -> str:
     for key, array in arrays.items():
         if array.dtype.kind != "f" or not np.isfinite(array.sum()):
             return f"{key} holds values that are not finite numbers"
-    if sealed:
-        return ""
     if _checksum(arrays, attributes) != attributes["checksum"]:
         return "its data do not match its checksum"
-    return "it was changed or cut off after it was written"
+    return ""
