@@ -143,15 +143,8 @@ def _shape(rng: random.Random, content: Content, name: str) -> None:
             values.transpose(order),
             described,
         )
-    elif way == 1 and dimensions:
-        content.variables[name] = (
-            kind,
-            dimensions[1:],
-            values[0] if values.shape[0] else values.reshape(-1)[:0].sum(),
-            described,
-        )
-        if not values.shape[0]:
-            del content.variables[name]
+    elif way == 1 and dimensions and values.shape[0]:
+        content.variables[name] = kind, dimensions[1:], np.asarray(values[0]), described
     else:
         content.sizes["other"] = 3
         content.variables[name] = kind, (*dimensions, "other"), np.stack([values] * 3, axis=-1), described
@@ -195,7 +188,7 @@ CHANGES: tuple[Callable[[random.Random, Content, str], None], ...] = (
 
 
 def changed(rng: random.Random, content: Content, path: Path) -> str:
-    """Write what a file holds with one to three changes; what they are."""
+    """Write what a file holds, with one to three changes; what they are."""
     one = Content(dict(content.sizes), dict(content.attributes), {})
     for name, (kind, dimensions, values, described) in content.variables.items():
         one.variables[name] = kind, dimensions, values, dict(described)

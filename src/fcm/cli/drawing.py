@@ -97,6 +97,14 @@ def drawable(file: Path) -> Iterator[None]:
 
     Whatever has written or damaged a file, they may have no place on an axis, though each can be a result.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of the sums of such numbers
-        yield
+    from fcm.plot.errors import PlotError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # of the sums of such numbers
+            yield
+    except (PlotError, OSError, MemoryError, click.ClickException):
+        raise
+    except (ArithmeticError, ValueError) as error:  # of an axis without room for them; others are defects
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise PlotError(f"{file}: its numbers cannot be drawn: {reason}") from error

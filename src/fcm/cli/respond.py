@@ -15,6 +15,7 @@ from fcm.cli.messages import Messages, pass_messages
 from fcm.cli.outputs import Outputs
 from fcm.cli.remarks import announce, close
 from fcm.cli.respond_options import Asked, respond_options
+from fcm.cli.room_needed import check_room
 from fcm.cli.scene_name import scene_argument
 from fcm.cli.time_limit import TimeLimit
 
@@ -48,6 +49,7 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     check_not_read(_files(asked), [*loaded.files, asked.table])
     _check_scene(loaded, asked)
     announce(messages, loaded, asked)
+    check_room(messages, loaded, asked)
     outputs = Outputs(messages, asked.output, asked.csv, asked.history_csv)
     with outputs.kept(asked.resume) as keep, cluster.place_of(asked.cluster) as place:
         with TimeLimit(messages, asked.time_limit):

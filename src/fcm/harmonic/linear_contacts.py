@@ -63,11 +63,13 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
 
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
     """Of the ports with springs held (case, port): (frequency, case, port)."""
-    G, X = (np.array(part) for part in zip(*map(system.linear.at, frequencies), strict=True))
-    matrices = np.eye(X.shape[1]) + G[:, None] * held[:, None, :]
-    found: ComplexArray = np.linalg.solve(matrices, X[:, None, :, None])[..., 0].astype(
-        np.complex128, copy=False
-    )
+    found = np.empty((len(frequencies), *held.shape), dtype=np.complex128)
+    for answer, omega in zip(found, frequencies, strict=True):
+        G, X = system.linear.at(omega)
+        for one, springs in zip(answer, held, strict=True):  # one at a time: of many contacts each is large
+            matrix = G * springs
+            matrix.flat[:: X.size + 1] += 1.0
+            one[:] = np.linalg.solve(matrix, X)
     return found
 
 

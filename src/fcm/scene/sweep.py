@@ -25,6 +25,7 @@ from typing import Any
 
 import numpy as np
 
+from fcm import room
 from fcm.scene.address import Address, Addresses, overlap
 from fcm.scene.draws import FORMS as DRAWN
 from fcm.scene.draws import Correlation, Draws, read_correlation, read_draws
@@ -33,6 +34,7 @@ from fcm.scene.rules import ANY, RULES, Rule
 from fcm.scene.section import Section
 
 MOST_CURVES = 1_000_000
+OF_CURVE = 1000.0  # bytes of its numbers
 
 FORMS = (
     "a list of numbers, { from = , to = , count = }, "
@@ -78,6 +80,12 @@ def read_sweep(top: Section, parts: Mapping[str, Any]) -> list[Swept]:
     count = prod(len(group[0].values) for group in _groups(swept))
     if count > MOST_CURVES:
         section.wrong("", f"asks for {count} curves; there can be {MOST_CURVES}")
+    elif count * OF_CURVE > (free := room.memory()):
+        section.wrong(
+            "",
+            f"asks for {count} curves, which take {room.size(count * OF_CURVE)} of memory before they are "
+            f"traced, and {room.size(free)} are free: sweep or draw fewer values at a time",
+        )
     return swept
 
 

@@ -84,6 +84,8 @@ class Factor:
         self._kind = lower.dtype
         scale = float(np.abs(lower.diagonal()).max(initial=0.0))
         place = np.empty(lower.shape[0], dtype=np.intp)
+        sizes = np.diff(self._tree.begin) + np.array([below.size for below in self._tree.below])
+        room = np.empty(int(sizes.max()) ** 2, dtype=lower.dtype)  # of one front after the other
         waiting: dict[int, list[tuple[IntArray, Array]]] = {}
         for number, ((first, last), below) in enumerate(
             zip(pairwise(self._tree.begin), self._tree.below, strict=True)
@@ -93,7 +95,9 @@ class Factor:
             place[below] = np.arange(count, count + below.size)
             entries = slice(lower.indptr[first], lower.indptr[last])
             column = np.repeat(np.arange(count), np.diff(lower.indptr[first : last + 1]))
-            full = np.zeros((count + below.size,) * 2, dtype=lower.dtype, order="F")
+            size = count + below.size
+            full = room[: size * size].reshape((size, size), order="F")
+            full[:] = 0.0
             full[place[lower.indices[entries]], column] = lower.data[entries]
             for rows, left in waiting.pop(number, ()):
                 _add(full, place[rows], left)
@@ -148,7 +152,7 @@ def _eliminated(full: Array, count: int, scale: float) -> tuple[_Front, Array]:
     (trsm,) = get_blas_funcs(("trsm",), (full,))
     (update,) = get_blas_funcs(("herk" if np.iscomplexobj(full) else "syrk",), (full,))
     if not rest.size:
-        return _Front(pivots, np.zeros((0, count), dtype=full.dtype), None), rest
+        return _Front(pivots, np.zeros((0, count), dtype=full.dtype), None), rest.copy()
     beneath = trsm(1.0, pivots, full[count:, :count], side=1, lower=1, trans_a=2)
     return _Front(pivots, beneath, None), update(-1.0, beneath, 1.0, rest, lower=1)
 

@@ -1,0 +1,60 @@
+"""What a run will take is told where that is a great deal, and refused where there is no room for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fcm import room
+from fcm.cli.messages import Messages
+from fcm.cli.respond_options import Asked
+from fcm.files import real
+
+if TYPE_CHECKING:
+    from fcm.scene.model import Scene
+
+TOLD = 500e6  # bytes of results
+CSV = 2.5  # times the bytes of netCDF that the digits of a number take
+
+
+def check_room(messages: Messages, scene: Scene, asked: Asked) -> None:
+    """Refuse what memory or disk cannot hold, before anything is made.
+
+    Raises
+    ------
+    ResponseError
+        With what it takes at the least, what there is, and what takes less.
+    """
+    from fcm.response.wanted import ResponseError
+    from fcm.results.size import bytes_of_matrices, bytes_of_results
+
+    harmonics = asked.harmonics or scene.harmonics or (1,)
+    results = bytes_of_results(scene, harmonics, asked.peaks_only)
+    matrices = bytes_of_matrices(scene, harmonics) if scene.has_range else 0.0
+    count = len(scene.each_curve())
+    said = f"{count} curve{'s' * (count > 1)} of {len(scene.contacts)} contacts"
+    if results + matrices > TOLD:
+        messages.info(f"{said} take at least {room.size(results + matrices)} of memory")
+    if results + matrices > (free := room.memory()):
+        raise ResponseError(
+            f"{said} take at least {room.size(results + matrices)} of memory, and {room.size(free)} are "
+            f"free: {_remedy(matrices > results, asked)}"
+        )
+    for path, times in ((asked.output, 1.0), (asked.csv, CSV)):
+        if path is not None and times * results > (left := room.disk(_folder(path))):
+            raise ResponseError(
+                f"{path} takes at least {room.size(times * results)}, and {room.size(left)} are free on its "
+                f"disk: {_remedy(False, asked)}, or write to another disk"
+            )
+
+
+def _folder(path: Path) -> Path:
+    return real(path).parent
+
+
+def _remedy(matrices: bool, asked: Asked) -> str:
+    if matrices:
+        return "give fewer harmonics (--harmonics), fewer contacts, or fewer modes than half their directions"
+    if asked.peaks_only:
+        return "sweep or draw fewer values at a time"
+    return "write the peaks alone (--peaks-only), sweep fewer values at a time, or report fewer dofs"

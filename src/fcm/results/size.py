@@ -1,0 +1,75 @@
+"""What the results of a scene take, told from its numbers of curves, contacts and outputs beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil
+
+from fcm.scene.model import Scene
+
+NUMBER = 8  # bytes
+
+
+@dataclass(frozen=True)
+class SizeOptions:
+    """What is counted."""
+
+    of_curve: int = 3000  # bytes of a curve without points: its names, peaks and arrays
+    of_point: int = 4  # numbers of a point itself: frequency, stability, two errors
+    of_dof: int = 5  # of each degree of freedom: amplitude, fundamental, phase, mean, error
+    of_contact: int = 12  # of each contact: five of its loop, four of its cycle, and its states
+    kept_of_peaks: int = 6  # points of a curve of which peaks alone are kept, about
+    of_cycle: int = 3  # numbers of a cycle of a schedule, and as many of each degree of freedom
+    matrices: int = 3  # of all unknowns: the derivatives, a copy, its factors
+    few_modes: float = 0.5  # of the ports: with fewer modes the matrices are condensed to these
+
+
+def least_points(scene: Scene, peaks_only: bool, options: SizeOptions | None = None) -> int:
+    """Points of all curves that are kept, at the least.
+
+    >>> from fcm import load_scene
+    >>> least_points(load_scene("yang1998"), peaks_only=False)
+    200
+    """
+    options = options or SizeOptions()
+    curves = scene.each_curve()
+    if not scene.has_range:
+        return 0
+    return sum(options.kept_of_peaks if peaks_only else ceil(1.0 / curve.max_step) for curve in curves)
+
+
+def bytes_of_results(
+    scene: Scene, harmonics: Sequence[int], peaks_only: bool, options: SizeOptions | None = None
+) -> float:
+    """What curves and motions take, in memory and as much again in a file, at the least.
+
+    >>> from fcm import load_scene
+    >>> scene = load_scene("yang1998")
+    >>> bytes_of_results(scene, (1,), peaks_only=False)
+    71600.0
+    """
+    options = options or SizeOptions()
+    dofs, contacts, curves = len(scene.modal.dofs), len(scene.contacts), len(scene.each_curve())
+    many = 2 * len(harmonics) if len(harmonics) > 1 else 0  # amplitude and phase of each
+    point = options.of_point + dofs * (options.of_dof + many) + contacts * options.of_contact
+    cycles = sum(phase.cycles for phase in scene.schedule)
+    moved = curves * cycles * options.of_cycle * (1 + dofs)
+    return float(
+        curves * options.of_curve + NUMBER * (least_points(scene, peaks_only, options) * point + moved)
+    )
+
+
+def bytes_of_matrices(scene: Scene, harmonics: Sequence[int], options: SizeOptions | None = None) -> float:
+    """What the matrices of the balance take; 0 where they are condensed to the modes.
+
+    >>> from fcm import load_scene
+    >>> bytes_of_matrices(load_scene("yang1998"), (1, 2, 3))
+    4704.0
+    """
+    options = options or SizeOptions()
+    contacts = len(scene.contacts)
+    unknowns = contacts * (2 + 4 * len(harmonics))
+    if scene.ring is None and len(scene.modal.frequency) < options.few_modes * 2 * contacts:
+        return 0.0
+    return float(options.matrices * NUMBER * unknowns**2)

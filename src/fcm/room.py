@@ -1,0 +1,65 @@
+"""Room for what a run is to make, in memory and on disk, told before it is made."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+_UNITS = ((1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB"))
+
+
+def size(bytes_taken: float) -> str:
+    """A number of bytes in the largest unit of which it has one.
+
+    >>> size(2_340_000_000.0), size(512.0)
+    ('2.3 GB', '1 kB')
+    """
+    scale, unit = next((one for one in _UNITS if bytes_taken >= one[0]), _UNITS[-1])
+    number = max(bytes_taken / scale, 1.0)
+    return f"{number:.2g} {unit}" if number < 10.0 else f"{number:.0f} {unit}"
+
+
+def memory() -> float:
+    """Bytes that this process can still take; infinite where the system does not say."""
+    found = [_available(), _left_of_limit()]
+    return min(found)
+
+
+def disk(folder: Path) -> float:
+    """Bytes that files in a folder can still take; infinite where the system does not say."""
+    try:
+        return float(shutil.disk_usage(folder).free)
+    except OSError:
+        return float("inf")
+
+
+def _available() -> float:
+    """What the system would give without swapping, and the limit of a container."""
+    found = float("inf")
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                found = 1024.0 * float(line.split()[1])
+        limit = Path("/sys/fs/cgroup/memory.max").read_text(encoding="ascii").strip()
+        used = Path("/sys/fs/cgroup/memory.current").read_text(encoding="ascii").strip()
+        if limit != "max":
+            found = min(found, float(limit) - float(used))
+    except (OSError, ValueError):
+        pass
+    return found
+
+
+def _left_of_limit() -> float:
+    """Of addresses, where `ulimit -v` limits them."""
+    try:
+        import resource
+    except ImportError:  # a system without limits
+        return float("inf")
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if limit == resource.RLIM_INFINITY:
+        return float("inf")
+    try:
+        taken = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
+    except (OSError, ValueError):
+        return float(limit)
+    return float(limit - taken)

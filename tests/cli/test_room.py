@@ -1,0 +1,92 @@
+"""What a run takes is counted before it is made, and refused where there is no room for it."""
+
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fcm import load_scene, room
+from fcm.response import trace
+from fcm.results.size import SizeOptions, bytes_of_matrices, bytes_of_results, least_points
+
+SCENE = "yang1998-n5"
+DRAWN = """
+[modal]
+dofs = ["u"]
+frequency = [1.0]
+damping = [0.01]
+shapes = [[1.0]]
+[[force]]
+dof = "u"
+amplitude = 1.0
+[response]
+frequency = [0.7, 1.7]
+[sweep]
+"force.u.amplitude" = { normal = [1.0, 0.01], count = 1000000 }
+"""
+
+
+@pytest.mark.parametrize("harmonics", [(1,), (1, 2, 3)])
+def test_results_take_no_less_than_is_told(harmonics):
+    scene = replace(load_scene(SCENE), max_step=0.2, harmonics=harmonics, curves=())
+    (curve,) = trace(scene).curves
+    arrays = [getattr(curve, one.name) for one in fields(curve)]
+    taken = sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
+    told = bytes_of_results(scene, harmonics, peaks_only=False, options=SizeOptions(of_curve=0))
+    assert 0.01 * taken < told < taken
+    assert least_points(scene, peaks_only=False) <= curve.points
+
+
+def test_more_of_anything_takes_more():
+    scene = load_scene(SCENE)
+    one = bytes_of_results(scene, (1,), False)
+    assert bytes_of_results(replace(scene, max_step=1e-3, curves=()), (1,), False) > 20.0 * one
+    assert bytes_of_results(replace(scene, curves=(scene,) * 10), (1,), False) == 10.0 * one
+    assert bytes_of_results(scene, range(1, 51), False) > 4.0 * one
+    assert bytes_of_results(scene, (1,), True) < one
+    assert bytes_of_matrices(scene, range(1, 51)) == 3 * 8 * 202**2
+
+
+def test_results_that_memory_does_not_hold_are_refused(fcm, monkeypatch):
+    monkeypatch.setattr(room, "memory", lambda: 5_000.0)
+    done = fcm("respond", SCENE, "--max-step", "0.001", "-o", "a.nc")
+    assert (
+        done.code == 2
+        and "take at least 2" in done.err
+        and "5 kB are free: write the peaks alone" in done.err
+    )
+    done = fcm("respond", SCENE, "--harmonics", "20", "--peaks-only")
+    assert done.code == 2 and "give fewer harmonics" in done.err
+    assert not list(Path().iterdir())
+
+
+@pytest.mark.parametrize("option", ["-o", "--csv"])
+def test_results_that_the_disk_does_not_hold_are_refused(fcm, monkeypatch, option):
+    monkeypatch.setattr(room, "disk", lambda _folder: 1_000.0)
+    name = "a.nc" if option == "-o" else "a.csv"
+    done = fcm("respond", SCENE, option, name)
+    assert done.code == 2 and f"{name} takes at least" in done.err and "or write to another disk" in done.err
+    assert not list(Path().iterdir())
+
+
+def test_what_takes_much_is_told(fcm, monkeypatch):
+    monkeypatch.setattr("fcm.cli.room_needed.TOLD", 1_000.0)
+    done = fcm("respond", SCENE, "--harmonics", "1", "--max-step", "0.5")
+    assert done.code == 0 and "1 curve of 1 contacts take at least" in done.err
+
+
+def test_a_million_draws_without_room_for_them_are_refused_when_read(fcm, monkeypatch):
+    monkeypatch.setattr(room, "memory", lambda: 5e8)
+    Path("a.toml").write_text(DRAWN)
+    done = fcm("respond", "a.toml")
+    assert done.code == 2
+    assert "asks for 1000000 curves, which take 1 GB of memory before they are traced" in done.err
+    assert "500 MB are free: sweep or draw fewer values at a time" in done.err
+
+
+def test_a_limit_on_addresses_is_one_on_memory(program):
+    code = "from fcm import room; print(room.memory())"
+    done = program.python("-c", f"import resource as r; r.setrlimit(r.RLIMIT_AS, (2 << 30,) * 2); {code}")
+    out, _ = done.communicate()
+    assert 0.0 < float(out) < 2 << 30
