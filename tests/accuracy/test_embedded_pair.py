@@ -8,9 +8,11 @@ import pytest
 
 from fcm.accuracy.embedded_pair import errors_along
 from fcm.accuracy.refinement import estimated
-from fcm.accuracy.trust import astray
-from fcm.continuation import Mark
+from fcm.accuracy.trust import BELIEVED, astray
+from fcm.continuation import Mark, Status
 from fcm.harmonic.system import System
+from fcm.orbit import periodic
+from fcm.orbit.harmonic import state_of
 from fcm.orbit.problem import OrbitProblem
 from fcm.response import trace
 from fcm.response.exact import trace_exact
@@ -178,16 +180,48 @@ def test_beside_what_is_astray_many_harmonics_have_no_motion(seed, harmonics):
     one = replace(random_scene(seed), harmonics=None, max_step=0.03)
     found = estimated(System(one, harmonics), 0.0)
     (path,), (errors,) = found.traced.branches.paths, found.errors
-    far = np.flatnonzero(astray(errors.truncation))
+    far = np.flatnonzero(astray(errors.believed))
     assert len(far) > 64
+    assert np.mean(errors.truncation[far] <= BELIEVED) < 0.1  # from what else there is at that frequency
     truth = Truth(found.system)
     some = far[np.linspace(0, len(far) - 1, 12).astype(int)]
     lost = [truth.beside(path.z[i], path.direction[i]) is None for i in some]
     assert np.mean(lost) > 0.9
     (curve,) = trace(one, harmonics=harmonics).curves
-    beyond = astray(curve.truncation_error)
+    beyond = np.isfinite(curve.frequency) & ~(curve.truncation_error <= BELIEVED)
     assert beyond.sum() > 64
     assert not (curve.stable[beyond] == 1.0).any()
+
+
+def test_a_branch_that_more_harmonics_do_not_have_is_as_far_as_the_motion_there():
+    """The closed branch of one harmonic has up to ten times the amplitude of the motion from rest."""
+    one = random_scene(8)
+    found = estimated(System(one), 0.0)
+    path, shown, errors = found.traced.branches.paths[1], found.shown[1], found.errors[1]
+    assert path.status is Status.CLOSED and not errors.met.any()
+    assert np.isfinite(errors.amplitude).all()
+    for i in range(5, len(path.z), 40):
+        motion = periodic(one, float(path.parameter[i])).measure.amplitude
+        off = np.abs(motion / shown.amplitude[i] - 1.0)
+        whole = np.abs(motion - shown.amplitude[i]).max() / shown.amplitude[i].max()
+        assert errors.amplitude[i] == pytest.approx(np.maximum(off, whole), rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "omegas"),
+    [("stiff-tangential", (1.015, 1.025, 1.035)), ("stiff-tangential-soft-normal", (1.04, 1.052, 1.06))],
+)
+def test_where_curve_and_partner_cross_the_error_is_that_of_the_partner(name, omegas):
+    """Their amplitudes are the same to 6e-4 where the exact motion is 8e-2 off."""
+    one = load_scene(f"extreme/{name}")
+    found = estimated(System(one), 0.0)
+    (path,), (shown,), (errors,) = found.traced.branches.paths, found.shown, found.errors
+    for omega in omegas:
+        i = int(np.abs(path.parameter - omega).argmin())
+        start = state_of(one, (1,), path.z[i])
+        motion = periodic(one, float(path.parameter[i]), start).measure.amplitude
+        true = np.abs(motion / shown.amplitude[i] - 1.0)
+        assert (errors.amplitude[i] > true / 3.0).all()
 
 
 def test_a_harmonic_that_moves_a_peak_by_nothing_does_not_speak_for_the_others():

@@ -204,7 +204,7 @@ def test_an_evaluation_takes_what_was_measured(contacts, modes, taken):
     open. Where they stick it is down to half as long.
     """
     sizes = SimpleNamespace(
-        scene=SimpleNamespace(contacts=[None] * contacts),
+        scene=SimpleNamespace(contacts=[None] * contacts, directions_of_contact=2),
         linear=SimpleNamespace(natural=[1.0] * modes),
         yields=np.full(modes, np.inf),
         condensing=OPTIONS,

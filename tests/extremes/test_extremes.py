@@ -25,7 +25,8 @@ SAMPLE = (
     "no-tangential-motion",
     "b-one-opposed",
     "equal-modes",
-    "stiff-and-soft",
+    "stiff-tangential",
+    "stiff-tangential-soft-normal",
     "force-1e-9",
     "friction-100",
 )

@@ -10,20 +10,27 @@ at the same frequency; of a peak it is the difference of the heights, of a fold 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import numpy.typing as npt
 
-from fcm.accuracy.borne import of_borne
+from fcm.accuracy.borne import of_borne, relative
+from fcm.accuracy.crossings import with_crossings
 from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
 from fcm.accuracy.peaks import heights, rise_beside
+from fcm.accuracy.pieces import CurvePiece, nearest, piece_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic.further import HIGHEST, Further
+from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported, reported
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
+
+Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -32,6 +39,8 @@ class Errors:
 
     amplitude (point, dof): by how much the partner differs at the same frequency.
     truncation (point,): the greatest difference of an amplitude over the greatest amplitude.
+    met (point,): whether the partner's own branch comes to that frequency. Where it does not, as beside a
+    fold that it has elsewhere, errors are the distance to the nearest motion that the partner has there.
     peak (dof,): of the height of the greatest amplitude.
     height (dof,): the greatest amplitude of the partner, as an amplitude.
     fold (fold,): of the frequencies of the folds, in their order.
@@ -40,11 +49,12 @@ class Errors:
     partner: its harmonics.
     borne (point, contact, 4): of what the contacts bear, as of `fcm.harmonic.record.cycles`, each relative
     to itself; infinite where it is nothing, and something in the partner. greatest (contact, 4): of the
-    greatest of each along the path.
+    greatest of each along the path. pieces: what is known of the partner's curve.
     """
 
     amplitude: FloatArray
     truncation: FloatArray
+    met: Mask
     peak: FloatArray
     height: FloatArray
     fold: FloatArray
@@ -52,12 +62,21 @@ class Errors:
     partner: tuple[int, ...]
     borne: FloatArray
     greatest: FloatArray
+    pieces: tuple[CurvePiece, ...] = field(default=(), repr=False)
+
+    @property
+    def believed(self) -> FloatArray:
+        """Truncation (point,) where the partner has that branch, too; NaN elsewhere."""
+        return np.where(self.met, self.truncation, np.nan)
 
 
 def errors_along(
     system: System, path: Path, shown: Reported | None = None, options: PairOptions = PAIR
 ) -> Errors:
-    """Errors of the points of a path of a system's balance; shown is what is reported along it, if known."""
+    """Errors of the points of a path of a system's balance; shown is what is reported along it, if known.
+
+    Where the partner's own branch does not come to a frequency nothing is told, see `with_nearest`.
+    """
     shown = shown or reported(system, path)
     tops, d = shown.amplitude.argmax(axis=0), np.arange(shown.amplitude.shape[1])
     folds, size = path.where(Mark.FOLD), shown.amplitude.max(axis=0)
@@ -69,7 +88,10 @@ def errors_along(
         none = np.full_like(shown.amplitude, 0.0 if shown.linear.all() or nothing else np.nan)
         of_folds = np.full(len(folds), none[0, 0])
         borne = np.full((len(path.z), len(system.scene.contacts), 4), none[0, 0])
-        return Errors(none, none[:, 0], none[0], size, of_folds, share, system.harmonics, borne, borne[0])
+        known: Mask = np.isfinite(none[:, 0])  # then the partner's curve is this one
+        own = (_itself(system, path, shown),) if known.all() and len(path.z) > 1 else ()
+        more = system.harmonics
+        return Errors(none, none[:, 0], known, none[0], size, of_folds, share, more, borne, borne[0], own)
     partner = PartnerCurve(system, path, shown, more, options)
     change = partner.everywhere(np.union1d(special, met))
     followed = partner.followed(change)
@@ -77,7 +99,7 @@ def errors_along(
     shift = partner.shifts(compared, followed)
     borne, greatest = of_borne(partner, compared, shift, followed, folds)
     shift = shift[:, :dofs]
-    error = _of_points(partner, shift, change)
+    error = with_crossings(partner, shift, _of_points(partner, shift, change))
     error[folds] = np.nan  # the partner has two amplitudes at that frequency, or none
     unit = partner.unit
     inside = (tops > 0) & (tops < len(path.z) - 1)
@@ -86,8 +108,8 @@ def errors_along(
         there = partner.abreast(end)
         at_ends = at_ends if there is None else np.where(tops == end, there, at_ends)
     height = np.where(inside, heights(partner, change[:, 1:], followed, tops), at_ends)
-    own = rise_beside(partner, np.zeros_like(unit), tops)  # no error
-    now = shown.amplitude[tops, d] + np.where(inside, own, 0.0)
+    rise = rise_beside(partner, np.zeros_like(unit), tops)  # no error
+    now = shown.amplitude[tops, d] + np.where(inside, rise, 0.0)
     settles = inside | ~partner.linear[tops]
     told = settles & np.isfinite(height)
     error[tops[told], d[told]] = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
@@ -95,11 +117,14 @@ def errors_along(
         beyond = np.abs(partner.left_out(top)) / unit[top]
         error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
-    most = shown.amplitude.max(axis=1)
+    comes: Mask = ~np.any(np.isnan(error), axis=1)
+    pieces = partner.pieces(compared, followed)
+    pieces += partner.elsewhere(error, pieces)
     system.work.take(partner.seconds())
     return Errors(
         amplitude=error,
-        truncation=(error * shown.amplitude).max(axis=1) / np.where(most > 0.0, most, 1.0),
+        truncation=_truncation(error, shown.amplitude),
+        met=comes,
         peak=np.where(told | ~settles, error[tops, d], np.nan),
         height=height,
         fold=_of_folds(partner, folds, change, followed),
@@ -107,7 +132,60 @@ def errors_along(
         partner=more,
         borne=borne,
         greatest=greatest,
+        pieces=pieces,
     )
+
+
+def with_nearest(
+    system: System,
+    paths: Sequence[Path],
+    shown: Sequence[Reported],
+    errors: Sequence[Errors],
+    first: int = 0,
+    options: PairOptions = PAIR,
+) -> tuple[Errors, ...]:
+    """Errors of the paths of a response, where the partner's own branch does not come to a frequency the
+    distance to the nearest motion that it is known to have there: a motion that it has on another branch, or
+    that the branch has turned back to.
+
+    That is another motion, and a degree of freedom in which it happens to be the same says nothing: each has
+    at least the distance of the greatest. The paths before the first have theirs already.
+    """
+    pieces = [piece for one in errors for piece in one.pieces]
+    every = list(errors)
+    for k in range(first, len(every)):
+        path, amplitude, dofs = paths[k], shown[k].amplitude, shown[k].amplitude.shape[1]
+        rows = np.flatnonzero(~every[k].met)
+        if not rows.size or not pieces:
+            continue
+        now, error, borne = amplitude[rows], every[k].amplitude.copy(), every[k].borne.copy()
+        even = path.orientation[rows] * np.sign(path.direction[rows, -1])
+        there = nearest(pieces, path.parameter[rows], even, now)
+        off = np.abs(there[:, :dofs] - now)
+        error[rows] = np.maximum(off / np.where(now > 0.0, now, 1.0), _truncation_of(off, now)[:, None])
+        bear = borne_along(system, path.z).reshape(len(path.z), -1)
+        change = there[:, dofs:] - bear[rows]
+        borne[rows] = relative(change, bear[rows], bear.max(axis=0), options).reshape(len(rows), -1, 4)
+        truncation = _truncation(error, amplitude)
+        every[k] = replace(every[k], amplitude=error, truncation=truncation, borne=borne)
+    return tuple(every)
+
+
+def _itself(system: System, path: Path, shown: Reported) -> CurvePiece:
+    """A path whose partner is the same curve."""
+    return piece_of(path, shown, borne_along(system, path.z).reshape(len(path.z), -1))
+
+
+def _truncation(error: FloatArray, amplitude: FloatArray) -> FloatArray:
+    """The greatest difference (point,) over the greatest amplitude of errors (point, dof), relative."""
+    return _truncation_of(error * amplitude, amplitude)
+
+
+def _truncation_of(off: FloatArray, amplitude: FloatArray) -> FloatArray:
+    """The same of differences."""
+    most = amplitude.max(axis=1)
+    truncation: FloatArray = off.max(axis=1) / np.where(most > 0.0, most, 1.0)
+    return truncation
 
 
 def _spectrum(

@@ -48,6 +48,15 @@ class PairOptions:
         Part of the typical error of the degrees of freedom: less is a chance, at a change of sign;
     chance_at_peaks : float
         the same of peaks.
+    again : int
+        Times the partner's harmonics those of its own partner are, which is looked for where amplitudes of
+        curve and partner cross,
+    again_named : int
+        with so many more that the spectrum names,
+    crossings, hidden : int, float
+        at so many places at most, those of the crossings that hide most, and at least this;
+    near : int
+        points apart, up to which they are one place.
     rival : float
         Part of the greatest amplitude: what is this high may become the greatest.
     gap : float
@@ -83,6 +92,11 @@ class PairOptions:
     own: float = 0.05
     chance: float = 0.1
     chance_at_peaks: float = 0.05
+    again: int = 2
+    again_named: int = 8
+    crossings: int = 12
+    hidden: float = 1e-4
+    near: int = 4
     rival: float = 0.8
     gap: float = 0.2
     past: float = 1.5

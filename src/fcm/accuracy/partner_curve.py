@@ -4,7 +4,7 @@ leads nowhere."""
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,13 +12,15 @@ import numpy.typing as npt
 from fcm.accuracy.displacement import Displacement
 from fcm.accuracy.interpolation import Filled, places, steepness
 from fcm.accuracy.options import PairOptions
-from fcm.accuracy.partner import lifted_of
+from fcm.accuracy.partner import lifted_of, partner_of
+from fcm.accuracy.pieces import CurvePiece, piece_of, piece_through, rates
 from fcm.accuracy.residual import left_out
-from fcm.accuracy.same_frequency import OtherCurve, shifted
+from fcm.accuracy.same_frequency import shifted
 from fcm.accuracy.stretch import Piece, Stretches
 from fcm.continuation import Mark, Path
 from fcm.harmonic.cost import seconds_of
-from fcm.harmonic.further import LEAST_AMPLITUDE
+from fcm.harmonic.further import LEAST_AMPLITUDE, Further
+from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.record import borne_along
 from fcm.harmonic.reported import Reported
 from fcm.harmonic.runs import runs
@@ -72,6 +74,8 @@ class PartnerCurve:
         lifted, finer = lifted_of(system, more), system.with_harmonics(more)
         self.finding, self.stretches = Displacement(lifted), Stretches(system, finer, lifted, path, options)
         self.each = seconds_of(finer, 1, len(more))  # evaluation
+        self.second: tuple[System, Lifted] | None = None  # its own partner
+        self.spent = 0.0  # seconds on that
         self.vain, self.before = options.seconds / self.each, lifted.newton.evaluations
         count, dofs = self.amplitude.shape
         self.place, self.weight = np.zeros((2, count))
@@ -109,7 +113,7 @@ class PartnerCurve:
     def seconds(self) -> float:
         """About what all that was looked for has taken."""
         point_by_point = self.finding.lifted.newton.evaluations - self.before
-        return float(self.each * (point_by_point + self.stretches.evaluations))
+        return float(self.each * (point_by_point + self.stretches.evaluations) + self.spent)
 
     def find(self, points: Indices) -> None:
         """The displacements of some points, which are then known."""
@@ -130,6 +134,29 @@ class PartnerCurve:
         ):
             return np.zeros(self.amplitude.shape[1])
         return left_out(self.stretches.finer, np.array(lifted.newton.z), self.options)
+
+    def off(self, i: int) -> FloatArray | None:
+        """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
+        that; None where either has no motion there."""
+        lifted, options, finer = self.finding.lifted, self.options, self.stretches.finer
+        if not lifted.abreast(self._padded(i), True):
+            return None
+        z, amplitude = np.array(lifted.newton.z), np.array(lifted.found[1:])
+        if self.second is None:
+            share = Further(finer).shares(z[None], amplitude[None])[0]
+            own = replace(options, times=options.again, named=options.again_named)
+            more = partner_of(finer.harmonics, share, finer.layout.ports, own)
+            if more == finer.harmonics:
+                return None
+            self.second = finer.with_harmonics(more), lifted_of(finer, more)
+        system, second = self.second
+        before = second.newton.evaluations
+        found = second.abreast(system.extended(z, finer.harmonics), True)
+        self.spent += (second.newton.evaluations - before) * seconds_of(finer, 1, len(system.harmonics))
+        if not found:
+            return None
+        off: FloatArray = np.abs(np.array(second.found[1:]) - amplitude) / self.unit[i]
+        return off
 
     def abreast(self, i: int) -> FloatArray | None:
         """Amplitudes (dof,) of the partner at the frequency of a point; None where Newton's method finds
@@ -185,7 +212,7 @@ class PartnerCurve:
         Filled(self.place, found, self.known.view(np.uint8)).at(np.arange(len(change)), every)
         return Compared(
             np.hstack((self.amplitude, self.borne)),
-            np.hstack((self.shown.growth, _rates(self.borne, self.place))),
+            np.hstack((self.shown.growth, rates(self.borne, self.place))),
             np.hstack((self.unit, unit)),
             np.hstack((change, every[:, 1:])),
         )
@@ -222,43 +249,57 @@ class PartnerCurve:
         for way in (map(self._of_piece, one.pieces), self._beside(compared, one.first, one.end)):
             new, own = shift[rows], np.isnan(shift[rows]).any(axis=1) & (number > -2)
             for other in way:
-                found = np.empty(now.shape)
-                other.curve.passings(
-                    other.orientation, other.value, other.slope, omega, even, by, number, found
-                )
-                found = (found - now) / compared.unit[rows]
+                found = (other.passed(omega, even, by, number) - now) / compared.unit[rows]
                 off, before = (np.abs(x[:, :dofs]).max(axis=1) for x in (found, new))
                 nearer = ~(off >= before) & own
                 nearer &= np.isfinite(found).all(axis=1)
                 new[nearer] = found[nearer]
             shift[rows], number = new, np.minimum(number, -1)
 
-    def _beside(self, compared: Compared, first: int, end: int) -> Iterator[_Other]:
+    def _beside(self, compared: Compared, first: int, end: int) -> Iterator[CurvePiece]:
         """The partner at the points before a stretch, and behind it, as far as it is known there."""
-        change = compared.change
-        missed = np.flatnonzero(np.isnan(change).any(axis=1))
+        missed = np.flatnonzero(np.isnan(compared.change).any(axis=1))
         low = max(missed[missed < first], default=-1) + 1
-        high = min(missed[missed >= end], default=len(change))
+        high = min(missed[missed >= end], default=len(compared.change))
         for rows in (slice(low, first), slice(end, high)):
-            place = np.ascontiguousarray(self.place[rows])
-            if len(place) < 2 or (np.diff(place) <= 0.0).any():
-                continue
-            omega = self.path.parameter[rows] * (1.0 + change[rows, 0])
-            value = compared.value[rows] + compared.unit[rows] * change[rows, 1:]
-            curve = OtherCurve(place, omega, np.gradient(omega, place))
-            orientation = np.ascontiguousarray(self.path.orientation[rows])
-            yield _Other(curve, orientation, value, np.gradient(value, place, axis=0))
+            piece = self._displaced(compared, rows)
+            if piece is not None:
+                yield piece
 
-    def _of_piece(self, piece: Piece) -> _Other:
-        path = piece.path
-        parameter, rate = (np.ascontiguousarray(one[:, -1]) for one in (path.z, path.direction))
-        place, borne = _lengths(path), self.borne_of(piece)
-        return _Other(
-            OtherCurve(place, parameter, rate),
-            np.ascontiguousarray(path.orientation),
-            np.hstack((piece.shown.amplitude, borne)),
-            np.hstack((piece.shown.growth, _rates(borne, place))),
-        )
+    def pieces(self, compared: Compared, followed: list[Followed]) -> tuple[CurvePiece, ...]:
+        """All that is known of the partner: what points are displaced to, and what was followed."""
+        missed: Mask = np.any(np.isnan(compared.change), axis=1)
+        through = [self._displaced(compared, slice(first, end)) for first, end in runs(~missed)]
+        along = [self._of_piece(piece) for one in followed for piece in one.pieces]
+        return tuple(one for one in (*through, *along) if one is not None)
+
+    def elsewhere(self, shift: FloatArray, pieces: tuple[CurvePiece, ...]) -> tuple[CurvePiece, ...]:
+        """The partner at the frequencies at which neither a shift (point, dof) is known nor a piece of it, as
+        the work allows: from those of the smallest motions on, where it has fewest."""
+        found = list[CurvePiece]()
+        untold: Mask = np.any(np.isnan(shift), axis=1)
+        for piece in pieces:
+            untold &= ~piece.within(self.path.parameter)
+        size = self.amplitude.max(axis=1)
+        while untold.any() and self.stretches.left > 0.0:
+            i = int(np.where(untold, size, np.inf).argmin())
+            omega = self.path.parameter[untold]
+            new = self.stretches.through(i, (float(omega.min()), float(omega.max())))
+            untold[i] = False
+            for one in map(self._of_piece, new):
+                untold &= ~one.within(self.path.parameter)
+                found.append(one)
+        return tuple(found)
+
+    def _displaced(self, compared: Compared, rows: slice) -> CurvePiece | None:
+        """The partner at some points, all of them displaced to it."""
+        change = compared.change[rows]
+        omega = self.path.parameter[rows] * (1.0 + change[:, 0])
+        value = compared.value[rows] + compared.unit[rows] * change[:, 1:]
+        return piece_through(self.place[rows], omega, self.path.orientation[rows], value)
+
+    def _of_piece(self, piece: Piece) -> CurvePiece:
+        return piece_of(piece.path, piece.shown, self.borne_of(piece))
 
     def borne_of(self, piece: Piece) -> FloatArray:
         """What the contacts bear along a piece (point, 4 contact)."""
@@ -282,16 +323,6 @@ class PartnerCurve:
         return number
 
 
-@dataclass(frozen=True)
-class _Other:
-    """A piece of the partner, with what is compared and its slopes (point, column)."""
-
-    curve: OtherCurve
-    orientation: FloatArray
-    value: FloatArray
-    slope: FloatArray
-
-
 def _passed(parameter: FloatArray, omega: float) -> Indices:
     """The pieces between points on which a curve passes a frequency."""
     below = parameter < omega
@@ -301,22 +332,6 @@ def _passed(parameter: FloatArray, omega: float) -> Indices:
         passes[-1] |= bool(parameter[-1] == omega < parameter[-2])
     passed: Indices = np.flatnonzero(passes)
     return passed
-
-
-def _lengths(path: Path) -> FloatArray:
-    """Along a path (point,)."""
-    length = np.zeros(len(path.z))
-    places(path.z, path.direction, np.ptp(path.parameter) or 1.0, length)
-    return length
-
-
-def _rates(values: FloatArray, place: FloatArray) -> FloatArray:
-    """Rates of change (point, column) along a curve, from the point before to that behind."""
-    k = np.arange(len(place))
-    before, after = np.maximum(k - 1, 0), np.minimum(k + 1, len(place) - 1)
-    step = place[after] - place[before]
-    rates: FloatArray = (values[after] - values[before]) / np.where(step > 0.0, step, 1.0)[:, None]
-    return rates
 
 
 def _with_ends(path: Path, linear: Mask) -> Mask:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fcm.accuracy.embedded_pair import Errors, errors_along
+from fcm.accuracy.embedded_pair import Errors, errors_along, with_nearest
 from fcm.accuracy.foreseen import foreseen, needed
 from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOptions
 from fcm.accuracy.outline import Outline, near, outlined, with_more
@@ -147,7 +147,8 @@ def judged(
     system, response, shown = outline.system, outline.traced, outline.shown
     paths = response.branches.paths
     rest = list(zip(paths, shown, strict=True))[len(known) :]
-    errors = (*known, *(errors_along(system, path, one, options) for path, one in rest))
+    new = [errors_along(system, path, one, options) for path, one in rest]
+    errors = with_nearest(system, paths, shown, (*known, *new), len(known), options)
     own = system, response, shown, outline.seconds, errors
     if not paths:
         none = np.full(len(system.scene.modal.dofs), np.nan)

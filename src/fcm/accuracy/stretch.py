@@ -89,6 +89,15 @@ class Stretches:
             pieces += [piece] if len(piece.path.z) > 1 else []
         return pieces
 
+    def through(self, i: int, span: tuple[float, float]) -> list[Piece]:
+        """The partner both ways from the frequency of a point, as far as it stays in a span and the work
+        allows; nothing where no motion of it is found there."""
+        begin = self._abreast(i) if self.left > 0.0 else None
+        if begin is None:
+            return []
+        pieces = [self._followed(begin, None, span, way) for way in (True, False) if self.left > 0.0]
+        return [piece for piece in pieces if len(piece.path.z) > 1]
+
     def _end(self, places: Iterable[int]) -> End | None:
         """At the first of some places where there is one."""
         for i in places:

@@ -167,6 +167,8 @@ class Lifted:
             if not newton.factor():
                 return False
             step = newton.step()
+            if count > 0 and step > 0.25 * before and newton.noise(step, count):
+                return newton.direct()
             if not step < 1e30 or (count > 1 and step > 2.0 * before):
                 return False
             if self.brief and (step > TWICE * FAR if count == 0 else step > min(2.0 * before, FAR)):

@@ -175,7 +175,8 @@ def _curve(followed: _Followed) -> Curve:
     reason, nowhere = incomplete(found, points)
     stable = np.where(nowhere, 0.0, np.concatenate(parts))  # what creeps away, or floats, is no steady state
     truncations = [one.truncation for one in found.errors]
-    far = disbelieved(points.z[:, -1], truncations, stable, (points.mark & Mark.FOLD) > 0)
+    believed = [one.believed for one in found.errors]
+    far = disbelieved(points.z[:, -1], believed, stable, (points.mark & Mark.FOLD) > 0)
     stable[far & (stable == 1.0)] = np.nan
     peak = np.full_like(found.peak, np.nan) if followed.exceeded else found.peak
     error = np.maximum(np.concatenate([one.amplitude for one in found.errors]), rounding)
@@ -252,7 +253,7 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
     every = found.traced.branches.paths
     paths, shown, errors = list(every[:known]), list(found.shown[:known]), list(found.errors[:known])
     for path, seen, error in zip(every[known:], found.shown[known:], found.errors[known:], strict=True):
-        judged = stability(found.system, path, astray(error.truncation) if short else None)
+        judged = stability(found.system, path, astray(error.believed) if short else None)
         inserted = judged.inserted
         bifurcations += [(one.kind.value, one.frequency) for one in judged.crossings]
         if accuracy is not None and not short:
@@ -271,6 +272,7 @@ def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:
                 error,
                 amplitude=_between(error.amplitude, after),
                 truncation=_between(error.truncation, after),
+                met=np.insert(error.met, after + 1, error.met[after]),
                 borne=_between(error.borne, after),
             )
         )
