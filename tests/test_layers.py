@@ -23,6 +23,7 @@ NUMERICS = (
     "branches",
     "accuracy",
     "track",
+    "fit",
     "motion",
     "orbit",
     "reduction",

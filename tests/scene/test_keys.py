@@ -34,7 +34,7 @@ def test_a_key_that_is_not_in_the_table_is_refused(table):
     wrong = names(table)[0] + "q"
     inner = {wrong: 1}
     for word in reversed(table.split(".") if table else []):
-        inner = {word: [inner] if word in ("contact", "force", "load", "schedule") else inner}
+        inner = {word: [inner] if word in ("contact", "force", "load", "schedule", "data") else inner}
     with pytest.raises(SceneError) as caught:
         scene_from_dict(inner)
     assert f"{wrong}: unknown key" in str(caught.value)
@@ -50,8 +50,8 @@ def test_the_template_has_every_key():
     for table, keys in TABLES.items():
         for key in keys:
             word = key.strip('"').replace("NAME", "*")
-            if table == "" or key in ("paired", "correlation"):
-                assert re.search(rf"^(# )?(\[\[?)?(sweep\.)?{word}(\]| *=)", text, re.M), key
+            if table == "" or key in ("paired", "correlation", "data"):
+                assert re.search(rf"^(# )?(\[\[?)?(sweep\.|fit\.)?{word}(\]| *=)", text, re.M), key
             else:
                 assert re.search(rf"[#{{ \n\"]{re.escape(word)}\"? *=", text), (table, key)
 
@@ -60,8 +60,8 @@ PLANE = "tangential = ["  # how the choice of two directions begins
 
 
 def test_what_the_template_has_in_comments_is_right():
-    """Its comments taken away, all but one of each choice: a scene of matrices, with all tables."""
-    text = printed("--template")
+    """Its comments taken away, all but one of each choice: a scene of matrices, with all tables but [fit]."""
+    text = re.sub(r"^# \[fit\].*?\n\n", "", printed("--template"), flags=re.M | re.S)
     lines = [line.removeprefix("# ") for line in text[text.index("[[contact]]") :].splitlines()]
     dropped = ("accuracy", "gap", "areas", "nodes", "file ", "phase ", " ", "phase   =", PLANE)
     kept = [line for line in lines if not line.startswith(dropped)]
@@ -86,3 +86,14 @@ def test_neither_needs_the_solver():
     code = "import sys; from fcm.cli import main; main(['respond', '--keys'], standalone_mode=False); "
     code += "print([m for m in ('scipy', 'netCDF4', 'xarray', 'fcm.response.sweep') if m in sys.modules])"
     assert python("-c", code).out.splitlines()[-1] == "[]"
+
+
+def test_what_the_template_has_of_a_fit_is_right(tmp_path):
+    text = printed("--template")
+    block = re.search(r"^# \[fit\].*?\n\n", text, re.M | re.S)[0]
+    data = tomllib.loads(text) | tomllib.loads(block.replace("\n# ", "\n").removeprefix("# "))
+    (tmp_path / "level1.csv").write_text("frequency,amplitude\n90,1\n")
+    (tmp_path / "ring_down.csv").write_text("amplitude,frequency,damping\n1,90,0.01\n")
+    found = scene_from_dict(data, folder=tmp_path).fit
+    assert len(found.vary) == 2 and [one.mode for one in found.data] == [1, 1]
+    assert found.data[0].amplitude_error == 0.01 and found.data[1].damping_error == 0.05

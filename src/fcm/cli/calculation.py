@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from fcm.cli import exact, nonlinear_mode, schedule, sensitivity, track
+from fcm.cli import exact, fit, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.messages import Messages
 from fcm.cli.respond_options import Asked
 
@@ -37,6 +37,9 @@ def _response(messages: Messages, scene: Scene, asked: Asked, run: dict[str, Any
         response = track.optimised(messages, scene, asked.method, {**run, **_balanced(asked), "table": table})
         _say_outside(messages, asked.table, table)
         return response
+    if scene.fit is not None:
+        balanced = _balanced(asked) | {key: run[key] for key in ("jobs", "place")}
+        return fit.fitted(messages, scene, asked.method, balanced)
     if asked.method == "exact" and (scene.has_range or asked.at):
         options = {**run, "tolerance": _tolerance(asked), "only": asked.only}
         options["periods"] = asked.periods

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from fcm import signals
-from fcm.cli import schedule, track
+from fcm.cli import fit, schedule, track
 from fcm.cli.curves import as_table
 from fcm.cli.files import alone
 from fcm.cli.messages import Messages
@@ -118,5 +118,7 @@ def _tables(result: dict[str, Any], response: Response) -> str:
     histories, unit = result.get("histories", []), response.frequency_unit
     found = "tracked" in result
     parts = [track.as_table(result, unit)] if found else []
+    if "fitted" in result:
+        parts, found = [fit.as_table(result)], True
     parts += [as_table(result, unit)] if result["curves"] or not (histories or found) else []
     return "\n\n".join([*parts, schedule.as_table(histories, unit)] if histories else parts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from fcm.files import replacing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+MEASURED = (".csv", ".txt", ".dat", ".mat", ".npz", ".uff", ".unv")  # endings of measured points
 PICTURES = {
     "response": ("fcm.cli.plot:response", "Amplitude against frequency, one line a curve."),
     "modes": ("fcm.cli.modes:modes", "The modes of a scene and what moves them, as a table."),
@@ -53,7 +55,8 @@ def plot() -> None:
 @click.option("--errors/--no-errors", default=True, show_default=True, help="A panel of the curves' errors.")
 @click.option(
     "--points", type=click.Path(exists=True, dir_okay=False, readable=True, path_type=Path), metavar="FILE",
-    help="Exact motions to mark over the curves, the file of `fcm respond --method exact -o FILE`.",
+    help="To mark over the curves: exact motions, the file of `fcm respond --method exact -o FILE`, or "
+    "measured points with the columns frequency and amplitude (.csv, .mat, .npz, .uff).",
 )  # fmt: skip
 @click.option(
     "--band", type=FiniteRange(0.0, 100.0), nargs=2, metavar="LOW HIGH",
@@ -95,8 +98,15 @@ def response(
         save_picture_of(file, lambda: _bands(file, dof, log, points, band), output)
         messages.info(f"wrote {output}")
         return
-    marked = None if points is None else read_points(points)
     read = read_response(file)
+    marked = None
+    if points is not None and points.suffix.lower() in MEASURED:
+        from fcm.plot.measured import read_measured_points
+
+        own = read_measured_points(points, read.frequency_unit)
+        read = replace(read, measured=(*read.measured, own))
+    elif points is not None:
+        marked = read_points(points)
     save_picture_of(file, lambda: draw_response(read, dof=dof, log=log, errors=errors, points=marked), output)
     messages.info(f"wrote {output}")
 

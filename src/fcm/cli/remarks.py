@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from fcm.cli import schedule, track
+from fcm.cli import fit, schedule, track
 from fcm.cli.curves import all_lost_to_defects, cost_and_error, incomplete
 from fcm.cli.doubts import (
     branches_unsure,
@@ -63,11 +63,21 @@ def close(messages: Messages, result: dict[str, Any], defects: list[str], writte
         messages.warning(short)
     for unsure in filter(None, (branches_unsure(result), folds_unsure(result), tracked_unsure(result))):
         messages.warning(unsure)
+    for doubt in fit.doubts(result):
+        messages.warning(doubt)
     histories = result.get("histories", [])
     if histories:
         messages.info(schedule.cost_and_error(histories))
     if stopped := " and ".join(
-        filter(None, (incomplete(result), track.incomplete(result), schedule.incomplete(histories)))
+        filter(
+            None,
+            (
+                incomplete(result),
+                track.incomplete(result),
+                fit.incomplete(result),
+                schedule.incomplete(histories),
+            ),
+        )
     ):
         done = "reported and written" if written else "reported"
         messages.error(f"error: {stopped}; what was traced is {done}")

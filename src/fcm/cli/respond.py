@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from fcm.cli import balance, cluster, exact, nonlinear_mode, schedule, sensitivity, track
+from fcm.cli import balance, cluster, exact, fit, nonlinear_mode, schedule, sensitivity, track
 from fcm.cli.calculation import calculated
 from fcm.cli.files import alone, check_different, check_not_read
 from fcm.cli.messages import Messages, pass_messages
@@ -35,8 +35,9 @@ def respond(messages: Messages, /, scene: str, **options: Any) -> None:
     By harmonic balance, or with --method exact as periodic solutions of the exact motion. The peaks, folds
     and errors of every curve are printed; the curves go to files. A [[schedule]] of the scene is then
     simulated in time, without a time step; the amplitudes of its phases are printed, the motion goes to the
-    same file. With an [optimum] its numbers are chosen, and the response is that with them; with --track,
-    points of the response are followed in a number of the scene.
+    same file. With a [fit] its numbers are fitted to measured data, with an [optimum] they are chosen, and
+    the response is that with them; with --track, points of the response are followed in a number of the
+    scene.
     """
     asked = Asked(**options)
     if asked.compare:
@@ -119,6 +120,8 @@ def _with_step(scene: Scene, max_step: float) -> Scene:
 
 def _check_scene(scene: Scene, asked: Asked) -> None:
     """A usage error if options mean nothing with this scene."""
+    if scene.fit is not None:
+        fit.check_scene(scene, asked)
     if asked.sensitivity:
         from fcm.response.around import check_no_ring
 

@@ -27,13 +27,25 @@ _LAYOUT = {
     **dict.fromkeys(("schedule_frequency", "schedule_cycles", "schedule_start"), _PHASE),
     "displacement": ("curve", "instant", "dof"),
     **dict.fromkeys(("cycle_mean", "cycle_greatest", "cycle_least"), _OF_CYCLE),
+    **dict.fromkeys(("data_frequency", "data_amplitude", "data_level"), ("data", "measured")),
+    **dict.fromkeys(("data_dof", "data_quantity"), ("data",)),
     "track_what": ("track",),
     "tracked_amplitude": (*_TRACKED, "dof"),
     **dict.fromkeys(
         ("tracked_number", "tracked_frequency", "tracked_turn", "tracked_trough", "tracked_stable"), _TRACKED
     ),
 }
-_TEXTS = {"dof", "contact", "number", "regime", "sweep", "peak_kind", "track_what"}
+_TEXTS = {
+    "dof",
+    "contact",
+    "number",
+    "regime",
+    "sweep",
+    "peak_kind",
+    "track_what",
+    "data_dof",
+    "data_quantity",
+}
 
 
 def check_layout(variables: Any, names: Iterable[str]) -> None:

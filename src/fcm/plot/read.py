@@ -17,6 +17,8 @@ from fcm.plot.apart import apart
 from fcm.plot.dof import leading_column
 from fcm.plot.errors import PlotError
 from fcm.plot.layout import check_layout, is_text
+from fcm.plot.measured import NEEDED as MEASURED
+from fcm.plot.measured import DrawnMeasured, measured_of
 from fcm.units import CF_UNIT
 from fcm.untold import untold
 
@@ -29,7 +31,7 @@ _DESCRIBED = "swept value"  # how the description of a swept value begins
 _READ = {written: unit for unit, written in CF_UNIT.items()}
 LEVEL = "level"  # in the place of a unit of frequency: the curves are against the level of the forces
 _NEEDED = ("frequency", "amplitude", "dof")
-_ALSO = ("stable", "table_error", "truncation_error", "regime", "level")
+_ALSO = ("stable", "table_error", "truncation_error", "regime", "level", *MEASURED)
 NO_NETCDF = "Unknown file format"  # what the library says of other files
 UNREAD = (OSError, RuntimeError, ValueError)  # what the library raises at reading, and what is refused here
 LARGEST = 1e100  # no result is as large, in whatever units: such a number was not written as one
@@ -60,6 +62,7 @@ class DrawnResponse:
     length: str = ""  # unit of displacements, if the file says it
     drawn: tuple[str, ...] = ()  # swept keys whose values are random draws
     units: Mapping[str, str] = field(default_factory=dict)  # of swept keys, if the file says them
+    measured: tuple[DrawnMeasured, ...] = ()  # points that numbers were fitted to
 
     def column(self, dof: str | None) -> int:
         """The place of a degree of freedom; by default that of `leading_column`."""
@@ -167,7 +170,8 @@ def _response(dataset: Any) -> DrawnResponse:
     unit = str(getattr(dataset, "frequency_unit", "rad/s")) if level is None else LEVEL
     held = _swept(variables)
     drawn = tuple(key for key in swept if getattr(held[key], "drawn", "") == "true")
-    return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept))
+    measured = measured_of(variables, unit)
+    return DrawnResponse(dofs, unit, curves, length, drawn, swept_units(variables, swept), measured)
 
 
 def _curve(

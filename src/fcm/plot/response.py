@@ -18,6 +18,7 @@ from fcm.plot.error_panel import (
 )
 from fcm.plot.errors import PlotError
 from fcm.plot.labels import curve_label, frequency_label, symbols, with_unit
+from fcm.plot.measured import draw_measured, name_measured
 from fcm.plot.points import DrawnPoints, draw_points, name_points
 from fcm.plot.read import LEVEL, BoolArray, DrawnCurve, DrawnResponse, FloatArray, wide
 from fcm.plot.style import has_decades, house_style, logarithmic_axis, new_figure, sequence_colours
@@ -69,6 +70,8 @@ def draw_response(
         if points is not None:
             draw_points(axes, points, response.dofs[column], response.frequency_unit, curves, colours)
             name_points(figure, axes)
+        if draw_measured(axes, response.measured, response.dofs[column], curves, colours):
+            name_measured(figure)
         if wide(curves) and response.frequency_unit != LEVEL:
             axes.set_xscale("log")
         _finish_axes(axes, response, column, _logarithmic(curves, column) if log is None else log)

@@ -127,6 +127,8 @@ def _curves(
         raise ResponseError(f"method {method!r} is not one of {', '.join((*METHODS, 'exact'))}")
     if at is not None and method != "exact":
         raise ResponseError(f"frequencies to visit need the method 'exact'; the method is {method!r}")
+    if scene.fit is not None:
+        return _fit(scene, method, harmonics, accuracy)
     if scene.optimum is not None:
         return _optimum(scene, method, harmonics, accuracy)
     if at is None and not scene.has_range and scene.schedule:
@@ -138,6 +140,16 @@ def _curves(
 
         return trace_exact(scene, at, place=place)
     return trace(scene, method, harmonics=harmonics, accuracy=accuracy, place=place)
+
+
+def _fit(
+    scene: Scene, method: str, harmonics: int | Sequence[int] | None, accuracy: float | None
+) -> Response:
+    from fcm.response.fit import fit
+
+    if method == "exact":
+        raise ResponseError("the method 'exact' is of no use with [fit]")
+    return fit(scene, harmonics=harmonics, accuracy=accuracy, method=method)
 
 
 def _optimum(

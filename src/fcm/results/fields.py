@@ -65,7 +65,9 @@ def fields_of(response: Response) -> dict[str, Field]:
         unit = unit_of_number(key, *response.units, CF_UNIT[response.frequency_unit])
         attrs = {"long_name": f"swept value of {key}", "key": key} | drawn | ({"units": unit} if unit else {})
         out[name] = Field(("curve",), values, attrs)
-    if response.curves or (response.histories is None and response.tracking is None):
+    if response.curves or (
+        response.histories is None and response.tracking is None and response.fitted is None
+    ):
         out |= gist_fields(response) if response.peaks_only else _point_fields(response)
         out |= curve_fields(response)
         if any(c.sensitivity is not None for c in response.curves):
@@ -76,6 +78,10 @@ def fields_of(response: Response) -> dict[str, Field]:
         from fcm.results.tracked_fields import tracked_fields
 
         out |= tracked_fields(response, response.tracking)
+    if response.fitted is not None:
+        from fcm.results.fitted_fields import fitted_fields
+
+        out |= fitted_fields(response, response.fitted)
     if response.histories is not None:
         from fcm.motion import output
 

@@ -54,6 +54,8 @@ def summary(response: Response) -> dict[str, Any]:
         data["tracked"] = response.tracking.summary(unit)
         if response.tracking.optima:
             data["optimum"] = [one.summary(unit) for one in response.tracking.optima]
+    if response.fitted is not None:
+        data["fitted"] = response.fitted.summary()
     return without_nan(data)  # type: ignore[no-any-return]
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fcm.harmonic.in_plane import InPlane
     from fcm.harmonic.sensitivity import Sensitivities
     from fcm.motion.histories import Histories
+    from fcm.results.fitted import Fitted
     from fcm.results.nonlinear_mode import NonlinearMode
     from fcm.results.orbits import Orbits
     from fcm.results.tracked import Tracking
@@ -146,6 +147,7 @@ class Response:
     peaks_only: bool = False  # whether the curves were asked for without their points
     directions: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of contacts that slide in a plane
     tracking: Tracking | None = None  # special points followed in a number of the scene, and optima
+    fitted: Fitted | None = None  # numbers fitted to measured data
 
     @staticmethod
     def of(scene: Scene, curves: list[Curve], method: str) -> Response:
@@ -166,12 +168,13 @@ class Response:
         """Whether every curve reached the end of its range, and of the schedule if there is one."""
         simulated = self.histories is None or self.histories.complete
         tracked = self.tracking is None or self.tracking.complete
-        return simulated and tracked and all(curve.complete for curve in self.curves)
+        fitted = self.fitted is None or not self.fitted.interrupted
+        return simulated and tracked and fitted and all(curve.complete for curve in self.curves)
 
     @property
     def interrupted(self) -> bool:
         """Whether curves, or parts of the schedule, are missing because the run was interrupted."""
-        if self.tracking is not None and self.tracking.interrupted:
+        if any(one is not None and one.interrupted for one in (self.tracking, self.fitted)):
             return True
         simulated = [] if self.histories is None else self.histories.records
         reasons = [*(curve.reason for curve in self.curves), *(record.reason for record in simulated)]

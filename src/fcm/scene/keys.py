@@ -50,6 +50,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "response": Key("what is traced", "[response]", "needed without [[schedule]]"),
         "sweep": Key("numbers of the scene that are varied, a curve for each value", "[sweep]", "one curve"),
         "optimum": Key("numbers that are chosen so that a peak is least", "[optimum]", "nothing is chosen"),
+        "fit": Key("numbers that are fitted to measured data", "[fit]", "nothing is fitted"),
         "schedule": Key("phases of a simulation in time", "[[schedule]]", "none"),
         "start": Key("the state that the schedule starts from", "[start]", "rest"),
     },
@@ -141,6 +142,26 @@ TABLES: dict[str, dict[str, Key]] = {
         "minimise": Key("of which the greatest is to be least; greatest.NAME counts the range's ends",
                         '"peak.NAME", or a list of such'),
     },
+    "fit": {
+        "vary": Key("numbers of the scene by their paths",
+                    'list such as ["contact.*.mu", "modal.damping.0"]'),
+        "bounds": Key("of each number", "[[from, to], ...]", "a hundredth to a hundred times what it is"),
+        "data": Key("what was measured", "[[fit.data]]"),
+    },
+    "fit.data": {
+        "file": Key("of a response: frequency, amplitude, and any of phase, weight and levels",
+                    ".csv, .mat, .npz, .uff or .unv", "backbone"),
+        "backbone": Key("of a nonlinear mode: amplitude, frequency, damping ratio, and weight",
+                        ".csv, .mat or .npz", "file"),
+        "dof": Key("that was measured", "a degree of freedom", "of a backbone: its amplitude is modal"),
+        "level": Key("of the scene's forces; a column has the force of each point", "number, or column", "1"),
+        "quantity": Key("that was measured", '"displacement", "velocity" or "acceleration"',
+                        '"displacement"'),
+        "mode": Key("of the backbone, counted from 1", "whole number", "1"),
+        "amplitude_error": Key("relative to the greatest amplitude", FRACTION, "estimated"),
+        "frequency_error": Key("relative", FRACTION, "1e-6; of a backbone estimated"),
+        "damping_error": Key("relative to the greatest damping ratio", FRACTION, "estimated"),
+    },
     "schedule": {
         "frequency": Key("of the forces in this phase", POSITIVE),
         "cycles": Key("of the forces in this phase", POSITIVE),
@@ -164,7 +185,14 @@ TABLES: dict[str, dict[str, Key]] = {
     },
 }  # fmt: skip
 
-LISTS = ("contact", "force", "load", "schedule", "sweep.paired")  # tables that are written [[...]]
+LISTS = (
+    "contact",
+    "force",
+    "load",
+    "schedule",
+    "sweep.paired",
+    "fit.data",
+)  # tables that are written [[...]]
 
 
 def names(table: str) -> tuple[str, ...]:

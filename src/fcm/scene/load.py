@@ -17,6 +17,7 @@ from fcm.scene.draft import Draft, forces_of, modes_of
 from fcm.scene.errors import Mistakes, SceneError, choices, kind, quoted, suggestion
 from fcm.scene.excitation import load_of, read_base, read_loads
 from fcm.scene.files import LARGEST, Files
+from fcm.scene.fit import read_fit
 from fcm.scene.keys import names
 from fcm.scene.linear import (
     check_matrices,
@@ -148,6 +149,7 @@ def _read(top: Section, files: Files) -> dict[str, Any]:
         "reported": reported,
         "notes": tuple(notes),
         "optimum": read_optimum(top, draft, reported or tuple(parts["modal"]["dofs"] or ())),
+        "fit": read_fit(top, files, draft, reported or tuple(parts["modal"]["dofs"] or ()), unit),
         "draft": draft,
     }
 

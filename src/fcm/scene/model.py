@@ -131,6 +131,48 @@ class Optimum:
 
 
 @dataclass(frozen=True)
+class Measured:
+    """Measured points that numbers are fitted to: of a response, or of a backbone if it has damping.
+
+    Errors are relative, None where nothing is said of them; see `fcm.fit.options`.
+    """
+
+    file: str
+    dof: str  # empty of a backbone whose amplitude is modal
+    frequency: FloatArray  # (point,) [rad/s]
+    amplitude: FloatArray  # (point,) of the quantity
+    weight: FloatArray  # (point,) of the square of its residual
+    level: FloatArray  # (point,) of the scene's forces
+    phase: FloatArray | None = None  # (point,) [rad] of amplitude * sin(omega t + phase)
+    damping: FloatArray | None = None  # (point,) ratios
+    quantity: str = "displacement"
+    mode: int = 1  # of a backbone
+    amplitude_error: float | None = None
+    frequency_error: float | None = None
+    damping_error: float | None = None
+    estimated: FloatArray | None = None  # (point, component) errors, from the residuals of a first fit
+
+    @property
+    def points(self) -> int:
+        """How many there are."""
+        return self.frequency.size
+
+    @property
+    def components(self) -> int:
+        """Residuals of each."""
+        return 3 if self.phase is not None else 2
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Numbers that are fitted to measured data."""
+
+    vary: tuple[str, ...]
+    bounds: tuple[tuple[float, float] | None, ...]  # of each number
+    data: tuple[Measured, ...]
+
+
+@dataclass(frozen=True)
 class Scene:
     """Everything that a calculation needs, in angular frequencies [rad/s]; immutable."""
 
@@ -154,6 +196,7 @@ class Scene:
     ring: Ring | None = None  # that this is a sector of; modal is then what the mean meets
     notes: tuple[str, ...] = ()  # what the reader of a result should know of how the scene was read
     optimum: Optimum | None = None
+    fit: Fit | None = None
     of_matrices: bool = False  # whether its modes are those of [structure]; if not, they are of [modal]
     files: tuple[Path, ...] = field(default=(), compare=False)  # that were read for it
     held: tuple[Held, ...] = ()  # that are not among the contacts: springs, or nothing, in their places

@@ -135,7 +135,7 @@ class Section:
         """A list of tables, empty when the key is missing; those that are not tables are left out."""
         value = self.data.get(key, [])
         if not isinstance(value, list | tuple):
-            self.wrong(key, f"must be a list of tables, is {described(value)}; write [[{key}]]")
+            self.wrong(key, f"must be a list of tables, is {described(value)}; write [[{self.at(key)}]]")
             return []
         sections = []
         for index, item in enumerate(value):
@@ -143,7 +143,7 @@ class Section:
             if isinstance(item, Mapping):
                 sections.append(Section(item, path, self.mistakes))
             else:
-                self.mistakes.add(path, f"must be a table, is {described(item)}; write [[{key}]]")
+                self.mistakes.add(path, f"must be a table, is {described(item)}; write [[{self.at(key)}]]")
         return sections
 
     def weights(self, key: str, dofs: Names | None) -> FloatArray | None:

@@ -20,6 +20,7 @@ HEADS = {"55": 5, "56": 5, "57": 5, "58": 5, "151": 7, "2414": 8}  # lines of te
 AT_NODES = 1  # where the data of a dataset 2414 are
 MOST_ASCII_LINES = 50  # of a binary dataset; 58b has 11
 BYTES = {2: 4, 4: 8, 5: 8, 6: 16}  # of an ordinate, by the data type of dataset 58
+BIG_ENDIAN = 2  # the byte order of a binary dataset
 SINGLE = (2, 5)  # of these types the abscissae are of single precision, too
 _MARK = re.compile(rb" {0,4}-1[ \t\r]*")
 _ANY_MARK = re.compile(rb"^ {0,4}-1[ \t\r]*$", re.MULTILINE)
@@ -32,12 +33,14 @@ _NOTHING = b" \t\r\n\x00\x1a"  # between datasets, and as some programs fill up 
 class Dataset(NamedTuple):
     """One dataset: its number as "55" or "58b", the lines behind that, and the number of the first of them.
 
-    Of a binary one the lines are those before its bytes.
+    Of a binary one the lines are those before its bytes, the payload.
     """
 
     kind: str
     lines: tuple[str, ...]
     first: int
+    payload: bytes = b""
+    big_endian: bool = False
 
     def integers(self, line: int) -> list[int]:
         """The whole numbers of a line, in columns of ten or apart; none where there are others on it."""
@@ -145,13 +148,14 @@ def _dataset(text: _Text, path: Path) -> Dataset:
     lines: list[str] = []
     first = text.number
     if len(words) >= 4:  # byte order, kind of numbers, lines of text, bytes
-        _, _, ascii_lines, size = words[:4]
+        order, _, ascii_lines, size = words[:4]
         while text and len(lines) < min(ascii_lines, MOST_ASCII_LINES):
             lines.append(_decoded(text.line()))
         found = Dataset(kind, tuple(lines), first)
         if past := _past_bytes(text, size, _bytes_of(found)):
+            payload = text.content[text.at : text.at + size]
             text.to(past)
-            return found
+            return found._replace(payload=payload, big_endian=order == BIG_ENDIAN)
     while text and len(words) < 4:
         line = text.line()
         if _MARK.fullmatch(line) and (len(lines) >= HEADS.get(kind, 0) or text.ended()):

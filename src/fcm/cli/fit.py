@@ -1,0 +1,88 @@
+"""Scenes with a [fit]: what is asked for, and what is said of the numbers found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from fcm.cli.columns import aligned
+from fcm.cli.messages import Messages
+from fcm.cli.terminal import plain
+
+if TYPE_CHECKING:
+    from fcm.cli.respond_options import Asked
+    from fcm.response import Response
+    from fcm.scene.model import Scene
+
+STRONG = 0.9  # correlations that are said
+
+
+def check_scene(scene: Scene, asked: Asked) -> None:
+    """A usage error if a scene with a [fit] is asked for what has no meaning with it."""
+    if asked.method == "exact":
+        raise click.UsageError("--method exact is of no use with [fit]: it is the balance that is fitted.")
+    given = {
+        "--track": asked.track, "--mode": asked.mode, "--level": asked.level, "--at": asked.at,
+        "--resume": asked.resume, "--sensitivity": asked.sensitivity,
+    }  # fmt: skip
+    for option, value in given.items():
+        if value:
+            raise click.UsageError(
+                f"{option} is of no use with [fit]: it is for numbers that are chosen already."
+            )
+
+
+def fitted(messages: Messages, scene: Scene, method: str, options: dict[str, Any]) -> Response:
+    """The fit of a scene, and the response with its numbers."""
+    from fcm.response.fit import fit
+
+    response = fit(scene, method=method, progress=messages.progress, **options)
+    messages.clear()
+    return response
+
+
+def as_table(result: Mapping[str, Any]) -> str:
+    """The numbers, then the data."""
+    found = result["fitted"]
+    percent = f"{100.0 * found['confidence']:g} % interval"
+    rows = [["value", "standard error", percent, "began at", "fitted"]]
+    for key, one in found["numbers"].items():
+        told = one["standard_error"] is not None
+        low, high = one["interval"]
+        within = f"{low:.5g} to {high:.5g}" if None not in (low, high) else "-"
+        error = f"{one['standard_error']:.2g}" if told else "-"
+        rows.append([f"{one['value']:.6g}", error, within, f"{one['start']:.6g}", plain(key)])
+    data = [["points", "misfit", "of damping", "level", "data"]]
+    for one in found["data"]:
+        low, high = one["level"]
+        level = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+        level = "-" if one["kind"] == "backbone" else level
+        damping = "-" if one["damping_misfit"] is None else f"{100.0 * one['damping_misfit']:.2g} %"
+        data.append(
+            [
+                str(one["points"]),
+                f"{100.0 * one['misfit']:.2g} %",
+                damping,
+                level,
+                plain(f"{one['file']} {one['dof'] or ''}"),
+            ]
+        )
+    note = (
+        "misfit: root mean square of the distances, of the greatest amplitude; of a backbone, of frequencies"
+    )
+    return f"{aligned(rows, left=1)}\n\n{aligned(data, left=1)}\n{note}"
+
+
+def doubts(result: Mapping[str, Any]) -> list[str]:
+    """What of the numbers is not told, and what would tell it."""
+    found = result.get("fitted")
+    return [] if found is None else [*found["problems"], *(f"to tell {one}" for one in found["advice"])]
+
+
+def incomplete(result: Mapping[str, Any]) -> str:
+    """Why the numbers are not the best; empty if they are."""
+    found = result.get("fitted")
+    stopped = found is not None and found["interrupted"]
+    return "interrupted before the numbers were found: those told are the best so far" if stopped else ""

@@ -1,0 +1,93 @@
+"""Which measurement would tell what the data do not: that which leaves the least of its standard errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.fit.forced import NoMotionError, errors_of, forced_rows, sampled
+from fcm.fit.options import FIT, FitOptions
+from fcm.fit.parameters import Parameters
+from fcm.fit.rows import Rows
+from fcm.scene.model import FloatArray, Measured
+
+FACTORS = (0.1, 0.3, 3.0, 10.0)  # of the levels that were measured
+MOST_DOFS = 4
+POINTS = 40  # of a measurement that is imagined
+BETTER = 0.5  # part of the standard error, above which a measurement is not worth a sentence
+
+
+@dataclass(frozen=True)
+class Advice:
+    """A response over the range of the data, at a degree of freedom and a level, and what it would leave.
+
+    error : relative standard error of the number.
+    """
+
+    key: str
+    dof: str
+    level: float
+    error: float
+
+
+def advice(
+    parameters: Parameters,
+    values: FloatArray,
+    rows: Rows,
+    data: Sequence[Measured],
+    doubtful: Sequence[int],
+    harmonics: tuple[int, ...],
+    options: FitOptions = FIT,
+) -> list[Advice]:
+    """For each number that is not told the response that would tell it best; none where none would."""
+    responses = [one for one in data if one.damping is None]
+    if not responses or not doubtful:
+        return []
+    scene, rates = parameters.at(values), parameters.rates(values)
+    known = _information(rows.rates * rates)
+    before = _errors(known)
+    best: dict[int, Advice] = {}
+    model = responses[0]
+    dofs = list(dict.fromkeys([*(one.dof for one in responses), *scene.modal.dofs]))[:MOST_DOFS]
+    levels = [float(one.level.min()) for one in responses] + [float(one.level.max()) for one in responses]
+    tried = sorted(
+        {min(levels) * f for f in FACTORS if f < 1.0} | {max(levels) * f for f in FACTORS if f > 1.0}
+    )
+    tried += sorted(set(levels)) if len(dofs) > 1 else []
+    for dof in dofs:
+        for level in tried:
+            try:
+                imagined = sampled(scene, model, dof, level, POINTS, harmonics, options)
+                errors = errors_of(imagined, False, options)
+                found = forced_rows(scene, parameters.keys, harmonics, imagined, errors, options)
+            except (NoMotionError, np.linalg.LinAlgError):
+                continue
+            after = _errors(known + _information(found.rates * rates))
+            for k in doubtful:
+                if after[k] < BETTER * min(before[k], options.untold / BETTER) and (
+                    k not in best or after[k] < best[k].error
+                ):
+                    best[k] = Advice(parameters.keys[k], dof, level, float(after[k]))
+    return [best[k] for k in doubtful if k in best]
+
+
+def _information(J: FloatArray) -> FloatArray:
+    """Of independent residuals whose errors are as stated: J^T J."""
+    flat = J.reshape(-1, J.shape[-1])
+    found: FloatArray = flat.T @ flat
+    return found
+
+
+def _errors(information: FloatArray) -> FloatArray:
+    """Standard errors of the unknowns; infinite where nothing is known."""
+    size = np.sqrt(np.maximum(np.diag(information), 0.0))
+    seen = size > 0.0
+    errors = np.full(size.size, np.inf)
+    if seen.any():
+        scaled = information[np.ix_(seen, seen)] / np.outer(size[seen], size[seen])
+        values, vectors = np.linalg.eigh(scaled)
+        values = np.maximum(values, 1e-14)
+        errors[seen] = np.sqrt(((vectors**2) / values).sum(axis=1)) / size[seen]
+    return errors

@@ -1,0 +1,187 @@
+r"""Residuals of a measured backbone: frequency and damping of a nonlinear mode against its amplitude.
+
+The mode R(z, ln a) = 0 of the model (see `fcm.harmonic.autonomous`) is solved where its amplitude is the
+measured one. By a number p it changes there by w with R_z w = -R_p and the amplitude held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.continuation.corrector import Newton
+from fcm.fit.forced import NoMotionError
+from fcm.fit.options import FitOptions
+from fcm.fit.rows import Rows
+from fcm.harmonic.autonomous import Autonomous
+from fcm.harmonic.mode import Mode, nonlinear_mode
+from fcm.harmonic.system import System
+from fcm.scene.draft import Number
+from fcm.scene.model import FloatArray, Measured, Scene
+
+STEP = 1e-5  # of a difference of the residual by a number, relative: the order is the fourth
+STENCIL = ((1, 2.0 / 3.0), (2, -1.0 / 12.0))
+AMPLITUDE_STEPS = 20  # of the secant method to where a displacement has the measured amplitude
+AMPLITUDE_CLOSE = 1e-10  # of the last of them, in ln a
+BEYOND = 3.0  # by which the mode is followed past the amplitudes measured
+
+
+def backbone_rows(
+    scene: Scene, numbers: Sequence[Number], harmonics: tuple[int, ...], data: Measured, options: FitOptions
+) -> Rows:
+    """Residuals (point, 2) of frequency and damping, and their rates by numbers of the scene.
+
+    Raises
+    ------
+    NoMotionError
+        If the mode is not found at the least amplitude.
+    ModeError
+        If there is no such mode.
+    """
+    system = System(scene, harmonics)
+    found = _Followed(system, data)
+    assert data.damping is not None
+    units = backbone_errors(data, options)
+    y = np.column_stack((data.frequency, data.damping))
+    residual, rates = np.zeros(y.shape), np.zeros((*y.shape, len(numbers)))
+    unreached = np.zeros(data.points)
+    moved = [_moved(scene, number, harmonics, found.problem) for number in numbers]
+    known = np.isfinite(y)
+    for i, amplitude in enumerate(data.amplitude.tolist()):
+        z, reached = found.at(amplitude)
+        unreached[i] = float(not reached)
+        value = z[-3:-1]
+        residual[i] = np.where(known[i], (value - y[i]) / units[i], 0.0)
+        rates[i] = np.where(known[i], 1.0 / units[i], 0.0)[:, None] * found.rates(z, moved)
+    return Rows(residual, rates, unreached, int(known.sum()))
+
+
+def backbone_errors(data: Measured, options: FitOptions) -> FloatArray:
+    """Of frequencies and damping ratios, (point, 2): estimated ones, or those stated."""
+    if data.estimated is not None:
+        return data.estimated
+    assert data.damping is not None
+    of_frequency = options.backbone_error if data.frequency_error is None else data.frequency_error
+    of_damping = options.damping_error if data.damping_error is None else data.damping_error
+    each = (of_frequency * data.frequency, np.full(data.points, of_damping * data.damping.max()))
+    found: FloatArray = np.column_stack(each) / np.sqrt(data.weight[:, None])
+    return found
+
+
+class _Followed:
+    """A mode of the model over the amplitudes that were measured."""
+
+    def __init__(self, system: System, data: Measured) -> None:
+        self.dof = list(system.scene.modal.dofs).index(data.dof) if data.dof else None
+        self.system = system
+        low, high = float(data.amplitude.min()), float(data.amplitude.max())
+        if self.dof is not None:
+            low, high = self._modal_span(low, high, data.mode)
+        self.mode: Mode = nonlinear_mode(
+            system, data.mode, (low / BEYOND, high * BEYOND), system.scene.max_step
+        )
+        if not len(self.mode.path.z):
+            raise NoMotionError
+        self.problem: Autonomous = self.mode.problem
+        self.newton = Newton(self.problem)
+        self.ends = (float(self.mode.path.z[:, -1].min()), float(self.mode.path.z[:, -1].max()))
+        sizes = (
+            self.mode.amplitude if self.dof is None else np.array([self._size(z) for z in self.mode.path.z])
+        )
+        self.logs = np.log(sizes)
+
+    def _modal_span(self, low: float, high: float, number: int) -> tuple[float, float]:
+        """Modal amplitudes of displacements, as in the linear mode."""
+        from fcm.harmonic.mode import linear_modes
+
+        shape = abs(float(linear_modes(self.system, number)[0].Q @ self.system.linear.dofs[:, self.dof]))
+        if not shape > 0.0:
+            raise NoMotionError
+        return low / shape, high / shape
+
+    def _size(self, z: FloatArray, problem: Autonomous | None = None) -> float:
+        """The amplitude that was measured: modal, or the fundamental of a displacement."""
+        if self.dof is None:
+            return self.problem.modal_amplitude(z)
+        motion = (problem or self.problem).motion(z)
+        first = self.system.harmonics.index(1)
+        return motion.amplitude * abs(complex(motion.Q[first] @ self.system.linear.dofs[:, self.dof]))
+
+    def at(self, amplitude: float) -> tuple[FloatArray, bool]:
+        """The point of the mode with an amplitude, and whether the mode comes to it."""
+        target, points = np.log(amplitude), self.mode.path.z
+        sign = self.logs - target
+        crossed = np.flatnonzero(sign[:-1] * sign[1:] <= 0.0)
+        if not crossed.size:
+            return points[np.abs(sign).argmin()], False
+        i = int(crossed[0])
+        part = 0.0 if sign[i] == sign[i + 1] else sign[i] / (sign[i] - sign[i + 1])
+        z = self._solved(points[i] + part * (points[i + 1] - points[i]))
+        if z is None:
+            return points[i], False
+        for _ in range(AMPLITUDE_STEPS if self.dof is not None else 0):
+            off = target - np.log(self._size(z))
+            if abs(off) < AMPLITUDE_CLOSE:
+                break
+            there = self._solved(np.append(z[:-1], z[-1] + off))
+            if there is None:
+                break
+            z = there
+        return z, True
+
+    def _solved(self, guess: FloatArray) -> FloatArray | None:
+        """The point with the modal amplitude of a guess."""
+        newton = self.newton
+        self.problem.measure(guess)
+        newton.scale[:], newton.z[:], newton.row[:] = self.problem.scale, guess, np.eye(guess.size)[-1]
+        return np.array(newton.z) if newton.correct(1.0) else None
+
+    def rates(self, z: FloatArray, moved: Sequence[Moved]) -> FloatArray:
+        """Of frequency and damping by numbers, the measured amplitude held, (2, number)."""
+        self.problem.evaluate(z)
+        J = np.array(self.problem.jacobian)
+        right = np.column_stack([-J[:, -1], *(-one.rate(z) for one in moved)])
+        answers = np.linalg.solve(J[:, :-1], right)
+        by_log, by_number = answers[:, 0], answers[:, 1:]
+        found = by_number[-2:].copy()
+        if self.dof is not None:  # the modal amplitude changes so that the displacement does not
+            grown = self._growth(z, by_log, 1.0)
+            for k, (direction, one) in enumerate(zip(by_number.T, moved, strict=True)):
+                own = sum(weight * np.log(self._size(z, problem)) for weight, problem in one.terms)
+                found[:, k] -= by_log[-2:] * (self._growth(z, direction, 0.0) + own) / grown
+        return found
+
+    def _growth(self, z: FloatArray, direction: FloatArray, of_log: float) -> float:
+        """Of the logarithm of the measured amplitude along a direction."""
+        step = STEP * np.append(direction, of_log)
+        ends = [np.log(self._size(z + sign * step)) for sign in (1.0, -1.0)]
+        return float(ends[0] - ends[1]) / (2.0 * STEP)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """A mode with other values of a number: weights of a derivative, with the problems."""
+
+    terms: list[tuple[float, Autonomous]]
+
+    def rate(self, z: FloatArray) -> FloatArray:
+        """Of the residual by the number, at the same unknowns."""
+        total = np.zeros(z.size - 1)
+        for weight, problem in self.terms:
+            problem.evaluate(z)
+            total += weight * np.asarray(problem.residual)
+        return total
+
+
+def _moved(scene: Scene, number: Number, harmonics: tuple[int, ...], problem: Autonomous) -> Moved:
+    """With the values of a number on both sides; the structure's modes are the same in their order."""
+    value = number.value(scene)
+    step = STEP * (abs(value) or 1.0)
+    terms = []
+    for k, weight in STENCIL:
+        for sign in (1.0, -1.0):
+            system = System(number.put(scene, value + sign * k * step), harmonics)
+            terms.append((sign * weight / step, Autonomous(system, problem.guess)))
+    return Moved(terms)

@@ -1,0 +1,111 @@
+r"""What a fit tells: numbers, their standard errors and intervals, correlations, and what is not told.
+
+With the residuals r of N components in units of their errors, and their rates J by the k unknowns, the
+covariance of the unknowns is
+
+    C = s^2 (J^T J)^-1,    s^2 = r^T r / (N - k)
+
+It holds where the errors of the points are independent, and as large as stated or estimated but for one
+common factor. Intervals are those of Student's distribution with N - k degrees of freedom.
+Source: Seber and Wild, "Nonlinear Regression" (1989), section 2.1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from fcm.fit.options import FIT, FitOptions
+from fcm.fit.parameters import Parameters
+from fcm.fit.rows import Rows
+from fcm.scene.model import FloatArray
+
+RANK = 1e-10  # of the greatest singular value, below which a combination is not seen at all
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The numbers with which the residuals are least.
+
+    values, error: (number,), the standard error in the number's unit; interval: (number, 2); correlation:
+    (number, number), NaN beside a number without effect; without_effect, untold: (number,) whether; alike:
+    pairs that are not told apart, with the exponents of the combination that is.
+    """
+
+    values: FloatArray
+    error: FloatArray
+    interval: FloatArray
+    correlation: FloatArray
+    without_effect: FloatArray
+    untold: FloatArray
+    at_bound: FloatArray
+    alike: tuple[tuple[int, int, float], ...]
+
+
+def estimated(parameters: Parameters, values: FloatArray, rows: Rows, options: FitOptions = FIT) -> Estimate:
+    """Of the rows at the numbers with which they are least."""
+    rates = parameters.rates(values)
+    J = rows.rates * rates
+    count = J.shape[-1]
+    effect = np.abs(J).max(axis=(0, 1), initial=0.0)
+    told = np.flatnonzero(effect > options.effect)
+    covariance = np.full((count, count), np.nan)
+    freedom = max(rows.independent - told.size, 1)
+    if told.size:
+        covariance[np.ix_(told, told)] = _covariance(rows.residual, J[:, :, told], freedom)
+    spread = np.sqrt(np.where(np.isnan(np.diag(covariance)), np.inf, np.diag(covariance)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = covariance / np.outer(spread, spread)
+    reach = student.ppf(0.5 + 0.5 * options.confidence, freedom) * spread
+    x = parameters.unknowns(values)
+    with np.errstate(over="ignore", invalid="ignore"):
+        ends = np.column_stack((_values(parameters, x - reach), _values(parameters, x + reach)))
+    without = np.ones(count)
+    without[told] = 0.0
+    relative = np.where(
+        parameters.log > 0.0, spread, spread * parameters.unit / np.maximum(abs(values), 1e-300)
+    )
+    close = [np.isclose(values, end, rtol=1e-4, atol=0.0) for end in (parameters.low, parameters.high)]
+    pairs = _alike(J[:, :, told].reshape(J.shape[0] * J.shape[1], told.size), options)
+    alike = tuple((int(told[i]), int(told[j]), power) for i, j, power in pairs)
+    return Estimate(
+        values=values,
+        error=spread * rates,
+        interval=ends,
+        correlation=correlation,
+        without_effect=without,
+        untold=((relative > options.untold) & (without == 0.0)).astype(float),
+        at_bound=(close[0] | close[1]).astype(float),
+        alike=alike,
+    )
+
+
+def _values(parameters: Parameters, x: FloatArray) -> FloatArray:
+    """The numbers of unknowns that may be without an end."""
+    return np.where(parameters.log > 0.0, np.exp(np.where(parameters.log > 0.0, x, 0.0)), x * parameters.unit)
+
+
+def _covariance(residual: FloatArray, J: FloatArray, freedom: int) -> FloatArray:
+    """C (number, number); infinite along a combination that the points do not see."""
+    flat = J.reshape(-1, J.shape[-1])
+    size = np.sqrt((flat**2).sum(axis=0))
+    _, singular, V = np.linalg.svd(flat / size, full_matrices=False)
+    seen = singular > RANK * singular.max(initial=0.0)
+    inverse = (V[seen].T / singular[seen] ** 2) @ V[seen]
+    found: FloatArray = inverse / np.outer(size, size) * float((residual**2).sum()) / freedom
+    hidden = np.abs(V[~seen]).max(axis=0, initial=0.0) > np.sqrt(RANK)
+    found[np.diag_indices(len(found))] = np.where(hidden, np.inf, np.diag(found))
+    return found
+
+
+def _alike(J: FloatArray, options: FitOptions) -> list[tuple[int, int, float]]:
+    """Pairs whose effects differ by hardly more than a factor: i, j, and p of i times j to the power of p.
+
+    Numbers a and b with parallel columns J_a = p J_b are seen as b a^p alone.
+    """
+    size = np.sqrt((J**2).sum(axis=0))
+    cosine = J.T @ J / np.outer(size, size)
+    pairs = [(i, j) for i in range(len(size)) for j in range(i) if abs(cosine[i, j]) > options.alike]
+    return [(j, i, float(np.sign(cosine[i, j]) * size[i] / size[j])) for i, j in pairs]

@@ -1,0 +1,335 @@
+r"""Residuals of a measured response: how far each point is from the nearest branch of the model's.
+
+A point y = (omega, A), or (omega, Re A, Im A) where the phase was measured, is compared with the curve
+c(s) = (omega, A) of the model, both in units of their errors. Its residual is c(s) - y at the nearest point
+of the curve, where (c - y) . c' = 0. Folds and jumps need no care then: a curve has a nearest point where the
+amplitude is no function of the frequency. When a number p of the model changes, the curve moves by
+
+    dc = c_z . w,    R_z w = -R_p,    t . w = 0
+
+with the residual R(z) of the balance and the direction t of the curve; of this the part along the curve moves
+no distance. With small errors of the frequency it is the ordinary difference of amplitudes.
+Source: orthogonal distance regression, as in Boggs, Byrd and Schnabel, SIAM J. Sci. Stat. Comput. 8 (1987).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.continuation.corrector import Newton
+from fcm.fit.options import NEAREST, FitOptions, NearestOptions
+from fcm.fit.rows import Rows
+from fcm.harmonic.balance import Balance
+from fcm.harmonic.by_number import Rates, growth_of, rates_of
+from fcm.harmonic.record import recorded
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import traced
+from fcm.harmonic.whole import jacobian_of
+from fcm.scene.draft import LEVEL, number_of
+from fcm.scene.model import FloatArray, Measured, Scene
+
+ComplexArray = npt.NDArray[np.complex128]
+POWER = {"displacement": 0, "velocity": 1, "acceleration": 2}  # of i omega
+
+
+class NoMotionError(ArithmeticError):
+    """No response of the model is found in the range of the data."""
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Of measured points, (point,): of frequencies and of amplitudes."""
+
+    frequency: FloatArray
+    amplitude: FloatArray
+
+
+def errors_of(data: Measured, blurred: bool, options: FitOptions) -> Errors:
+    """Those that are stated, or estimated; or, while a start is sought, parts of the extent of the data."""
+    top = float(data.amplitude.max())
+    if blurred:
+        width = max(float(np.ptp(data.frequency)), 1e-3 * float(data.frequency.max()))
+        return Errors(
+            np.full(data.points, options.blurred * width), np.full(data.points, options.blurred * top)
+        )
+    of_frequency = options.frequency_error if data.frequency_error is None else data.frequency_error
+    if data.estimated is not None:
+        return Errors(of_frequency * data.frequency, data.estimated[:, 0])
+    of_amplitude = options.amplitude_error if data.amplitude_error is None else data.amplitude_error
+    return Errors(of_frequency * data.frequency, of_amplitude * top / np.sqrt(data.weight))
+
+
+class Observed:
+    """What was measured, of a solution of the balance: (omega, A) or (omega, Re A, Im A), and its rates."""
+
+    def __init__(self, data: Measured, system: System) -> None:
+        self.balance = system.balance()
+        self.dof = list(system.scene.modal.dofs).index(data.dof)
+        self.first = system.harmonics.index(1)
+        self.power = POWER[data.quantity]
+        self.phased = data.phase is not None
+        self.fundamental = self.phased or self.power > 0
+
+    def along(self, z: FloatArray, direction: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Of the solution that was evaluated last, and its rates along a direction (unknown + 1,)."""
+        self.balance.report(z, np.ascontiguousarray(direction))
+        shown, d, j = self.balance.shown, self.dof, self.first
+        X, dX = complex(shown.re[j, d], shown.im[j, d]), complex(shown.d_re[j, d], shown.d_im[j, d])
+        value = self._measured(z[-1], X, dX, direction[-1], self.balance.output[d], self.balance.growth[d])
+        return value
+
+    def by_number(self, z: FloatArray, direction: FloatArray, X: ComplexArray) -> FloatArray:
+        """Rates of it where the solution moves in a direction, and displacements besides by X."""
+        self.balance.report(z, np.ascontiguousarray(direction))
+        shown, d, j = self.balance.shown, self.dof, self.first
+        growth = self.balance.growth[d] + growth_of(self.balance, X)[d]
+        dX = complex(shown.d_re[j, d], shown.d_im[j, d]) + X[j, d]
+        now = complex(shown.re[j, d], shown.im[j, d])
+        return self._measured(z[-1], now, dX, direction[-1], self.balance.output[d], growth)[1]
+
+    def _measured(
+        self, omega: float, X: complex, dX: complex, d_omega: float, amplitude: float, growth: float
+    ) -> tuple[FloatArray, FloatArray]:
+        if not self.fundamental:
+            return np.array([omega, amplitude]), np.array([d_omega, growth])
+        turn = 1j * (1j * omega) ** self.power  # amplitudes are those of sin(omega t + phase)
+        value = turn * X
+        rate = turn * dX + self.power * d_omega / omega * value
+        if self.phased:
+            return np.array([omega, value.real, value.imag]), np.array([d_omega, rate.real, rate.imag])
+        size = abs(value)
+        return np.array([omega, size]), np.array([d_omega, (value.conjugate() * rate).real / (size or 1.0)])
+
+    def of_path(self, omega: FloatArray, X: ComplexArray, amplitude: FloatArray) -> FloatArray:
+        """The same of the points of a curve, (point, component)."""
+        if not self.fundamental:
+            return np.column_stack((omega, amplitude[:, self.dof]))
+        value = 1j * (1j * omega) ** self.power * X[:, self.first, self.dof]
+        parts = (value.real, value.imag) if self.phased else (np.abs(value),)
+        return np.column_stack((omega, *parts))
+
+
+def measured_points(data: Measured) -> FloatArray:
+    """y (point, component)."""
+    if data.phase is None:
+        return np.column_stack((data.frequency, data.amplitude))
+    value = data.amplitude * np.exp(1j * data.phase)
+    return np.column_stack((data.frequency, value.real, value.imag))
+
+
+def forced_rows(
+    scene: Scene,
+    keys: Sequence[str],
+    harmonics: tuple[int, ...],
+    data: Measured,
+    errors: Errors,
+    options: FitOptions,
+) -> Rows:
+    """Residuals of the points of a data set, and their rates by numbers of the scene.
+
+    Raises
+    ------
+    NoMotionError
+        If no response is found in the range of the data.
+    ValueError
+        If a number changes which rigid-body motions the structure has.
+    """
+    scene = replace(scene, frequency_range=range_of(data, options))
+    system = System(scene, harmonics)
+    observed = Observed(data, system)
+    rates = [rates_of(system, key) for key in keys]
+    units = _units(data, errors)
+    y = measured_points(data) / units
+    residual, by_number = np.empty(y.shape), np.zeros((*y.shape, len(keys)))
+    unreached = np.zeros(data.points)
+    for level, rows in _by_level(data.level, options.levels):
+        curve = _curve(scene, level, harmonics, observed)
+        for i in rows:
+            nearest = Nearest(observed, units[i], y[i], float(data.level[i]))
+            z = nearest.found(*curve.start(y[i], units[i]))
+            residual[i] = nearest.at(z)[0] - y[i]
+            by_number[i] = nearest.rates(z, rates)
+            low, high = scene.frequency_range
+            unreached[i] = float(not low < z[-1] < high)
+    return Rows(residual, by_number, unreached, data.points * (y.shape[1] - 1))
+
+
+def range_of(data: Measured, options: FitOptions) -> tuple[float, float]:
+    """The frequencies that are traced for a data set."""
+    low, high = float(data.frequency.min()), float(data.frequency.max())
+    beyond = options.margin * (high - low or high)
+    return max(low - beyond, 0.5 * low), high + beyond
+
+
+def _units(data: Measured, errors: Errors) -> FloatArray:
+    """Of the components of each point, (point, component)."""
+    parts = [errors.frequency] + [errors.amplitude] * (1 if data.phase is None else 2)
+    return np.column_stack(parts)
+
+
+def _by_level(level: FloatArray, most: int) -> list[tuple[float, npt.NDArray[np.intp]]]:
+    """Levels of the forces to trace, and the points that begin from each: those next to it."""
+    apart = np.unique(level)
+    if apart.size > most:
+        apart = np.geomspace(apart[0], apart[-1], most)
+    nearest = np.abs(np.log(level[:, None] / apart)).argmin(axis=1)
+    return [(float(one), rows) for k, one in enumerate(apart) if (rows := np.flatnonzero(nearest == k)).size]
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """Segments of the branches of a response: ends of each, (segment, component), and unknowns there."""
+
+    begin: FloatArray
+    end: FloatArray
+    z_begin: FloatArray
+    z_end: FloatArray
+
+    def start(self, y: FloatArray, unit: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The unknowns on the segment next to a point, which is in units; an end of it, and its direction."""
+        a, b = self.begin / unit, self.end / unit
+        along = b - a
+        length = np.maximum((along**2).sum(axis=1), 1e-300)
+        part = np.clip(((y - a) * along).sum(axis=1) / length, 0.0, 1.0)
+        i = int((((a + part[:, None] * along) - y) ** 2).sum(axis=1).argmin())
+        direction = self.z_end[i] - self.z_begin[i]
+        end = self.z_begin[i] if part[i] < 0.5 else self.z_end[i]
+        return self.z_begin[i] + part[i] * direction, end, direction
+
+
+def _curve(scene: Scene, level: float, harmonics: tuple[int, ...], observed: Observed) -> _Curve:
+    """The response at a level of the forces."""
+    number = number_of(scene, LEVEL)
+    assert number is not None
+    system = System(number.put(scene, level), harmonics)
+    paths = [path for path in traced(system).branches.paths if len(path.z) > 1]
+    if not paths:
+        raise NoMotionError
+    record = recorded(system, paths)
+    c = observed.of_path(record.z[:, -1], record.X, record.amplitude)
+    inside = np.flatnonzero(np.diff(record.path) == 0)
+    return _Curve(c[inside], c[inside + 1], record.z[inside], record.z[inside + 1])
+
+
+class Nearest:
+    """The nearest point of the response to a measured one, at a level of the forces."""
+
+    def __init__(
+        self,
+        observed: Observed,
+        unit: FloatArray,
+        y: FloatArray,
+        level: float,
+        options: NearestOptions = NEAREST,
+    ) -> None:
+        self.observed, self.unit, self.y, self.options = observed, unit, y, options
+        self.newton = Newton(observed.balance)
+        observed.balance.load = level
+
+    def found(self, start: FloatArray, end: FloatArray, direction: FloatArray) -> FloatArray:
+        """z (unknown + 1,): by steps along the curve to where the way to the point is across it.
+
+        Raises
+        ------
+        NoMotionError
+            If the curve is not met again, not even at an end of the segment where it was.
+        """
+        self.newton.problem.measure(start)
+        row = direction / np.asarray(self.newton.problem.scale)
+        row /= np.linalg.norm(row)
+        z = self._corrected(start, row)
+        z = self._corrected(end, row) if z is None else z
+        if z is None:
+            raise NoMotionError
+        for _ in range(self.options.steps):
+            value, along = self.at(z)
+            tangent, scale = np.array(self.newton.tangent), np.array(self.newton.scale)
+            square = float(along @ along)
+            if not square > 0.0:
+                break
+            step = float((self.y - value) @ along) / square
+            if abs(step) * np.sqrt(square) < self.options.close:
+                break
+            step = float(np.clip(step, -self.options.longest, self.options.longest))
+            further = self._nearer(z, step, tangent, scale, float(((value - self.y) ** 2).sum()))
+            if further is None:
+                break
+            z = further
+        return z
+
+    def _nearer(
+        self, z: FloatArray, step: float, tangent: FloatArray, scale: FloatArray, before: float
+    ) -> FloatArray | None:
+        """A point along the curve that is nearer; a step that leads further away is halved."""
+        for _ in range(self.options.halvings):
+            there = self._corrected(z + step * scale * tangent, tangent)
+            if there is not None and ((self.at(there)[0] - self.y) ** 2).sum() < before:
+                return there
+            step *= 0.5
+        self._corrected(z, tangent)
+        return None
+
+    def _corrected(self, z: FloatArray, row: FloatArray) -> FloatArray | None:
+        newton = self.newton
+        newton.problem.measure(z)
+        newton.scale[:], newton.z[:], newton.row[:] = newton.problem.scale, z, row
+        return np.array(newton.z) if newton.correct(1.0) else None
+
+    def at(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What is measured there and its rates along the curve, both in units of the errors."""
+        self.observed.balance.evaluate(z)
+        direction = np.asarray(self.newton.tangent) * np.asarray(self.newton.scale)
+        value, along = self.observed.along(z, direction)
+        return value / self.unit, along / self.unit
+
+    def rates(self, z: FloatArray, rates: Sequence[Rates]) -> FloatArray:
+        """Rates of the nearest point by numbers, across the curve, (component, number)."""
+        _, along = self.at(z)
+        balance: Balance = self.observed.balance
+        scale, tangent = np.asarray(self.newton.scale), np.asarray(self.newton.tangent)
+        by = [one.here(balance, z) for one in rates]
+        matrix = np.vstack((jacobian_of(balance) * scale / scale[:-1, None], tangent))
+        right = np.column_stack([np.append(-R_p / scale[:-1], 0.0) for R_p, _ in by])
+        moved = np.linalg.solve(matrix, right) * scale[:, None]
+        found = np.column_stack(
+            [self.observed.by_number(z, w, X) / self.unit for w, (_, X) in zip(moved.T, by, strict=True)]
+        )
+        square = float(along @ along)
+        if square > 0.0:
+            found -= np.outer(along, along @ found) / square
+        return found
+
+
+def sampled(
+    scene: Scene,
+    like: Measured,
+    dof: str,
+    level: float,
+    count: int,
+    harmonics: tuple[int, ...],
+    options: FitOptions,
+) -> Measured:
+    """Points of the model's response as if they had been measured in the range of a data set.
+
+    Raises
+    ------
+    NoMotionError
+        If no response is found there, or nothing moves.
+    """
+    scene = replace(scene, frequency_range=range_of(like, options))
+    error = like.amplitude_error
+    if like.estimated is not None:
+        error = float(np.sqrt((like.estimated[:, 0] ** 2).mean())) / float(like.amplitude.max())
+    measured = replace(like, dof=dof, phase=None, estimated=None, amplitude_error=error)
+    observed = Observed(measured, System(scene, harmonics))
+    c = _curve(scene, level, harmonics, observed).begin
+    c = c[(c[:, 0] >= like.frequency.min()) & (c[:, 0] <= like.frequency.max())]
+    c = c[np.unique(np.linspace(0, len(c) - 1, min(count, len(c))).astype(np.intp))] if len(c) else c
+    if not len(c) or not c[:, 1].max() > 0.0:
+        raise NoMotionError
+    ones = np.ones(len(c))
+    return replace(measured, frequency=c[:, 0], amplitude=c[:, 1], weight=ones, level=level * ones)

@@ -1,0 +1,73 @@
+"""What decides how numbers are fitted: errors taken for granted, starts, and when a number is not told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """How numbers are fitted.
+
+    amplitude_error : of a measured amplitude, relative to the greatest of its data, where nothing is said.
+    frequency_error : of a measured frequency of a response, relative; as good as none.
+    backbone_error : of a measured frequency of a backbone, relative.
+    damping_error : of a measured damping ratio, relative to the greatest of its data.
+    blurred : errors of both while a start is sought, relative to the extent of the data.
+    starts : how many are tried, the numbers of the scene first.
+    agreeing : starts that lead to the same numbers, after which no further one is tried.
+    same : relative difference of numbers that are the same.
+    equal : relative difference of costs that are the same.
+    finalists : starts whose numbers are then fitted to all points.
+    few_points : of each data while a start is sought.
+    starting, finishing : evaluations of a start, and of a finalist.
+    margin : of the range that is traced, on both sides of the data, relative to their width.
+    span : from which part of a number to which multiple it may go without bounds.
+    levels : of the forces that are traced where every point has its own.
+    effect : rate in units of the errors, by a factor e of a number, below which it has none.
+    untold : standard error of a number, relative, from which it is not told.
+    alike : correlation from which two numbers are not told apart.
+    confidence : of the intervals.
+    reweighted : times that errors which are not stated are estimated, and the fit is made again.
+    """
+
+    amplitude_error: float = 0.01
+    frequency_error: float = 1e-6
+    backbone_error: float = 1e-3
+    damping_error: float = 0.05
+    blurred: float = 0.02
+    starts: int = 8
+    agreeing: int = 2
+    same: float = 1e-2
+    equal: float = 1e-6
+    finalists: int = 2
+    few_points: int = 60
+    starting: int = 25
+    finishing: int = 60
+    margin: float = 0.1
+    span: float = 100.0
+    levels: int = 9
+    effect: float = 1e-3
+    untold: float = 0.5
+    alike: float = 0.98
+    confidence: float = 0.95
+    reweighted: int = 2
+
+
+@dataclass(frozen=True)
+class NearestOptions:
+    """How the nearest point of a curve is found.
+
+    steps : at most, along the curve.
+    close : of the last of them, in units of the errors.
+    longest : step along the curve, in its own scaled units.
+    halvings : of a step that leads further away.
+    """
+
+    steps: int = 30
+    close: float = 1e-6
+    longest: float = 0.1
+    halvings: int = 8
+
+
+FIT, NEAREST = FitOptions(), NearestOptions()

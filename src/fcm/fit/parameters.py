@@ -1,0 +1,113 @@
+"""The numbers that are fitted as the unknowns of least squares: in logarithms where they are positive."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import qmc
+
+from fcm.fit.options import FIT, FitOptions
+from fcm.scene.address import Address
+from fcm.scene.draft import Number, number_of
+from fcm.scene.model import FloatArray, Scene
+
+
+class FitError(ValueError):
+    """There is nothing to fit; the message says why."""
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Numbers of a scene.
+
+    start, low, high: (number,); log: (number,) whether the unknown is the number's logarithm; unit (number,):
+    of the unknowns of the others.
+    """
+
+    scene: Scene
+    numbers: tuple[Number, ...]
+    start: FloatArray
+    low: FloatArray
+    high: FloatArray
+    log: FloatArray
+    unit: FloatArray
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(number.key for number in self.numbers)
+
+    def unknowns(self, values: FloatArray) -> FloatArray:
+        """x of numbers."""
+        with np.errstate(divide="ignore"):  # a bound of 0
+            logs = np.log(np.where(self.log > 0.0, values, 1.0))
+        return np.where(self.log > 0.0, logs, values / self.unit)
+
+    def values(self, x: FloatArray) -> FloatArray:
+        """The numbers of unknowns."""
+        return np.where(self.log > 0.0, np.exp(np.where(self.log > 0.0, x, 0.0)), x * self.unit)
+
+    def rates(self, values: FloatArray) -> FloatArray:
+        """Derivatives of the numbers by their unknowns, (number,)."""
+        return np.where(self.log > 0.0, values, self.unit)
+
+    def at(self, values: FloatArray) -> Scene:
+        """The scene with these numbers as if they had been written in it."""
+        return with_numbers(self.scene, self.numbers, values)
+
+    def starts(self, count: int, seed: int = 1) -> Iterator[FloatArray]:
+        """Unknowns to begin with: the scene's numbers, then some spread evenly within the bounds."""
+        first = self.unknowns(self.start)
+        yield first
+        low, high = (self.unknowns(end) for end in (self.low, self.high))
+        low, high = (
+            np.where(np.isfinite(low), low, first - 1.0),
+            np.where(np.isfinite(high), high, first + 1.0),
+        )
+        for place in qmc.LatinHypercube(len(first), rng=seed).random(max(count - 1, 1)):
+            yield low + place * (high - low)
+
+
+def parameters_of(
+    scene: Scene, keys: Sequence[str], bounds: Sequence[tuple[float, float] | None], options: FitOptions = FIT
+) -> Parameters:
+    """The numbers with these keys; without bounds a positive one may go far up and down.
+
+    Raises
+    ------
+    FitError
+        If a number stands for several of a scene that differ and are not bounded.
+    """
+    found = [number_of(scene, key) for key in keys]
+    numbers = tuple(number for number in found if number is not None)
+    start, low, high = (np.empty(len(numbers)) for _ in range(3))
+    for i, (number, ends) in enumerate(zip(numbers, bounds, strict=True)):
+        values = [value / weight for _, value, weight in number.each(scene)]
+        start[i] = np.mean(values)
+        low[i], high[i] = ends or _wide(start[i], number, options)
+        start[i] = min(max(start[i], low[i]), high[i])
+    log = ((low > 0.0) & (start > 0.0)).astype(float)
+    unit = np.where(
+        start != 0.0, np.abs(start), np.where(np.isfinite(high), np.maximum(abs(low), abs(high)), 1.0)
+    )
+    return Parameters(scene, numbers, start, low, high, log, unit)
+
+
+def _wide(start: float, number: Number, options: FitOptions) -> tuple[float, float]:
+    """How far a number may go that has no bounds."""
+    if start > 0.0:
+        return start / options.span, start * options.span
+    if start == 0.0:
+        raise FitError(f"fit: bounds: give [from, to] for {number.key}, which is 0 in the scene")
+    return start * options.span, -start * options.span
+
+
+def with_numbers(scene: Scene, numbers: Sequence[Number], values: FloatArray) -> Scene:
+    """A scene of one curve with other values of some of its numbers."""
+    assert scene.draft is not None
+    more: dict[Address, float] = {}
+    for number, value in zip(numbers, values.tolist(), strict=True):
+        more |= number.values(value)
+    draft = scene.draft.fixed(scene, more)
+    return replace(scene.draft.curve(scene, {}, more), draft=draft, parameters={}, curves=())

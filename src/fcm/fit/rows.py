@@ -1,0 +1,45 @@
+"""Rows of a least-squares problem: residuals of measured points, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fcm.scene.model import FloatArray
+
+
+@dataclass(frozen=True)
+class Rows:
+    """residual (point, component) in units of the errors; rates (point, component, number), by the numbers.
+
+    unreached: (point,) whether the curve of the model does not come there, so that its end is taken.
+    independent: how many of the residuals are, as those of a response lie across its curve.
+    """
+
+    residual: FloatArray
+    rates: FloatArray
+    unreached: FloatArray
+    independent: int
+
+    @property
+    def cost(self) -> float:
+        return 0.5 * float((self.residual**2).sum())
+
+
+def joined(parts: Sequence[Rows]) -> Rows:
+    """Rows of several data; components that some have not are 0."""
+    most = max(part.residual.shape[1] for part in parts)
+
+    def wide(values: FloatArray) -> FloatArray:
+        missing = [(0, 0)] * values.ndim
+        missing[1] = (0, most - values.shape[1])
+        return np.pad(values, missing)
+
+    return Rows(
+        np.concatenate([wide(part.residual) for part in parts]),
+        np.concatenate([wide(part.rates) for part in parts]),
+        np.concatenate([part.unreached for part in parts]),
+        sum(part.independent for part in parts),
+    )

@@ -1,0 +1,121 @@
+"""Measured points over the curves of a response: those that were fitted, or of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.plot.errors import PlotError
+from fcm.units import EXCITED, UNIT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from fcm.plot.read import DrawnCurve
+
+FloatArray = npt.NDArray[np.float64]
+POWER = {"displacement": 0, "velocity": 1, "acceleration": 2}  # of the frequency, over a displacement
+NEEDED = ("data_frequency", "data_amplitude", "data_level", "data_dof", "data_quantity")
+SIZE, NEUTRAL = 4.0, "#404040"
+WORD = "measured"
+SAME = 1e-9  # relative: levels that are one
+
+
+@dataclass(frozen=True)
+class DrawnMeasured:
+    """Points of one measurement: frequencies in the unit of the curves, displacements."""
+
+    dof: str  # empty: of whichever is drawn
+    frequency: FloatArray
+    amplitude: FloatArray
+    level: FloatArray | None = None  # of the forces; None where it is not known
+
+
+def measured_of(variables: Any, unit: str) -> tuple[DrawnMeasured, ...]:
+    """The responses that a fit was made to, of the variables of a response file; none where it has none."""
+    if not all(name in variables for name in NEEDED):
+        return ()
+    from fcm.plot.read import floats
+
+    frequency, amplitude, level = (floats(variables[name]) for name in NEEDED[:3])
+    dofs, kinds = (np.asarray(variables[name][:], dtype=str) for name in NEEDED[3:])
+    found = []
+    for i, kind in enumerate(kinds.tolist()):
+        if kind in POWER:
+            there = np.isfinite(frequency[i])
+            omega = frequency[i, there] * UNIT.get(unit, 1.0)
+            size = amplitude[i, there] / omega ** POWER[kind]
+            found.append(DrawnMeasured(str(dofs[i]), frequency[i, there], size, level[i, there]))
+    return tuple(found)
+
+
+def read_measured_points(path: Path, unit: str) -> DrawnMeasured:
+    """Points of a file of measurements, as of [fit]: frequencies in a unit, displacements.
+
+    Raises
+    ------
+    PlotError
+        If it cannot be read.
+    """
+    from fcm.scene.files import DataFileError, Files
+    from fcm.scene.measured_file import read_measured
+
+    try:
+        found = read_measured(path.name, Files(path.parent), ("frequency", "amplitude"), ())
+    except DataFileError as error:
+        raise PlotError(f"{path}: {error}") from None
+    if "angular_frequency" in found:
+        found["frequency"] = found["angular_frequency"] / UNIT.get(unit, 1.0)
+        if found["per_force"].any():
+            raise PlotError(f"{path}: its amplitudes are per unit of force: they are no displacements")
+    return DrawnMeasured("", found["frequency"], found["amplitude"])
+
+
+def draw_measured(
+    axes: Axes,
+    measured: Sequence[DrawnMeasured],
+    dof: str,
+    curves: Sequence[DrawnCurve],
+    colours: Sequence[str],
+) -> bool:
+    """Mark the points of a degree of freedom, in the colours of their curves; whether there are any."""
+    drawn = False
+    for one in measured:
+        if one.dof not in ("", dof):
+            continue
+        drawn = True
+        for number, rows in _by_curve(one, curves):
+            axes.plot(
+                one.frequency[rows], one.amplitude[rows], "+", markersize=SIZE, label=f"_{WORD}",
+                color=NEUTRAL if number is None or len(curves) == 1 else colours[number],
+            )  # fmt: skip
+    return drawn
+
+
+def _by_curve(
+    one: DrawnMeasured, curves: Sequence[DrawnCurve]
+) -> list[tuple[int | None, npt.NDArray[np.intp]]]:
+    """The number of a curve, and the points whose level it has; None for the other points."""
+    if one.level is None:
+        return [(None, np.arange(one.frequency.size))]
+    found: list[tuple[int | None, npt.NDArray[np.intp]]] = []
+    free = np.ones(one.frequency.size, dtype=bool)
+    for number, curve in enumerate(curves):
+        here = free & np.isclose(one.level, curve.parameters.get(EXCITED, np.nan), rtol=SAME, atol=0.0)
+        free &= ~here
+        found += [(number, np.flatnonzero(here))] if here.any() else []
+    return [*found, (None, np.flatnonzero(free))] if free.any() else found
+
+
+def name_measured(figure: Figure) -> None:
+    """Say above the axes what the crosses are."""
+    from matplotlib.lines import Line2D
+
+    handle = Line2D([], [], linestyle="none", marker="+", color=NEUTRAL, markersize=SIZE)
+    figure.legend([handle], [WORD], loc="outside upper right")

@@ -1,0 +1,173 @@
+"""The numbers of a scene fitted to measured data, and its response with them at the levels of the data."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fcm.fit.advice import advice
+from fcm.fit.backbone import backbone_errors
+from fcm.fit.estimate import Estimate, estimated
+from fcm.fit.forced import errors_of
+from fcm.fit.options import FIT
+from fcm.fit.parameters import FitError, Parameters, parameters_of
+from fcm.fit.solve import Solved, solved
+from fcm.harmonic.mode import ModeError
+from fcm.response.around import check_no_ring
+from fcm.response.mode import check_free
+from fcm.response.sweep import trace
+from fcm.response.wanted import ResponseError, wanted_of
+from fcm.results.fitted import Fitted, FittedData, FittedStart
+from fcm.results.result import INTERRUPTED, Response
+from fcm.run import Progress
+from fcm.run.progress import part
+from fcm.scene.draft import LEVEL, number_of
+from fcm.scene.errors import quoted
+from fcm.scene.model import FloatArray, Measured, Scene
+from fcm.units import EXCITED
+
+ROUNDS = 3  # of more harmonics, until the response takes no more than the fit had
+FITTING = 0.8  # share of the bar that is over when the numbers are found
+
+
+def fit(
+    scene: Scene,
+    *,
+    harmonics: int | Sequence[int] | None = None,
+    accuracy: float | None = None,
+    progress: Progress | None = None,
+    **options: Any,
+) -> Response:
+    """The numbers of a scene with a [fit], and its response with them, a curve for each level of the data.
+
+    With an accuracy the fit begins with one harmonic, and is repeated with as many as the response at the
+    numbers found takes.
+
+    Parameters
+    ----------
+    harmonics, accuracy
+        As of `trace`.
+    options
+        What else `trace` takes, for the response.
+
+    Raises
+    ------
+    ResponseError
+        If the model has no response near the data, or a fit of such a scene is not made.
+    KeyboardInterrupt
+        If nothing is found then; else the best numbers so far are returned, without a response.
+    """
+    assert scene.fit is not None
+    check_no_ring(scene, "fits")
+    if any(one.damping is not None for one in scene.fit.data):
+        check_free(scene)
+    begin, wanted = time.perf_counter(), wanted_of(scene, harmonics, accuracy)
+    plain = replace(scene, fit=None)
+    chosen, values = wanted.harmonics or (1,), None
+    for _ in range(ROUNDS):
+        parameters, found = _found(plain, scene, chosen, part(progress, 0.0, FITTING), values)
+        response = Response.without_curves(plain)
+        if not found.interrupted:
+            there = _at_levels(parameters, found.values, scene.fit.data)
+            asked = {"harmonics": chosen} if wanted.harmonics else {"accuracy": wanted.accuracy}
+            response = trace(there, progress=part(progress, FITTING, 1.0), **asked, **options)
+        more = tuple(sorted({h for curve in response.curves for h in curve.harmonics} | set(chosen)))
+        values = found.values
+        if found.interrupted or response.interrupted or len(more) == len(chosen):
+            break
+        chosen = more
+    response.fitted = _fitted(parameters, found, chosen, not found.interrupted)
+    response.seconds = time.perf_counter() - begin
+    return response
+
+
+def _found(
+    plain: Scene, scene: Scene, harmonics: tuple[int, ...], progress: Progress | None, near: FloatArray | None
+) -> tuple[Parameters, Solved]:
+    """The numbers with the harmonics chosen; near: those with fewer."""
+    assert scene.fit is not None
+    try:
+        parameters = parameters_of(plain, scene.fit.vary, scene.fit.bounds)
+        return parameters, solved(parameters, scene.fit.data, harmonics, tell=progress, begin=near)
+    except FitError as error:
+        raise ResponseError(f"{scene.name}: {error}") from None
+    except ModeError as error:
+        raise ResponseError(f"{scene.name}: fit: {error}") from None
+    except ValueError as error:
+        if "rigid-body" not in str(error):
+            raise
+        raise ResponseError(f"{scene.name}: fit: {error}; it cannot be fitted") from None
+
+
+def _at_levels(parameters: Parameters, values: FloatArray, data: Sequence[Measured]) -> Scene:
+    """The scene with the numbers found, a curve for each level that was measured."""
+    scene = parameters.at(values)
+    every = np.unique(np.concatenate([one.level for one in data]))
+    if every.size > FIT.levels:
+        every = np.geomspace(every[0], every[-1], FIT.levels)
+    number = number_of(scene, LEVEL)
+    assert number is not None
+    curves = tuple(
+        replace(number.put(scene, level), parameters={EXCITED: level}, draft=None, curves=())
+        for level in every.tolist()
+    )
+    return replace(scene, curves=curves, draft=None)
+
+
+def _fitted(parameters: Parameters, found: Solved, harmonics: tuple[int, ...], advise: bool) -> Fitted:
+    """What is told of the numbers."""
+    told = estimated(parameters, found.values, found.rows)
+    return Fitted(
+        keys=parameters.keys,
+        begin=parameters.start,
+        values=told.values,
+        error=told.error,
+        interval=told.interval,
+        confidence=FIT.confidence,
+        correlation=told.correlation,
+        without_effect=told.without_effect,
+        untold=told.untold,
+        at_bound=told.at_bound,
+        alike=told.alike,
+        data=[
+            FittedData(one, rows.residual, _errors(one), int(rows.unreached.sum()))
+            for one, rows in zip(found.data, found.parts, strict=True)
+        ],
+        starts=[FittedStart(one.begin, one.end, one.cost, one.finished) for one in found.starts],
+        harmonics=harmonics,
+        advice=_advice(parameters, found, told, harmonics) if advise else [],
+        interrupted=found.interrupted,
+    )
+
+
+def _errors(data: Measured) -> FloatArray:
+    """Of the points: of the amplitude, or of frequency and damping ratio."""
+    if data.damping is not None:
+        return backbone_errors(data, FIT)
+    return errors_of(data, False, FIT).amplitude[:, None]
+
+
+def _advice(parameters: Parameters, found: Solved, told: Estimate, harmonics: tuple[int, ...]) -> list[str]:
+    """Sentences on what to measure."""
+    doubtful = set(np.flatnonzero(told.without_effect + told.untold).tolist())
+    doubtful |= {k for i, j, _ in told.alike for k in (i, j)}
+    every = advice(parameters, found.values, found.rows, found.data, sorted(doubtful), harmonics)
+    said = [
+        f"{one.key}: a response at {quoted(one.dof)} with forces at a level of {one.level:.2g} would tell "
+        f"it to {100.0 * one.error:.2g} %"
+        for one in every
+    ]
+    without = [k for k in sorted(doubtful) if parameters.keys[k] not in {one.key for one in every}]
+    said += [f"{parameters.keys[k]}: no response at the levels looked at tells it" for k in without]
+    return said
+
+
+def reason_of(fitted: Fitted) -> str:
+    """Why a fit is not complete; empty if it is."""
+    return (
+        f"{INTERRUPTED} before the numbers were found; the best so far are told" if fitted.interrupted else ""
+    )

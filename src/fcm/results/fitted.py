@@ -1,0 +1,155 @@
+"""What a fit to measured data yields: numbers with their errors, residuals of the data, and its doubts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.model import FloatArray, Measured
+from fcm.units import in_unit
+
+
+@dataclass(frozen=True)
+class FittedData:
+    """A set of measured points beside the fitted model.
+
+    residual (point, component): model less measured, at the nearest point, in units of the errors; error
+    (point, component): these, of the amplitude, or of frequency and damping ratio of a backbone.
+    """
+
+    measured: Measured
+    residual: FloatArray
+    error: FloatArray
+    unreached: int  # points that the model's curve does not come to
+
+    @property
+    def misfit(self) -> float:
+        """Root mean square of the distances, relative to the greatest amplitude; of a backbone, of the
+        frequencies."""
+        of_backbone = self.measured.damping is not None
+        square = self.residual[:, 0] ** 2 if of_backbone else (self.residual**2).sum(axis=1)
+        size = self.measured.frequency if of_backbone else self.measured.amplitude.max()
+        return float(np.sqrt((square * (self.error[:, 0] / size) ** 2).mean()))
+
+    @property
+    def damping_misfit(self) -> float:
+        """The same of the damping ratios of a backbone, relative to the greatest; NaN of a response."""
+        if self.measured.damping is None:
+            return np.nan
+        off = self.residual[:, 1] * self.error[:, 1] / self.measured.damping.max()
+        return float(np.sqrt((off**2).mean()))
+
+    def summary(self) -> dict[str, Any]:
+        """For JSON."""
+        one = self.measured
+        return {
+            "file": one.file,
+            "dof": one.dof or None,
+            "kind": "response" if one.damping is None else "backbone",
+            "level": [float(one.level.min()), float(one.level.max())],
+            "points": one.points,
+            "misfit": self.misfit,
+            "damping_misfit": self.damping_misfit,
+            "unreached": self.unreached,
+        }
+
+
+@dataclass(frozen=True)
+class FittedStart:
+    """Where a search began and where it came to."""
+
+    begin: FloatArray
+    end: FloatArray
+    cost: float
+    finished: bool  # whether it was fitted to all points with the errors stated
+
+
+@dataclass
+class Fitted:
+    """The numbers of a scene with which its model is nearest to measured data."""
+
+    keys: tuple[str, ...]
+    begin: FloatArray  # (number,) in the scene
+    values: FloatArray
+    error: FloatArray  # (number,) standard error, infinite where it has none
+    interval: FloatArray  # (number, 2)
+    confidence: float
+    correlation: FloatArray  # (number, number)
+    without_effect: FloatArray  # (number,) 1 where the data do not change with it
+    untold: FloatArray  # (number,) 1 where its standard error is as large as itself, nearly
+    at_bound: FloatArray  # (number,) 1 where a bound keeps it
+    alike: tuple[tuple[int, int, float], ...]  # pairs told as one: i, j, p of i times j to the power p
+    data: list[FittedData]
+    starts: list[FittedStart]
+    harmonics: tuple[int, ...]
+    advice: list[str] = field(default_factory=list)  # measurements that would tell more
+    interrupted: bool = False
+
+    def problems(self) -> list[str]:
+        """What keeps a reader from relying on the numbers."""
+        said = []
+        for k, key in enumerate(self.keys):
+            if self.without_effect[k]:
+                said.append(f"{key} has no effect on these data: its value means nothing")
+            elif self.untold[k]:
+                said.append(
+                    f"{key} is hardly told by these data: its standard error is {self._relative(k)} of it"
+                )
+            if self.at_bound[k] and not self.without_effect[k]:
+                said.append(f"{key} lies at its bound: the data would have it beyond")
+        for i, j, power in self.alike:
+            one, other = self.keys[i], self.keys[j]
+            said.append(
+                f"{one} and {other} are not told apart: the data tell {one} * {other}^{power:.2g} alone"
+            )
+        for part in self.data:
+            if part.unreached:
+                name = part.measured.file
+                said.append(f"{name}: the model's curve does not come to {part.unreached} of its points")
+        return said
+
+    def _relative(self, k: int) -> str:
+        size = self.error[k] / abs(self.values[k]) if self.values[k] else np.inf
+        return f"{100.0 * size:.0f} %" if np.isfinite(size) else "many times"
+
+    def summary(self) -> dict[str, Any]:
+        """For JSON."""
+        numbers = {
+            key: {
+                "value": float(self.values[k]),
+                "standard_error": float(self.error[k]),
+                "interval": self.interval[k].tolist(),
+                "start": float(self.begin[k]),
+                "without_effect": bool(self.without_effect[k]),
+                "untold": bool(self.untold[k] or self.without_effect[k]),
+                "at_bound": bool(self.at_bound[k]),
+            }
+            for k, key in enumerate(self.keys)
+        }
+        return {
+            "numbers": numbers,
+            "confidence": self.confidence,
+            "correlation": self.correlation.tolist(),
+            "not_told_apart": [[self.keys[i], self.keys[j], power] for i, j, power in self.alike],
+            "data": [one.summary() for one in self.data],
+            "starts": [
+                {
+                    "begin": one.begin.tolist(),
+                    "end": one.end.tolist(),
+                    "cost": one.cost,
+                    "finished": one.finished,
+                }
+                for one in self.starts
+            ],
+            "harmonics": list(self.harmonics),
+            "problems": self.problems(),
+            "advice": self.advice,
+            "interrupted": self.interrupted,
+        }
+
+
+def frequencies(one: Measured, unit: str) -> FloatArray:
+    """Of measured points, in a unit."""
+    return in_unit(one.frequency, unit)

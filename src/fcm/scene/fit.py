@@ -1,0 +1,215 @@
+"""The [fit] table of a scene: numbers to be fitted, their bounds, and the measured data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fcm.scene.address import overlap
+from fcm.scene.draft import LEVEL, Draft, Number, number_in
+from fcm.scene.errors import choices, kind, quoted, shown
+from fcm.scene.files import DataFileError, Files
+from fcm.scene.keys import names
+from fcm.scene.measured_file import read_measured
+from fcm.scene.modal import UNITS
+from fcm.scene.model import Fit, FloatArray, Measured
+from fcm.scene.names import Names
+from fcm.scene.rules import FRACTION, POSITIVE, Rule, as_float
+from fcm.scene.section import Section
+
+MOST = 20  # numbers that are fitted together
+QUANTITIES = ("displacement", "velocity", "acceleration")
+RESPONSE_KEYS = ("dof", "level", "quantity", "amplitude_error", "frequency_error")
+BACKBONE_KEYS = ("dof", "mode", "frequency_error", "damping_error")
+MODE = Rule("a whole number of at least 1", low=1.0, whole=True)
+Column = tuple[str, Callable[[FloatArray], FloatArray], str]  # name, which values are wrong, what is right
+NOT_POSITIVE: Callable[[FloatArray], Any] = lambda values: ~(values > 0.0)  # noqa: E731
+NEGATIVE: Callable[[FloatArray], Any] = lambda values: ~(values >= 0.0)  # noqa: E731
+RIGHT = {
+    "frequency": (NOT_POSITIVE, "greater than 0"),
+    "angular_frequency": (NOT_POSITIVE, "greater than 0"),
+    "amplitude": (NEGATIVE, "at least 0"),
+    "weight": (NEGATIVE, "at least 0"),
+}
+
+
+def read_fit(top: Section, files: Files, draft: Draft, reported: Sequence[str], unit: str) -> Fit | None:
+    """What is to be fitted to which data; None without the table, or after a mistake."""
+    section = top.table("fit", "") if "fit" in top.data else None
+    if section is None:
+        return None
+    section.only(*names("fit"))
+    before = section.mistakes.count
+    for other in ("optimum", "sweep", "schedule"):
+        if other in top.data:
+            section.wrong("", f"is of no use with [{other}]: fit first, then use the numbers found")
+    numbers = _numbers(section, draft)
+    bounds = _bounds(section, numbers)
+    sections = section.tables("data")
+    if not sections and section.mistakes.count == before:
+        section.wrong("data", "missing; give [[fit.data]] with the file of measured points")
+    data = [_data(one, files, draft, reported, UNITS[unit]) for one in sections]
+    if section.mistakes.count > before:
+        return None
+    return Fit(tuple(n.key for n in numbers if n), tuple(bounds), tuple(one for one in data if one))
+
+
+def _numbers(section: Section, draft: Draft) -> list[Number | None]:
+    """The numbers to fit; None in the place of one that there is not."""
+    right = 'a list of numbers of the scene, as ["contact.shroud.mu"]'
+    if section.missing("vary", right):
+        return []
+    value = section.data["vary"]
+    keys = [value] if isinstance(value, str) else value
+    if not isinstance(keys, list | tuple) or not keys or not all(isinstance(key, str) for key in keys):
+        section.wrong("vary", f"must be {right}, is {kind(value)}")
+        return []
+    if len(keys) > MOST:
+        section.wrong("vary", f"has {len(keys)} numbers; there can be {MOST}")
+    found: list[Number | None] = []
+    for i, key in enumerate(keys):
+        path = f"{section.at('vary')}[{i}]"
+        if key == LEVEL:
+            section.mistakes.add(path, "the level of the forces belongs to the data: give it there")
+            found.append(None)
+            continue
+        number = number_in(draft, key, path, section.mistakes)
+        before = [address for one in found if one for address in one.addresses]
+        if number and any(overlap(a, b) for a in before for b in number.addresses):
+            section.mistakes.add(path, "sets the same number as another one")
+        found.append(number)
+    return found
+
+
+def _bounds(section: Section, numbers: Sequence[Number | None]) -> list[tuple[float, float] | None]:
+    """From and to of each number; None for those that have none."""
+    value = section.data.get("bounds")
+    if value is None or not numbers:
+        return [None] * len(numbers)
+    if not isinstance(value, list | tuple) or len(value) != len(numbers):
+        what = f"a list of {len(value)}" if isinstance(value, list | tuple) else kind(value)
+        section.wrong("bounds", f"must be [from, to] for each of the {len(numbers)} that vary, is {what}")
+        return [None] * len(numbers)
+    return [_pair(section, number, pair) for number, pair in zip(numbers, value, strict=True)]
+
+
+def _pair(section: Section, number: Number | None, pair: object) -> tuple[float, float] | None:
+    if number is None:
+        return None
+    ends = [as_float(one) for one in pair] if isinstance(pair, list | tuple) else []
+    low, high = ends if len(ends) == 2 else (None, None)
+    path = f"bounds of {number.key}"
+    if low is None or high is None:
+        section.wrong("bounds", f"{path} must be two numbers, [from, to]")
+        return None
+    faults = [fault for end in (low, high) if (fault := number.rule.fault(end))]
+    for fault in faults:
+        section.wrong("bounds", f"{path}: {fault}")
+    if not faults and not low < high:
+        section.wrong("bounds", f"{path} must rise, are [{shown(low)}, {shown(high)}]")
+    return (low, high)
+
+
+def _data(
+    section: Section, files: Files, draft: Draft, reported: Sequence[str], unit: float
+) -> Measured | None:
+    """One set of measured points."""
+    before = section.mistakes.count
+    backbone = "backbone" in section.data
+    if backbone and "file" in section.data:
+        section.wrong("backbone", "is given beside file; give one: a response, or a backbone")
+    for key in section.data:
+        allowed = BACKBONE_KEYS if backbone else RESPONSE_KEYS
+        if key in names("fit.data") and key not in (*allowed, "file", "backbone"):
+            section.wrong(key, f"means nothing with a {'backbone' if backbone else 'response'}")
+    section.only(*names("fit.data"))
+    dof = _dof(section, reported, needed=not backbone)
+    errors: dict[str, Any] = {
+        key: section.number(key, FRACTION) if key in section.data else None
+        for key in ("amplitude_error", "frequency_error", "damping_error")
+    }
+    level = _level(section, draft)
+    quantity = section.text("quantity", "displacement")
+    if quantity not in QUANTITIES:
+        section.wrong(
+            "quantity", f"must be {choices(QUANTITIES)}, is {quoted(quantity)}", quantity, QUANTITIES
+        )
+    mode = section.number("mode", MODE, 1.0)
+    name = section.text("backbone" if backbone else "file")
+    if section.mistakes.count > before:
+        return None
+    columns = _columns(section, files, name, backbone, level if isinstance(level, str) else "")
+    if columns is None:
+        return None
+    scaled = columns["angular_frequency"] if "angular_frequency" in columns else unit * columns["frequency"]
+    amplitude, count = columns["amplitude"], scaled.size
+    levels = columns[level] / _force(draft) if isinstance(level, str) else np.full(count, level)
+    if "per_force" in columns and columns["per_force"].any():
+        amplitude = amplitude * np.abs(levels) * _force(draft)
+    if not amplitude.max() > 0.0:
+        section.wrong("file" if not backbone else "backbone", f"{quoted(name)}: all amplitudes are 0")
+        return None
+    return Measured(
+        name, dof, scaled, amplitude, columns.get("weight", np.ones(count)), levels, columns.get("phase"),
+        columns.get("damping"), quantity, int(mode), **errors,
+    )  # fmt: skip
+
+
+def _columns(
+    section: Section, files: Files, name: str, backbone: bool, level: str
+) -> dict[str, FloatArray] | None:
+    """The columns of a file; None after a mistake."""
+    key = "backbone" if backbone else "file"
+    wanted = ["frequency", "amplitude", *(["damping"] if backbone else []), *([level] if level else [])]
+    try:
+        found = read_measured(name, files, wanted, ("weight",) if backbone else ("phase", "weight"))
+    except DataFileError as error:
+        for fault in error.faults:
+            section.wrong(key, fault)
+        return None
+    faults = []
+    if backbone and "damping" not in found:
+        faults.append("has no damping ratios; a backbone is read from .csv, .mat or .npz")
+    if level and level not in found:
+        faults.append(f"has no column {quoted(level)}; give the level as a number")
+    right = RIGHT | ({level: (NOT_POSITIVE, "greater than 0")} if level else {})
+    right |= {"amplitude": (NOT_POSITIVE, "greater than 0")} if backbone else {}
+    for column, (wrong, text) in right.items():
+        if column in found and (at := np.flatnonzero(wrong(found[column]))).size:
+            value = shown(float(found[column][at[0]]))
+            faults.append(f"{column} of point {at[0] + 1} must be {text}, is {value}")
+    for fault in faults:
+        section.wrong(key, f"{quoted(name)}: {fault}")
+    return None if faults else found
+
+
+def _dof(section: Section, reported: Sequence[str], needed: bool) -> str:
+    """The degree of freedom that was measured; empty where none is named."""
+    if "dof" not in section.data and not needed:
+        return ""
+    dof = section.text("dof")
+    found = Names(reported).find(dof) if reported and dof else dof
+    if dof and not found:
+        section.wrong("dof", f"there is no degree of freedom {quoted(dof)} in the results", dof, reported)
+    return found or dof
+
+
+def _level(section: Section, draft: Draft) -> float | str:
+    """The level of the scene's forces, or the column that has the force of each point."""
+    value = section.data.get("level", 1.0)
+    if not isinstance(value, str):
+        return section.number("level", POSITIVE, 1.0)
+    if not _force(draft):
+        section.wrong(
+            "level", "is a column of forces, which needs a scene with one [[force]] of an amplitude"
+        )
+    return value
+
+
+def _force(draft: Draft) -> float:
+    """The amplitude of the scene's one force, which its level multiplies; 0 where there are several."""
+    found = [one["amplitude"] for one in draft.parts["force"] if one["amplitude"]]
+    found += [one["acceleration"] for one in draft.parts["base"] if one.get("acceleration")]
+    return abs(float(found[0])) if len(found) == 1 else 0.0

@@ -1,0 +1,76 @@
+"""Standard errors, intervals and what is not told, of rows that are known functions."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fcm.fit.estimate import estimated
+from fcm.fit.rows import Rows
+
+POINTS = 40
+
+
+def parameters(count):
+    """Numbers that are their own unknowns."""
+    ones = np.ones(count)
+    return SimpleNamespace(
+        rates=lambda values: ones,
+        unknowns=lambda values: values,
+        log=np.zeros(count),
+        unit=ones,
+        low=np.full(count, -np.inf),
+        high=np.full(count, np.inf),
+    )
+
+
+def line(rng, spread=0.1):
+    """A straight line through points with errors; the least-squares fit of it."""
+    x = np.linspace(0.0, 1.0, POINTS)
+    design = np.column_stack((np.ones(POINTS), x))
+    y = design @ [1.0, 2.0] + spread * rng.standard_normal(POINTS)
+    values = np.linalg.lstsq(design, y, rcond=None)[0]
+    return design, values, Rows((design @ values - y)[:, None], design[:, None, :], np.zeros(POINTS), POINTS)
+
+
+def test_the_errors_are_those_of_a_straight_line_in_textbooks():
+    design, values, rows = line(np.random.default_rng(3))
+    x = design[:, 1] - design[:, 1].mean()
+    variance = (rows.residual**2).sum() / (POINTS - 2)
+    told = estimated(parameters(2), values, rows)
+    slope = np.sqrt(variance / (x**2).sum())
+    mean = np.sqrt(variance * (1.0 / POINTS + design[:, 1].mean() ** 2 / (x**2).sum()))
+    assert told.error == pytest.approx([mean, slope], rel=1e-10)
+    assert told.correlation[0, 1] == pytest.approx(-design[:, 1].mean() * slope / mean, rel=1e-9)
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    rng, held = np.random.default_rng(0), np.zeros(2)
+    draws = 1000
+    for _ in range(draws):
+        _, values, rows = line(rng)
+        told = estimated(parameters(2), values, rows)
+        held += (told.interval[:, 0] <= [1.0, 2.0]) & (told.interval[:, 1] >= [1.0, 2.0])
+    assert (held > 0.93 * draws).all() and (held < 0.98 * draws).all()
+
+
+def rows_with(columns):
+    rng = np.random.default_rng(1)
+    rates = np.column_stack(columns)
+    return Rows(0.01 * rng.standard_normal((POINTS, 1)), rates[:, None, :], np.zeros(POINTS), POINTS)
+
+
+def test_a_number_without_effect_has_no_error_and_spoils_no_other():
+    x = np.linspace(0.5, 1.0, POINTS)
+    alone = estimated(parameters(1), np.array([1.0]), rows_with([x]))
+    told = estimated(parameters(2), np.array([1.0, 1.0]), rows_with([x, np.zeros(POINTS)]))
+    assert told.without_effect.tolist() == [0.0, 1.0] and told.error[1] == np.inf
+    assert told.error[0] == pytest.approx(alone.error[0], rel=1e-12)
+
+
+def test_numbers_with_the_same_effect_are_not_told_apart():
+    x = np.linspace(0.5, 1.0, POINTS)
+    told = estimated(parameters(2), np.array([1.0, 1.0]), rows_with([x, 3.0 * x]))
+    ((i, j, power),) = told.alike
+    assert (i, j) == (0, 1) and power == pytest.approx(3.0)
+    assert np.isinf(told.error).all() or (told.error > 1e3).all()

@@ -1,0 +1,155 @@
+"""The [fit] table of a scene, and the files of measured points that it names."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from fcm.scene import SceneError
+from fcm.scene.load import load_scene
+
+from ..oscillator import oscillator
+
+RANGE = "[response]\nfrequency = [0.7, 1.7]\n"
+FIT = '[fit]\nvary = ["contact.shroud.mu"]\n[[fit.data]]\nfile = "a.csv"\ndof = "u"\n'
+POINTS = "frequency,amplitude\n0.9,1.5\n1.1,2.5\n1.3,1.0\n"
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Writes a scene with a [fit] and a file beside it; gives the path of the scene."""
+
+    def write(fit=FIT, points=POINTS, name="a.csv", scene=None):
+        content = points if isinstance(points, bytes) else points.encode()
+        (tmp_path / name).write_bytes(content)
+        path = tmp_path / "scene.toml"
+        path.write_text((oscillator(RANGE) if scene is None else scene) + fit)
+        return path
+
+    return write
+
+
+def mistakes(path):
+    with pytest.raises(SceneError) as caught:
+        load_scene(path)
+    return str(caught.value)
+
+
+def test_what_is_read(written):
+    fit = (
+        FIT.replace("vary", "bounds = [[0.1, 1.0]]\nvary")
+        + 'level = 2.0\nquantity = "velocity"\namplitude_error = 0.03\n'
+    )
+    points = "# of a sweep\namplitude;frequency;phase;weight\n1.5;0.9;0.1;1\n2.5;1.1;-1.5;0.5\n"
+    found = load_scene(written(fit, points)).fit
+    assert (found.vary, found.bounds) == (("contact.shroud.mu",), ((0.1, 1.0),))
+    (one,) = found.data
+    assert one.frequency.tolist() == [0.9, 1.1] and one.amplitude.tolist() == [1.5, 2.5]
+    assert one.phase.tolist() == [0.1, -1.5] and one.weight.tolist() == [1.0, 0.5]
+    assert one.level.tolist() == [2.0, 2.0] and one.quantity == "velocity" and one.amplitude_error == 0.03
+
+
+def test_frequencies_are_in_the_unit_of_the_scene(written):
+    scene = 'frequency_unit = "Hz"\n' + oscillator(RANGE)
+    (one,) = load_scene(written(scene=scene)).fit.data
+    assert one.frequency == pytest.approx(2.0 * np.pi * np.array([0.9, 1.1, 1.3]), rel=1e-15)
+
+
+def test_a_column_of_forces_is_a_level_of_each_point(written):
+    points = "frequency amplitude F\n0.9 1.5 2.0\n1.1 2.5 1.0\n"
+    scene = oscillator(RANGE, amplitude=4.0)
+    (one,) = load_scene(written(FIT + 'level = "F"\n', points, scene=scene)).fit.data
+    assert one.level.tolist() == [0.5, 0.25]
+
+
+def test_a_backbone(written):
+    fit = '[fit]\nvary = "contact.shroud.k_u"\n[[fit.data]]\nbackbone = "b.csv"\nmode = 2\n'
+    (one,) = load_scene(
+        written(fit, "amplitude,damping,frequency\n1,0.01,1.2\n2,0.02,1.1\n", "b.csv")
+    ).fit.data
+    assert one.damping.tolist() == [0.01, 0.02] and one.mode == 2 and one.dof == ""
+
+
+@pytest.mark.parametrize(
+    "fit, points, said",
+    [
+        (FIT.replace("shroud.mu", "shroud.muu"), POINTS, 'fit.vary[0]: there is no such number in the scene'),
+        (FIT.replace('shroud.mu"', 'shroud.mu", "contact.*.mu"'), POINTS, "sets the same number"),
+        (FIT.replace("contact.shroud.mu", "level"), POINTS, "the level of the forces belongs to the data"),
+        (FIT.replace("vary", "bounds = [[2.0, 1.0]]\nvary"), POINTS, "must rise, are [2, 1]"),
+        (FIT.replace("vary", "bounds = [[-1.0, 1.0]]\nvary"), POINTS, "must be at least 0, is -1"),
+        (FIT.replace('dof = "u"', 'dof = "w"'), POINTS, 'there is no degree of freedom "w"'),
+        (FIT + 'quantity = "speed"\n', POINTS, 'must be "displacement", "velocity", "acceleration"'),
+        (FIT + "mode = 1\n", POINTS, "means nothing with a response"),
+        (FIT + "level = 0.0\n", POINTS, "must be greater than 0, is 0"),
+        (FIT + 'level = "F"\n', POINTS, 'has no column "F"'),
+        (FIT, "frequency,amplitude\n0.9,1,5\n", "line 2 has 3 entries; the first line names 2"),
+        (FIT, "frequency,amplitude\n0.9,1.5 m\n", 'line 2: amplitude: "1.5 m" has "m" behind the number'),
+        (FIT, "frequency,amplitude\n-0.9,1.5\n", "frequency of point 1 must be greater than 0, is -0.9"),
+        (FIT, "f,amplitude\n0.9,1.5\n", 'has no column "frequency"; it has "f", "amplitude"'),
+        (FIT, "0.9,1.5\n1.0,2.0\n", "must name its columns, as frequency,amplitude"),
+        (FIT, "frequency,amplitude\n", "holds no points"),
+        (FIT, "", "is empty"),
+        (FIT, "frequency,amplitude\n1.0,0.0\n", "all amplitudes are 0"),
+        (FIT.replace("a.csv", "a.xls"), POINTS, "measured points are read from"),
+        ('[fit]\nvary = ["contact.shroud.mu"]\n', POINTS, "missing; give [[fit.data]]"),
+        (FIT + '[sweep]\n"contact.shroud.n_0" = [1.0]\n', POINTS, "is of no use with [sweep]"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_said(written, fit, points, said):
+    name = "a.xls" if "a.xls" in fit else "a.csv"
+    assert said in mistakes(written(fit, points, name))
+
+
+def test_arrays_of_npz_and_mat(written, tmp_path):
+    from scipy.io import savemat
+
+    arrays = {"frequency": np.array([0.9, 1.1]), "amplitude": np.array([[1.5], [2.5]]), "other": np.eye(3)}
+    np.savez(tmp_path / "b.npz", **arrays)
+    savemat(tmp_path / "b.mat", arrays)
+    for name in ("b.npz", "b.mat"):
+        (one,) = load_scene(written(FIT.replace("a.csv", name))).fit.data
+        assert one.frequency.tolist() == [0.9, 1.1] and one.amplitude.tolist() == [1.5, 2.5]
+    np.savez(tmp_path / "b.npz", **(arrays | {"amplitude": np.array([1.0, np.nan])}))
+    assert "amplitude[1] is nan" in mistakes(written(FIT.replace("a.csv", "b.npz")))
+
+
+def uff58(values, function=4, binary=None, even=True):
+    """A dataset 58 over 10, 10.5, ... Hz; binary: the byte order of struct."""
+    head = ["NONE"] * 5 + [f"{function:5d}{0:10d}{1:5d}{0:10d} NONE{1:10d}{3:4d} NONE{1:10d}{3:4d}"]
+    head += [f"{6:10d}{len(values):10d}{int(even):10d}{10.0:13.5e}{0.5:13.5e}{0.0:13.5e}"]
+    head += [f"{18:10d}{0:5d}{0:5d}{0:5d} NONE NONE"] * 4
+    rows = []
+    if binary is None:
+        for i, one in enumerate(values):
+            at = "" if even else f"{10.0 + 0.5 * i:13.5e}"
+            rows.append(f"{at}{one.real:20.12e}{one.imag:20.12e}")
+        text = "\n".join(["    -1", "    58", *head, *rows, "    -1", ""])
+        return text.encode()
+    data = b"".join(struct.pack(f"{binary}2d", one.real, one.imag) for one in values)
+    order = {"<": 1, ">": 2}[binary]
+    first = f"    58b{order:6d}{2:6d}{11:12d}{len(data):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+    return "\n".join(["    -1", first, *head, ""]).encode() + data + b"\n    -1\n"
+
+
+VALUES = (1.0 + 0.5j, 0.0 - 2.0j, -0.25 + 0.125j)
+
+
+@pytest.mark.parametrize("options", [{}, {"even": False}, {"binary": "<"}, {"binary": ">"}])
+@pytest.mark.parametrize("function", [4, 12])
+def test_functions_of_a_universal_file(written, options, function):
+    """Frequency response functions are per unit of the force, whose amplitude is 2 at a level of 3."""
+    scene = 'frequency_unit = "Hz"\n' + oscillator(RANGE, amplitude=2.0)
+    fit = FIT.replace("a.csv", "a.unv") + "level = 3.0\n"
+    (one,) = load_scene(written(fit, uff58(VALUES, function, **options), "a.unv", scene=scene)).fit.data
+    assert one.frequency == pytest.approx(2.0 * np.pi * np.array([10.0, 10.5, 11.0]), rel=1e-6)
+    assert one.amplitude == pytest.approx(np.abs(VALUES) * (6.0 if function == 4 else 1.0), rel=1e-12)
+    assert one.phase == pytest.approx(np.angle(VALUES), rel=1e-12)
+
+
+def test_a_universal_file_without_a_response_says_what_it_holds(written):
+    fit = FIT.replace("a.csv", "a.unv")
+    said = mistakes(written(fit, uff58(VALUES, 1), "a.unv"))
+    assert "has 0 responses over the frequency among its functions (a time response)" in said
+    cut = uff58(VALUES)[:-60] + b"\n    -1\n"
+    assert "says 3 values, and" in mistakes(written(fit, cut, "a.unv"))
