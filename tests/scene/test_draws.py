@@ -78,6 +78,7 @@ REFUSED = [
     ),
     ({"distribution": "rv_continuous", "count": 2}, "there is no distribution"),
     ({"distribution": 3, "count": 2}, "must be a string"),
+    ({"distribution": "", "count": 2}, 'distribution: is empty; name one of scipy.stats, such as "lognorm"'),
     ({"distribution": "lognorm", "count": 2}, '.s: missing; give a number'),
     ({"distribution": "expon", "sacle": 2, "count": 2}, 'sacle: unknown key; did you mean "scale"?'),
     ({"distribution": "expon", "scale": 0, "count": 2}, "scale: must be greater than 0, is 0"),

@@ -20,8 +20,8 @@ CASES = [
     ("titel", "x", 'titel: unknown key; did you mean "title"?'),
     ("a b", 1, '"a b": unknown key'),
     ("title", 3, "title: must be a string, is 3"),
-    ("frequency_unit", "hz", 'frequency_unit: must be "rad/s", "Hz", is "hz"; did you mean "Hz"?'),
-    ("frequency_unit", 2, 'frequency_unit: must be "rad/s", "Hz", is an integer'),
+    ("frequency_unit", "hz", 'frequency_unit: must be "rad/s" or "Hz", is "hz"; did you mean "Hz"?'),
+    ("frequency_unit", 2, 'frequency_unit: must be "rad/s" or "Hz", is an integer'),
     ("modal", GONE, "modal: missing; give a [modal] table"),
     ("modal", 3, "modal: must be a table, is 3"),
     ("modal", [{}], "modal: must be a table, is a list of 1; there is one of it: write [modal]"),
@@ -34,6 +34,7 @@ CASES = [
     ("modal.dofs", ["u", "\x1b[31m", "w.x"], 'modal.dofs[1]: "\\u001b[31m" is not a name'),
     ("modal.dofs", ["u", "v", "u"], 'modal.dofs: "u" is there 2 times'),
     ("modal.frequency", GONE, "modal.frequency: missing; give a list of numbers"),
+    ("modal.damping", "x", "must be a number for all modes, or a list with one for each, is the string"),
     (
         "modal.damping",
         GONE,
@@ -58,7 +59,7 @@ CASES = [
     ("modal.shapes", GONE, "modal.shapes: missing; give one list for each mode"),
     ("modal.shapes", [1.0, 2.0], "modal.shapes: must be a list of lists, one for each mode"),
     ("modal.shapes", [[1.0, 1, 1], 2], "modal.shapes[1]: must be a list of numbers, is 2"),
-    ("modal.shapes", [[1.0, 1, 1], [1, 2]], "modal.shapes[1]: has 2 numbers, but there are 3 dofs"),
+    ("modal.shapes", [[1.0, 1, 1], [1, 2]], "modal.shapes[1]: has 2 numbers, but dofs names 3"),
     ("modal.shapes", [[1.0, 1, 1]], "modal.shapes: has 1 row, but modal.frequency has 2"),
     ("modal.shapes", [[1.0, 1, inf], [1, 2, 3]], "modal.shapes[0][2]: must be finite, is inf"),
     ("contact", {}, "contact: must be a list of tables, is a table; write [[contact]]"),
@@ -265,7 +266,7 @@ def test_arrays_of_the_wrong_kind(data, mistakes, array):
 def test_without_a_schedule_there_must_be_a_range(data, mistakes, schedule):
     put(data, "schedule", schedule)
     del data["response"]["frequency"]
-    assert "response.frequency: missing; give a list of numbers" in mistakes(data)
+    assert "response.frequency: missing; give two numbers, [from, to], in rad/s" in mistakes(data)
     del data["response"]
     assert "response: missing; give a [response] table with frequency = [from, to]" in mistakes(data)
 

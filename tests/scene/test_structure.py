@@ -214,7 +214,7 @@ def test_a_node_and_a_direction_in_several_ways(name):
         ({"mass": 3}, "structure.mass: must be a file, or a list of rows, is 3"),
         ({"mass": [[1, 0], [0, 1]]}, "structure.mass: has 2 rows, but the stiffness has 3"),
         ({"mass": [[1, 0, 0], [0, 1]]}, "structure.mass[1]: has 2 numbers, but the first row has 3"),
-        ({"mass": [[1, 0, 0]]}, "structure.mass: must be square, has 1 rows and 3 columns"),
+        ({"mass": [[1, 0, 0]]}, "structure.mass: must be square, has 1 row and 3 columns"),
         ({"mass": [1, 2, float("nan")]}, "structure.mass[2]: must be finite"),
         ({"dofs": ["1x", "2x"]}, "structure.dofs: names 2 rows, but the stiffness has 3"),
         ({"dofs": ["1x", "1x", "2x"]}, 'structure.dofs: "1x" is there 2 times'),

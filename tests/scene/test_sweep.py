@@ -273,3 +273,10 @@ def test_a_contact_named_like_an_index_goes_before_the_index(data):
     data["contact"][0]["name"] = "1"
     (curve,) = swept(data, **{"contact.1.mu": [0.9]})
     assert [contact.mu for contact in curve.contacts] == [0.9, 0.3]
+
+
+def test_what_is_wrong_with_every_curve_is_said_once(data, mistakes):
+    for force in data["force"]:
+        force["amplitude"] = 0.0
+    said = mistakes(data | {"sweep": {"contact.shroud.n_0": [1.0, 2.0, 3.0]}})
+    assert said == "test.toml: the forces move no mode, so the response is zero"

@@ -16,7 +16,7 @@ from zlib import crc32
 
 import numpy as np
 
-from fcm.scene.errors import kind, quoted
+from fcm.scene.errors import counted, kind, quoted
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray
 from fcm.scene.rules import ANY, POSITIVE
@@ -136,6 +136,8 @@ def _distribution(table: Section) -> Quantile | None:
 
     name = table.text("distribution")
     if not name:
+        if table.data.get("distribution") == "":
+            table.wrong("distribution", 'is empty; name one of scipy.stats, such as "lognorm"')
         return None
     kinds = (stats.rv_continuous, stats.rv_discrete)
     found = getattr(stats, name, None) if name.isidentifier() else None
@@ -188,7 +190,7 @@ def read_correlation(section: Section) -> Correlation | None:
     if keys is None or matrix is None:
         return None
     if len(keys) != len(matrix):
-        table.wrong("matrix", f"has {len(matrix)} rows, but there are {len(keys)} keys")
+        table.wrong("matrix", f"has {counted(len(matrix), 'row')}, but there are {len(keys)} keys")
         return None
     return Correlation(keys, _factor(matrix))
 

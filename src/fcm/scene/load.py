@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -213,22 +214,36 @@ def _parts(
 
 
 def _check_curves(scene: Scene, mistakes: Mistakes) -> None:
-    """What can only be seen of a whole curve: that its forces and contacts move something."""
-    for curve in scene.each_curve():
+    """What can only be seen of a whole curve: that its forces and contacts move something.
+
+    What is wrong with every curve of a sweep is said once, as the sweep does not make it.
+    """
+    curves, found = scene.each_curve(), list[tuple[str, str]]()
+    for curve in curves:
         where = ", ".join(f"{key} = {value:g}" for key, value in curve.parameters.items())
         where = f"sweep with {where}" if where else ""
-        if check_diameters(curve, mistakes, where) and curve.has_range and not _moved(curve):
-            mistakes.add(where, "the forces move no mode, so the response is zero")
-        masses = curve.modal.mass
-        if masses.size and masses.max() > MASS_RATIO * masses.min():
-            low, high = masses.min(), masses.max()
-            what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
-            mistakes.add(where, f"{what}: beside the light ones nothing is left of the heavy ones")
         for contact in curve.contacts:
-            if not all(direction.any() for direction in contact.directions[:-1]):
-                mistakes.add(where, f"contact {quoted(contact.name)} has only zero tangential weights")
             check_plane(contact, mistakes, where)
+        if check_diameters(curve, mistakes, where):
+            found += [(where, what) for what in dict.fromkeys(_faults_of_curve(curve))]
+    count = Counter(what for _, what in found)
+    everywhere = [what for what in count if count[what] == len(curves)]
+    for where, what in [("", what) for what in everywhere] + [x for x in found if x[1] not in everywhere]:
+        mistakes.add(where, what)
     mistakes.raise_if_any()
+
+
+def _faults_of_curve(curve: Scene) -> Iterator[str]:
+    if curve.has_range and not _moved(curve):
+        yield "the forces move no mode, so the response is zero"
+    masses = curve.modal.mass
+    if masses.size and masses.max() > MASS_RATIO * masses.min():
+        low, high = masses.min(), masses.max()
+        what = f"the modal masses, from {low:g} to {high:g}, differ by more than {MASS_RATIO:g}"
+        yield f"{what}: beside the light ones nothing is left of the heavy ones"
+    for contact in curve.contacts:
+        if not all(direction.any() for direction in contact.directions[:-1]):
+            yield f"contact {quoted(contact.name)} has only zero tangential weights"
 
 
 def _moved(curve: Scene) -> bool:
@@ -246,7 +261,7 @@ def _unit(top: Section) -> str:
         return unit
     what = quoted(unit) if isinstance(unit, str) else kind(unit)
     word = unit if isinstance(unit, str) else ""
-    top.wrong("frequency_unit", f"must be {choices(UNITS)}, is {what}", word, UNITS)
+    top.wrong("frequency_unit", f"must be {' or '.join(map(quoted, UNITS))}, is {what}", word, UNITS)
     return "rad/s"
 
 

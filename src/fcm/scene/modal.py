@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import choices, kind
+from fcm.scene.errors import choices, counted, kind
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.keys import names
 from fcm.scene.model import FloatArray, Modal
@@ -174,14 +174,13 @@ def _right_size(
     before = section.mistakes.count
     width = len(rows[0]) if dofs is None else len(dofs)
     if len(rows) == width != modes and all(len(row) == modes for row in rows):
-        what = (
-            f"has {len(rows)} rows of {_numbers(len(rows[0]))}, but there are {modes} modes and {width} dofs"
-        )
+        has = f"has {len(rows)} rows of {_numbers(len(rows[0]))}"
+        what = f"{has}, but there are {counted(modes or 0, 'mode')} and {counted(width, 'dof')}"
         section.wrong("shapes", f"{what}: transpose it; shapes[i][j] is mode i at dofs[j]")
         return False
     for index, row in enumerate(rows):
         if len(row) != width:
-            section.wrong(f"shapes[{index}]", f"has {_numbers(len(row))}, but there are {width} dofs")
+            section.wrong(f"shapes[{index}]", f"has {_numbers(len(row))}, but dofs names {width}")
     if modes is not None and len(rows) != modes:
         section.wrong("shapes", f"has {_rows(len(rows))}, but modal.frequency has {modes}")
     return section.mistakes.count == before

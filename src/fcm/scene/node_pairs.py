@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fcm.scene.errors import choices, kind, quoted
+from fcm.scene.errors import choices, counted, kind, quoted
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.model import FloatArray
 from fcm.scene.names import DIRECTIONS, Names
@@ -174,7 +174,7 @@ def _of_each(section: Section, key: str, table: PairTable, files: Files) -> list
             return nothing
     numbers = section.numbers(value, section.at(key), RULES[key])
     if numbers is not None and count and len(numbers) != count:
-        section.wrong(key, f"must have one number for each of the {count} pairs, has {len(numbers)}")
+        section.wrong(key, f"must have one number for each of {counted(count, 'pair')}, has {len(numbers)}")
         return nothing
     return nothing if numbers is None else [float(number) for number in numbers]
 
@@ -208,7 +208,9 @@ def shares(section: Section, table: PairTable) -> list[dict[str, float]]:
         pairs = section.data["nodes"]
         known = count or (len(pairs) if _is_list(pairs) else 0)
         if given is not None and known and len(given) != known:
-            section.wrong("areas", f"must have one number for each of the {known} pairs, has {len(given)}")
+            section.wrong(
+                "areas", f"must have one number for each of {counted(known, 'pair')}, has {len(given)}"
+            )
         areas = None if given is None or len(given) != count else given.tolist()
     elif areas is not None and any(not area > 0.0 for area in areas):
         section.wrong("nodes", "its areas must be greater than 0")

@@ -166,7 +166,7 @@ def read_response(top: Section, section: Section | None, unit: str) -> tuple[tup
         section.wrong("max_step", step_fault(step))
     if "frequency" not in section.data and top.data.get("schedule"):
         return NO_RANGE, step
-    ends = section.vector("frequency", POSITIVE)
+    ends = section.vector("frequency", POSITIVE, f"two numbers, [from, to], in {unit}")
     if ends is None:
         return NO_RANGE, step
     if len(ends) != 2:

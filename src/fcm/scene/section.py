@@ -103,14 +103,16 @@ class Section:
         """A list of numbers; None after a mistake."""
         if self.missing(key, right):
             return None
-        return self.numbers(self.data[key], self.at(key), rule)
+        return self.numbers(self.data[key], self.at(key), rule, right)
 
-    def numbers(self, value: object, path: str, rule: Rule) -> FloatArray | None:
+    def numbers(
+        self, value: object, path: str, rule: Rule, right: str = "a list of numbers"
+    ) -> FloatArray | None:
         """The value as an array of numbers within the rule; None after a mistake."""
         if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
             value = value.tolist()
         if not isinstance(value, list | tuple | np.ndarray):
-            self.mistakes.add(path, f"must be a list of numbers, is {described(value)}")
+            self.mistakes.add(path, f"must be {right}, is {described(value)}")
             return None
         array = np.array(value if isinstance(value, np.ndarray) else _floats(value), dtype=np.float64)
         faulty = rule.faulty(array)[:, 0].tolist()
@@ -148,7 +150,7 @@ class Section:
 
     def weights(self, key: str, dofs: Names | None) -> FloatArray | None:
         """A degree of freedom, or a table of weights, as an array over the dofs; None after a mistake."""
-        if self.missing(key, "a degree of freedom, or a combination such as { tip = 1.0, neighbour = -1.0 }"):
+        if self.missing(key, f"a degree of freedom, or a combination such as {_combination(dofs)}"):
             return None
         return self.weights_in(self.data[key], key, dofs)
 
@@ -187,6 +189,16 @@ class Section:
             what = f"unknown degree of freedom {quoted(dof)}; {dofs.key} are {choices(dofs)}"
             self.wrong(key, what, dof, dofs)
         return not unknown
+
+
+def _combination(dofs: Names | None) -> str:
+    """An example of weights, with the names that the scene has.
+
+    >>> _combination(Names(("u", "2x"))), _combination(None)
+    ('{ u = 1.0, "2x" = -1.0 }', '{ tip = 1.0, neighbour = -1.0 }')
+    """
+    two = list(dofs)[:2] if dofs is not None and len(dofs) > 1 else ["tip", "neighbour"]
+    return "{{ {} = 1.0, {} = -1.0 }}".format(*map(bare, two))
 
 
 def _of_text(value: object) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from fcm.scene.entries import check_numbers, check_symmetric, symmetric
-from fcm.scene.errors import choices, kind, quoted, shown
+from fcm.scene.errors import choices, counted, kind, quoted, shown
 from fcm.scene.files import DataFileError, Files
 from fcm.scene.formats.labelled import Labelled
 from fcm.scene.keys import names
@@ -61,10 +61,10 @@ def read_structure(top: Section, files: Files) -> tuple[Names | None, Matrices |
     K, M = (in_order(section, key, one, dofs) for key, one in given.items())
     rows = None if K is None else K.shape[0]
     if K is not None and M is not None and M.shape[0] != rows:
-        section.wrong("mass", f"has {M.shape[0]} rows, but the stiffness has {rows}")
+        section.wrong("mass", f"has {counted(M.shape[0], 'row')}, but the stiffness has {rows}")
     sound = top.mistakes.count == read
     if dofs is not None and rows is not None and len(dofs) != rows:
-        section.wrong("dofs", f"names {len(dofs)} rows, but the stiffness has {rows}")
+        section.wrong("dofs", f"names {counted(len(dofs), 'row')}, but the stiffness has {rows}")
     read = top.mistakes.count
     for key, matrix in (("stiffness", K), ("mass", M)):
         check_symmetric(section, key, matrix, dofs)
@@ -132,7 +132,10 @@ def matrix_of(section: Section, key: str, value: Any, files: Files) -> Labelled 
         if matrix is None:
             return None
     if matrix.shape[0] != matrix.shape[1] or not matrix.shape[0]:
-        section.wrong(key, f"must be square, has {matrix.shape[0]} rows and {matrix.shape[1]} columns")
+        section.wrong(
+            key,
+            f"must be square, has {counted(matrix.shape[0], 'row')} and {counted(matrix.shape[1], 'column')}",
+        )
         return None
     return Labelled(matrix, rows) if check_numbers(section, key, matrix) else None
 
@@ -176,7 +179,7 @@ def _damping(section: Section, files: Files, rows: int | None, dofs: Names | Non
         return found
     C = in_order(section, "damping", matrix_of(section, "damping", value, files), dofs)
     if C is not None and rows is not None and C.shape[0] != rows:
-        section.wrong("damping", f"has {C.shape[0]} rows, but the stiffness has {rows}")
+        section.wrong("damping", f"has {counted(C.shape[0], 'row')}, but the stiffness has {rows}")
     check_symmetric(section, "damping", C, dofs)
     return found | {"C": None if C is None else symmetric(C)}
 
@@ -215,7 +218,7 @@ def _block(table: Section, key: str, files: Files, rows: int | None, dofs: Names
     given = matrix_of(table, key, table.data[key], files) if key in table.data else None
     block = in_order(table, key, given, dofs)
     if block is not None and rows is not None and block.shape[0] != rows:
-        table.wrong(key, f"has {block.shape[0]} rows, but the stiffness has {rows}")
+        table.wrong(key, f"has {counted(block.shape[0], 'row')}, but the stiffness has {rows}")
     return scipy.sparse.csc_array((rows or 1, rows or 1)) if block is None else block
 
 
