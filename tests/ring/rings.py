@@ -80,8 +80,8 @@ def written_out(scene):
         for one in scene["contact"]
     ]
     full["force"] = [
-        one | {"dof": f"{one['dof']}_{k}", "phase": one.get("phase", 0.0) + 2.0 * np.pi * order * k / count}
-        for k in range(count)
+        one | {"dof": f"{one['dof']}_{k}", "phase": one.get("phase", 0.0) + one.get("harmonic", 1) * ahead}
+        for k, ahead in enumerate(2.0 * np.pi * order * np.arange(count) / count)
         for one in scene["force"]
     ]
     loads = scene.get("load", ())

@@ -50,14 +50,17 @@ def test_solutions_of_a_sector_solve_the_ring(sectors, order, contacts, harmonic
         assert "P" in cycles(one, z[None], loops(one, z[None]))[0][0, 0]  # it slips
 
 
-def test_static_loads_and_forces_that_grow_with_the_speed_act_on_every_sector():
+@pytest.mark.parametrize("harmonic", [1, 2, 3])  # two of them travel with an engine order of their own
+def test_loads_and_forces_of_any_harmonic_act_on_every_sector(harmonic):
     data = rings.sector(5, 2, BOTH) | {
         "load": [{"dof": "tip", "force": 300.0}, {"dof": "disk", "force": -50.0}]
     }
-    data["force"].append({"dof": "blade", "amplitude": 1e-4, "phase": 0.4, "proportional_to": "omega^2"})
+    grows = {"dof": "blade", "amplitude": 1e-4, "phase": 0.4, "proportional_to": "omega^2"}
+    data["force"].append(grows | {"harmonic": harmonic})
     one, whole = (System(scene_from_dict(found), (1, 3)) for found in (data, rings.written_out(data)))
+    assert one.harmonics == whole.harmonics == tuple(sorted({1, 3, harmonic}))
     (z,) = solutions(one, 2.0 * np.pi * 190.0).solutions
-    around = rings.around(z, (1, 3), 2, one.scene.ring)
+    around = rings.around(z, one.harmonics, 2, one.scene.ring)
     balance, of_one = whole.balance(), one.balance()
     balance.evaluate(around)
     assert np.abs(balance.residual).max() < 1e-11 * np.abs(around[:-1]).max()

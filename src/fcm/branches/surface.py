@@ -117,6 +117,8 @@ class Surface:
         i: cython.Py_ssize_t
         j: cython.Py_ssize_t
         p: cython.Py_ssize_t
+        h: cython.int
+        k: cython.int
         unit: cython.double
         b: Balance = self.balance
         for i in range(n + 1):
@@ -130,11 +132,13 @@ class Surface:
             for j in range(n + 1):
                 self.solver.matrix[i, j] = jacobian[i, j] * (self.scale[j] * unit)
             self.solver.matrix[i, n + 1] = 0.0
-        for p in range(b.ports):
-            i = b.seen.wave_at[p] + b.seen.stride * b.seen.driven
-            unit = self.scale[n + 1] / self.scale[i]
-            self.solver.matrix[i, n + 1] = -b.seen.X_re[p] * unit
-            self.solver.matrix[i + 1, n + 1] = -b.seen.X_im[p] * unit
+        for h in range(b.seen.count):
+            k = b.seen.forced[h]
+            for p in range(b.ports if k >= 0 else 0):
+                i = b.seen.wave_at[p] + b.seen.stride * h
+                unit = self.scale[n + 1] / self.scale[i]
+                self.solver.matrix[i, n + 1] = -b.seen.X_re[k, p] * unit
+                self.solver.matrix[i + 1, n + 1] = -b.seen.X_im[k, p] * unit
         for j in range(n + 2):
             self.solver.matrix[n, j] = self.axes[0, j]
             self.solver.matrix[n + 1, j] = self.axes[1, j]

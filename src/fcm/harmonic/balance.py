@@ -23,11 +23,23 @@ from fcm.structure.receptance import Receptance
 
 if cython.compiled:
     from cython.cimports.fcm.continuation.problem import NONE, Problem
-    from cython.cimports.fcm.harmonic.compliance import slope, times_forces, times_tangents
+    from cython.cimports.fcm.harmonic.compliance import (
+        less_external,
+        less_external_slopes,
+        slope,
+        times_forces,
+        times_tangents,
+    )
     from cython.cimports.fcm.harmonic.law import KINDS, Law
 else:
     from fcm.continuation.problem import NONE, Problem
-    from fcm.harmonic.compliance import slope, times_forces, times_tangents
+    from fcm.harmonic.compliance import (
+        less_external,
+        less_external_slopes,
+        slope,
+        times_forces,
+        times_tangents,
+    )
     from fcm.harmonic.law import KINDS, Law
 
 OWN_FLOOR = cython.declare(cython.double, 0.1)  # a unit is at least this much of its own maximum,
@@ -86,7 +98,6 @@ class Balance(Problem):
         """The residual and the contacts' forces at z, and their tangents; which else stay as they were."""
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
-        first: cython.Py_ssize_t
         self.seen.at(z[self.unknowns])
         self.contact_forces(z, tangents)
         if self.condensed is None:
@@ -95,9 +106,7 @@ class Balance(Problem):
             np.asarray(self.residual)[:] = self.condensed.answer.to(np.asarray(self.force))
         for p in range(self.ports):
             self.residual[self.seen.mean_at[p]] -= self.share * self.rest[p]
-            first = self.seen.wave_at[p] + self.seen.stride * self.seen.driven
-            self.residual[first] -= self.load * self.seen.X_re[p]
-            self.residual[first + 1] -= self.load * self.seen.X_im[p]
+        less_external(self.seen, self.load, self.residual)
         for i in range(self.unknowns):
             self.residual[i] += z[i]
         for i in range(self.unknowns + 1):
@@ -108,16 +117,11 @@ class Balance(Problem):
     @cython.exceptval(-1, check=False)
     def slopes(self) -> cython.int:
         """Derivatives by the frequency."""
-        p: cython.Py_ssize_t
-        row: cython.Py_ssize_t
         if self.condensed is None:
             slope(self.seen, self.force, self.load, self.by_frequency)
             return 0
         np.asarray(self.by_frequency)[:] = self.condensed.answer.rate(np.asarray(self.force))
-        for p in range(self.ports):
-            row = self.seen.wave_at[p] + self.seen.stride * self.seen.driven
-            self.by_frequency[row] -= self.load * self.seen.dX_re[p]
-            self.by_frequency[row + 1] -= self.load * self.seen.dX_im[p]
+        less_external_slopes(self.seen, self.load, self.by_frequency)
         return 0
 
     @cython.cfunc

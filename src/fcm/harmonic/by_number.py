@@ -69,8 +69,9 @@ class Rates:
         da = rate.flexibility @ q + structure.flexibility @ dq
         rows[:, 0] = -(rate.ports.T @ (structure.flexibility @ q) + structure.ports.T @ da)
         for j, h in enumerate(self.system.harmonics):
-            driven = float(j == seen.driven) * balance.load
-            grown, d_grown = (one.force + z[-1] ** 2 * one.square for one in (structure, rate))
+            k = max(seen.forced[j], 0)
+            driven = float(seen.forced[j] >= 0) * balance.load
+            grown, d_grown = (one.force[k] + z[-1] ** 2 * one.square[k] for one in (structure, rate))
             q = driven * grown - structure.ports @ force[:, 1 + j]
             dq = driven * d_grown - rate.ports @ force[:, 1 + j] - structure.ports @ d_force[:, 1 + j]
             c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
@@ -91,14 +92,17 @@ class Rates:
     def _at_forces(self, balance: Balance, omega: float) -> tuple[FloatArray, ComplexArray]:
         """As `at` of such a number: what the structure answers to the rates of its forces."""
         structure, seen = self.system.linear, balance.seen
-        j, residual = seen.driven, np.zeros(balance.unknowns)
+        residual = np.zeros(balance.unknowns)
         shown = np.zeros((len(self.system.harmonics), structure.dofs.shape[1]), complex)
-        c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
-        a = c * balance.load * (self.linear.force + omega**2 * self.linear.square)
-        shown[j] = np.where(np.asarray(balance.shown.apart) > 0, structure.dofs.T @ a, 0.0)
-        if balance.contacts:
-            of_ports, rows = structure.ports.T @ a, places(balance)[1][j]
-            residual[rows], residual[rows + 1] = -of_ports.real, -of_ports.imag
+        for j, k in enumerate(np.asarray(seen.forced).tolist()):
+            if k < 0:
+                continue
+            c = np.asarray(seen.c_re)[j] + 1j * np.asarray(seen.c_im)[j]
+            a = c * balance.load * (self.linear.force[k] + omega**2 * self.linear.square[k])
+            shown[j] = np.where(np.asarray(balance.shown.apart) > 0, structure.dofs.T @ a, 0.0)
+            if balance.contacts:
+                of_ports, rows = structure.ports.T @ a, places(balance)[1][j]
+                residual[rows], residual[rows + 1] = -of_ports.real, -of_ports.imag
         return residual, shown
 
     def _compliance(self, c: ComplexArray, w: float) -> ComplexArray:
@@ -189,7 +193,7 @@ def rates_of(system: System, address: str) -> Rates:
         contact += weight * (_numbers(one.put(system.scene, 1.0)) - _numbers(one.put(system.scene, 0.0)))
         for name, rate in _linear(system, one, value):
             total[name] = total[name] + weight * rate
-    return Rates(contact, Linear(**total, adrift=system.linear.adrift), system)
+    return Rates(contact, Linear(**total, adrift=system.linear.adrift, driven=system.linear.driven), system)
 
 
 def _numbers(scene: Scene) -> FloatArray:

@@ -101,7 +101,35 @@ def slope(
                 f = seen.wave_at[q] + seen.stride * j
                 re += seen.dG_re[j, p, q] * force[f] - seen.dG_im[j, p, q] * force[f + 1]
                 im += seen.dG_im[j, p, q] * force[f] + seen.dG_re[j, p, q] * force[f + 1]
-            if j == seen.driven:
-                re -= load * seen.dX_re[p]
-                im -= load * seen.dX_im[p]
             out[row], out[row + 1] = re, im
+    less_external_slopes(seen, load, out)
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def less_external(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+    """Take from out (unknown,) the answer to a level of the external forces."""
+    j: cython.int
+    p: cython.Py_ssize_t
+    for j in range(seen.count):
+        k: cython.int = seen.forced[j]
+        if k >= 0:
+            for p in range(seen.ports):
+                row: cython.Py_ssize_t = seen.wave_at[p] + seen.stride * j
+                out[row] -= load * seen.X_re[k, p]
+                out[row + 1] -= load * seen.X_im[k, p]
+
+
+@cython.cfunc
+@cython.exceptval(check=False)
+def less_external_slopes(seen: Receptance, load: cython.double, out: cython.double[::1]) -> cython.void:
+    """Take from out (unknown,) the derivative of that by the frequency."""
+    j: cython.int
+    p: cython.Py_ssize_t
+    for j in range(seen.count):
+        k: cython.int = seen.forced[j]
+        if k >= 0:
+            for p in range(seen.ports):
+                row: cython.Py_ssize_t = seen.wave_at[p] + seen.stride * j
+                out[row] -= load * seen.dX_re[k, p]
+                out[row + 1] -= load * seen.dX_im[k, p]

@@ -76,12 +76,14 @@ class Displacements(Extremes):
         i: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        driven: cython.double = load if j == self.seen.driven else 0.0
+        forced: cython.int = self.seen.forced[j]
+        driven: cython.double = load if forced >= 0 else 0.0
+        forced = max(forced, 0)
         for i in range(self.seen.modes):
-            f_re: cython.double = driven * self.seen.force_re[i]
-            f_im: cython.double = driven * self.seen.force_im[i]
-            g_re: cython.double = driven * d_omega * self.seen.slope_re[i]
-            g_im: cython.double = driven * d_omega * self.seen.slope_im[i]
+            f_re: cython.double = driven * self.seen.force_re[forced, i]
+            f_im: cython.double = driven * self.seen.force_im[forced, i]
+            g_re: cython.double = driven * d_omega * self.seen.slope_re[forced, i]
+            g_im: cython.double = driven * d_omega * self.seen.slope_im[forced, i]
             for p in range(self.seen.ports):
                 k = self.seen.wave_at[p] + self.seen.stride * j
                 f_re -= self.seen.shapes[i, p] * force[k]

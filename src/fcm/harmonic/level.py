@@ -42,14 +42,18 @@ class Level(Problem):
         row: cython.Py_ssize_t
         p: cython.Py_ssize_t
         i: cython.Py_ssize_t
+        j: cython.int
+        k: cython.int
         self.place(z)
         b.evaluate(self.z)
         for i in range(n):
             self.jacobian[i, last] = 0.0
-        for p in range(b.ports):
-            row = b.seen.wave_at[p] + b.seen.stride * b.seen.driven
-            self.jacobian[row, last] = -b.seen.X_re[p]
-            self.jacobian[row + 1, last] = -b.seen.X_im[p]
+        for j in range(b.seen.count):
+            k = b.seen.forced[j]
+            for p in range(b.ports if k >= 0 else 0):
+                row = b.seen.wave_at[p] + b.seen.stride * j
+                self.jacobian[row, last] = -b.seen.X_re[k, p]
+                self.jacobian[row + 1, last] = -b.seen.X_im[k, p]
         return 0
 
     @cython.ccall

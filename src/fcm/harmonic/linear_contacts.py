@@ -7,7 +7,7 @@ slip, opens or closes.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -39,7 +39,7 @@ def linear_responses(system: System, omega: float, level: float) -> Iterator[Flo
 
 
 def _on_ports(system: System, omega: float) -> ComplexArray:
-    """Of the ports, (3, port), with the contacts as in `linear_responses`; kept in the system."""
+    """Of the ports, (3, driven, port), with the contacts as in `linear_responses`; kept in the system."""
     if omega not in system.on_ports:
         foresee(system, (omega,))
     return system.on_ports[omega]
@@ -62,14 +62,15 @@ def foresee(system: System, frequencies: Sequence[float]) -> None:
 
 
 def _with_springs(system: System, frequencies: Sequence[float], held: FloatArray) -> ComplexArray:
-    """Of the ports with springs held (case, port): (frequency, case, port)."""
-    found = np.empty((len(frequencies), *held.shape), dtype=np.complex128)
+    """Of the ports with springs held (case, port): (frequency, case, driven, port)."""
+    cases, ports = held.shape
+    found = np.empty((len(frequencies), cases, len(system.linear.driven), ports), dtype=np.complex128)
     for answer, omega in zip(found, frequencies, strict=True):
-        G, X = system.linear.at(omega)
-        for one, springs in zip(answer, held, strict=True):  # one at a time: of many contacts each is large
-            matrix = G * springs
-            matrix.flat[:: X.size + 1] += 1.0
-            one[:] = np.linalg.solve(matrix, X)
+        for k, (G, X) in enumerate(zip(*system.linear.at(omega), strict=True)):
+            for one, springs in zip(answer[:, k], held, strict=True):  # many contacts: large ones
+                matrix = G * springs
+                matrix.flat[:: X.size + 1] += 1.0
+                one[:] = np.linalg.solve(matrix, X)
     return found
 
 
@@ -87,8 +88,10 @@ def closed_at_rest(system: System) -> npt.NDArray[np.bool_]:
 
 def _unknowns(system: System, ports: ComplexArray) -> FloatArray:
     x, layout = np.zeros(system.layout.unknowns), system.layout
-    driven = layout.waves_at[system.harmonics.index(1)]
-    x[layout.mean_at], x[driven], x[driven + 1] = system.rest, ports.real, ports.imag
+    x[layout.mean_at] = system.rest
+    for harmonic, answer in zip(system.linear.driven, ports, strict=True):
+        driven = layout.waves_at[system.harmonics.index(harmonic)]
+        x[driven], x[driven + 1] = answer.real, answer.imag
     return x
 
 
@@ -96,7 +99,7 @@ def highest(system: System, omega: float) -> float:
     """A level beyond those at which a contact opens, closes or slips, all being stuck or open."""
     levels, loads = [1.0], [abs(load) for load in loads_at_rest(system)]
     for ports in _on_ports(system, omega)[1:]:
-        for load, (variation, slip, contact) in zip(loads, _motions(system, ports), strict=True):
+        for load, (variation, slip, contact) in zip(loads, _motions(system, ports, max), strict=True):
             levels += [load / variation] if variation > 0.0 else []
             levels += [2.0 * contact.mu * load / sum(slip)] if sum(slip) > 0.0 else []
     return min(BEYOND * max(levels), GREATEST)
@@ -107,17 +110,30 @@ def least(system: System, omega: float) -> float:
     if system.scene.loads:
         return 0.0
     levels = [GREATEST]
-    for variation, slip, contact in _motions(system, _on_ports(system, omega)[0]):
+    for variation, slip, contact in _motions(system, _on_ports(system, omega)[0], sum):
         levels += [abs(contact.n_0) / variation] if variation > 0.0 else []
         closed = contact.n_0 > 0.0 and contact.mu > 0.0 and max(slip) > 0.0
         levels += [contact.mu * contact.n_0 / max(slip)] if closed else [0.0] if contact.n_0 == 0.0 else []
     return min(levels)
 
 
-def _motions(system: System, ports: ComplexArray) -> Iterator[tuple[float, tuple[float, float], Contact]]:
-    """Of each contact the variation of its load, and the sizes of the motions of its two limits."""
-    each = ports.reshape(-1, system.layout.directions).tolist()
-    for contact, (*along, V) in zip(system.scene.contacts, each, strict=True):
-        across = contact.mu * contact.k_v * V
-        pairs = [(abs(contact.k_u * U - across), abs(contact.k_u * U + across)) for U in along]
-        yield contact.k_v * abs(V), max(pairs, key=sum), contact
+def _motions(
+    system: System, ports: ComplexArray, together: Callable[[Iterable[float]], float]
+) -> Iterator[tuple[float, tuple[float, float], Contact]]:
+    """Of each contact the variation of its load, and the sizes of the motions of its two limits.
+
+    Those of the driven harmonics together: their sum is never less than that of the motion, and the greatest
+    of them no more than 4 / pi times it.
+    """
+    directions = system.layout.directions
+    every = ports.reshape(len(ports), -1, directions).swapaxes(0, 1).tolist()
+    for contact, each in zip(system.scene.contacts, every, strict=True):
+        across = [contact.mu * contact.k_v * V for *_, V in each]
+        pairs = [
+            (
+                together([abs(contact.k_u * U[d] - a) for U, a in zip(each, across, strict=True)]),
+                together([abs(contact.k_u * U[d] + a) for U, a in zip(each, across, strict=True)]),
+            )
+            for d in range(directions - 1)
+        ]
+        yield together([contact.k_v * abs(V) for *_, V in each]), max(pairs, key=sum), contact

@@ -52,6 +52,6 @@ def _least_receptance(system: System) -> FloatArray:
     seen, found = system.looking.seen, []
     for omega in system.scene.frequency_range:
         seen.at(omega)
-        found.append(np.abs(seen.between(seen.driven).diagonal()))
+        found.append(np.abs(seen.between(seen.first).diagonal()))
     least: FloatArray = np.min(found, axis=0)
     return least

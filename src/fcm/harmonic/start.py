@@ -227,10 +227,12 @@ def looked_at(system: System) -> tuple[float, ...]:
 
 
 def resonances(system: System) -> list[float]:
-    """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order."""
+    """Natural frequencies within the range, with all contacts stuck, as at rest, and all open, in order; of
+    forces at other harmonics these divided by them."""
     low, high = system.scene.frequency_range
     stuck, found = system.springs(stuck=True), set[float]()
     for closed in (np.ones(stuck.size, dtype=bool), closed_at_rest(system), np.zeros(stuck.size, dtype=bool)):
-        natural = system.linear.stiffened(stuck * closed) * (1.0 + BESIDE)
-        found.update(float(w) for w in natural if low < w < high)
+        for harmonic in system.linear.driven:
+            natural = system.linear.stiffened(stuck * closed, harmonic) * (1.0 + BESIDE) / harmonic
+            found.update(float(w) for w in natural if low < w < high)
     return sorted(found)

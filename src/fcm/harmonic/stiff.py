@@ -74,7 +74,7 @@ def with_digits(system: System, points: Record) -> tuple[Record, FloatArray]:
         made.X[i].real, made.X[i].imag, made.mean[i] = shown.re, shown.im, shown.mean
         made.amplitude[i], made.force[i] = shown.amplitude, balance.force
         if found.X is not None:
-            made.X[i, balance.seen.driven, apart] = found.X[apart]
+            made.X[i, balance.seen.first, apart] = found.X[apart]
             made.amplitude[i, apart] = np.abs(found.X[apart])
         size = np.where(made.amplitude[i] > 0.0, made.amplitude[i], np.inf)
         rounding[i] = np.where(apart, found.dofs, found.ports @ np.abs(shown.attached)) / size
@@ -106,7 +106,7 @@ def _stiffest(balance: Balance, omega: float, springs: FloatArray) -> float:
 
 
 def _receptance(balance: Balance) -> ComplexArray:
-    return balance.seen.between(balance.seen.driven)
+    return balance.seen.between(balance.seen.first)
 
 
 class _Forces:
@@ -138,7 +138,7 @@ class _Forces:
         """The others (mode,)."""
         if self.others is None:
             return np.zeros(self.linear.natural.size, dtype=np.complex128)
-        force: ComplexArray = self.others.force + omega**2 * self.others.square
+        force: ComplexArray = self.others.force[0] + omega**2 * self.others.square[0]
         return force
 
 
@@ -156,9 +156,10 @@ def _point(
     balance.evaluate(z)
     G, held = _receptance(balance), _held(balance, springs)
     seen, linear, at, omega = balance.seen, forces.linear, _places(balance), float(z[-1])
-    if held is None or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
+    other = len(linear.driven) > 1  # whose answer is no fundamental
+    if held is None or other or isinstance(linear, RingLinear) or not np.linalg.cond(G) < DEPENDENT:
         return _as_balanced(balance, linear, G, springs, tangent)
-    compliance = np.asarray(seen.c_re)[seen.driven] + 1j * np.asarray(seen.c_im)[seen.driven]
+    compliance = np.asarray(seen.c_re)[seen.first] + 1j * np.asarray(seen.c_im)[seen.first]
     H, others = np.linalg.inv(G), forces.on_modes(omega)
     computed = H @ (linear.ports.T @ (compliance * others))
     x = np.linalg.solve(H + np.diag(held), forces.on_ports(omega) + computed)
@@ -182,17 +183,17 @@ def _as_balanced(
     force, x = np.asarray(balance.force), np.asarray(balance.evaluated)
     size, on_ports = np.hypot(x[at], x[at + 1]), np.hypot(force[at], force[at + 1])
     terms = np.zeros(n)
-    terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re, seen.X_im) + size
+    terms[at] = np.abs(G) @ on_ports + np.hypot(seen.X_re[0], seen.X_im[0]) + size
     terms[at + 1] = terms[at]
     off = _moved(balance, x, tangent, ROUNDINGS * EPS * terms)
     ports = np.hypot(off[at], off[at + 1])
     modes: Receptance = seen
     met: Linear | Wave = linear
-    j = seen.driven
+    j = seen.first
     if isinstance(seen, TravellingReceptance) and isinstance(linear, RingLinear):
         modes, j, met = seen.waves[j], 0, linear.wave(1)
     compliance = np.hypot(np.asarray(modes.c_re)[j], np.asarray(modes.c_im)[j])
-    shapes, external = np.abs(met.ports), np.hypot(modes.force_re, modes.force_im)
+    shapes, external = np.abs(met.ports), np.hypot(modes.force_re[0], modes.force_im[0])
     on_modes = ROUNDINGS * EPS * (external + shapes @ on_ports) + shapes @ (springs * ports)
     return Digits(x.copy(), None, ports, (compliance * on_modes) @ np.abs(met.dofs))
 
@@ -216,14 +217,14 @@ def _moved(balance: Balance, z: FloatArray, tangent: FloatArray, wrong: FloatArr
 
 def _places(balance: Balance) -> npt.NDArray[np.intp]:
     """Of the real part of each port's fundamental among the unknowns."""
-    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.driven]
+    places: npt.NDArray[np.intp] = balance.layout.waves_at[balance.seen.first]
     return places
 
 
 def _held(balance: Balance, springs: FloatArray) -> FloatArray | None:
     """The stiffness of each port (port,), where no contact does anything but stick or stay open."""
     d, stride = balance.directions, balance.seen.stride
-    j = d + stride * balance.seen.driven
+    j = d + stride * balance.seen.first
     held = np.empty(springs.size)
     for c, tangent in enumerate(np.asarray(balance.tangent)):
         own, here = tangent[j : j + stride, d:].copy(), slice(c * d, (c + 1) * d)

@@ -42,6 +42,8 @@ MOST = 4  # of them
 class System:
     """What is balanced: a scene with its linear structure, and the harmonics, the first of which is 1.
 
+    The harmonics of its forces are balanced whatever harmonics are asked for.
+
     With one harmonic the curves can be followed by a table: each point is then corrected with the closed
     form, unless that is left out. condensing says when the linear systems of many contacts are condensed.
     """
@@ -59,11 +61,16 @@ class System:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", linear_of(self.scene))
+        object.__setattr__(self, "harmonics", self._with_driven(self.harmonics))
         object.__setattr__(self, "coarse", ClosedForm() if self.table is None else self.table.law())
 
     def with_harmonics(self, harmonics: tuple[int, ...]) -> System:
         """The same with other harmonics."""
-        return self._with(harmonics=harmonics)
+        return self._with(harmonics=self._with_driven(harmonics))
+
+    def _with_driven(self, harmonics: tuple[int, ...]) -> tuple[int, ...]:
+        driven = self.linear.driven
+        return harmonics if set(driven) <= {*harmonics} else tuple(sorted({*harmonics, *driven}))
 
     @cached_property
     def unit(self) -> float:

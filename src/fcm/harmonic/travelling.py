@@ -44,13 +44,13 @@ class TravellingDisplacements(Displacements):
         d: cython.Py_ssize_t
         p: cython.Py_ssize_t
         k: cython.Py_ssize_t
-        driven: cython.double = load if j == self.seen.driven else 0.0
+        driven: cython.double = load if self.seen.forced[j] >= 0 else 0.0
         self.clear(j)
         for i in range(wave.modes):
-            f_re: cython.double = driven * wave.force_re[i]
-            f_im: cython.double = driven * wave.force_im[i]
-            g_re: cython.double = driven * d_omega * wave.slope_re[i]
-            g_im: cython.double = driven * d_omega * wave.slope_im[i]
+            f_re: cython.double = driven * wave.force_re[0, i]
+            f_im: cython.double = driven * wave.force_im[0, i]
+            g_re: cython.double = driven * d_omega * wave.slope_re[0, i]
+            g_im: cython.double = driven * d_omega * wave.slope_im[0, i]
             for p in range(n):
                 k = self.seen.wave_at[p] + self.seen.stride * j
                 a: cython.double = wave.shapes[i, p]

@@ -30,6 +30,7 @@ from fcm.scene.model import FloatArray, Scene
 from fcm.structure.loads import loads_of
 
 LETTERS = "SEPN"  # of the codes SEPARATED, STICKING, POSITIVE_SLIP, NEGATIVE_SLIP
+OTHER_HARMONICS = "forces of other harmonics than 1 are not followed in time; the balance has them"
 OWN = ("scene", "omega")  # what systems of a scene do not have in common, or must not keep
 
 
@@ -61,6 +62,8 @@ class System:
         if known := _LATEST.known(scene):
             self.__dict__.update(known)
             return
+        if any(force.harmonic != 1 for force in scene.forces):
+            raise SimulationError(OTHER_HARMONICS)
         self.contacts = scene.contacts
         modal = scene.modal
         m, c = modal.mass.size, len(scene.contacts)
@@ -75,7 +78,7 @@ class System:
         shapes = np.abs(modal.shapes).max(axis=1, initial=0.0)
         self.per_unit = np.where(shapes > 0.0, shapes, 1.0)  # displacement by a mode, whatever its unit
         loads = loads_of(scene)
-        self.constant, self.square = modal.shapes @ loads.constant, modal.shapes @ loads.square
+        self.constant, self.square = modal.shapes @ loads.constant[0], modal.shapes @ loads.square[0]
         self.static: FloatArray = modal.shapes @ loads.static  # modal
         self.stretch, self.pull, pressed = held_as_springs(scene)
         self.steady = self.static + pressed

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.model import FloatArray, Scene
-from fcm.structure.linear import linear_of
+from fcm.structure.linear import Linear, linear_of
 
 ComplexArray = npt.NDArray[np.complex128]
 SPREAD = 24  # frequencies of the range at which linear responses are looked at, besides resonances
@@ -32,13 +32,20 @@ def resonances(scene: Scene, springs: FloatArray) -> FloatArray:
 
 
 def linear_response(scene: Scene, omega: FloatArray, springs: FloatArray) -> ComplexArray:
-    """Amplitudes (frequency, dof) with springs (port,) for contacts."""
+    """Amplitudes (driven frequency, dof) with springs (port,) for contacts, of one driven harmonic after the
+    other."""
     linear = linear_of(scene)
+    found = [_answer(linear, k, h, omega, springs) for k, h in enumerate(linear.driven)]
+    return np.concatenate(found)
+
+
+def _answer(linear: Linear, k: int, h: int, omega: FloatArray, springs: FloatArray) -> ComplexArray:
+    """To the forces number k, at harmonic h: (frequency, dof)."""
     natural, rate = linear.natural, 2.0 * linear.damping * linear.natural
-    w = omega[:, None]
+    w = h * omega[:, None]
     compliance = 1.0 / ((natural - w) * (natural + w) + 1j * rate * w)
     G = np.einsum("ip,wi,iq->wpq", linear.ports, compliance, linear.ports, optimize=True)
-    force = linear.force + w**2 * linear.square
+    force = linear.force[k] + omega[:, None] ** 2 * linear.square[k]
     external = (compliance * force) @ linear.ports
     matrix = np.eye(springs.size) + G * springs
     ports = np.linalg.solve(matrix, external[..., None])[..., 0]

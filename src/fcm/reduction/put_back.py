@@ -51,7 +51,8 @@ def _put_back(curve: Curve, scene: Scene, traced: list[int]) -> None:
     at = np.flatnonzero(np.isfinite(curve.frequency))
     loop = np.full((curve.frequency.size, len(scene.contacts), curve.loop.shape[-1]), np.nan)
     regime = np.full(loop.shape[:2], "", dtype=np.result_type("<U6", curve.regime))
-    system, z = System(scene), unknowns(curve, scene, at, (1,))
+    system = System(scene)
+    z = unknowns(curve, scene, at, system.harmonics)
     cycle = np.full((*regime.shape, curve.cycle.shape[-1]), np.nan)
     loop[at] = loops(system, z)
     if scene.planar:
@@ -81,7 +82,8 @@ def _amplitudes(curve: Curve, at: IntArray) -> npt.NDArray[np.complex128]:
 
 def unknowns(curve: Curve, scene: Scene, at: IntArray, harmonics: tuple[int, ...]) -> FloatArray:
     """z (point, unknown + 1) of all contacts at points of a curve, from its displacements."""
-    X = _amplitudes(curve, at)[:, : len(harmonics)]
+    places = [curve.harmonics.index(h) for h in harmonics] if curve.harmonics else slice(len(harmonics))
+    X = _amplitudes(curve, at)[:, places]
     layout = Layout(len(scene.contacts), scene.directions_of_contact, len(harmonics))
     x = np.empty((at.size, layout.unknowns))
     for port, direction in enumerate(scene.directions_of_contacts()):

@@ -7,6 +7,7 @@ from fcm.response.wanted import ResponseError, Wanted
 from fcm.scene.cyclic import WHOLE_RING, lacks
 from fcm.scene.errors import quoted
 from fcm.scene.model import Scene
+from fcm.structure.loads import driven_harmonics
 
 MOST_NAMED = 6  # harmonics in a sentence
 PLANE = (
@@ -19,6 +20,17 @@ def refuse_ring(scene: Scene, what: str) -> None:
     """Raise ResponseError where something is asked of a sector that needs the whole ring."""
     if scene.ring is not None:
         raise ResponseError(f"{scene.name}: {what} {WHOLE_RING}")
+
+
+def refuse_other_harmonics(scene: Scene, what: str) -> None:
+    """Raise ResponseError where something knows forces of harmonic 1 alone, and there are others."""
+    others = driven_harmonics(scene)[1:]
+    if others:
+        named = " and ".join(map(str, others))
+        raise ResponseError(
+            f"{scene.name}: {what} knows forces of harmonic 1 alone, and there are some of harmonic {named}; "
+            "curves of the balance have them (--method closed-form)"
+        )
 
 
 def check_no_ring(scene: Scene, what: str) -> None:
@@ -39,7 +51,8 @@ def check_modes(scene: Scene, wanted: Wanted) -> None:
     for curve in scene.each_curve():
         if curve.ring is None:
             return
-        harmonics = range(HIGHEST + 1) if wanted.harmonics is None else (0, *wanted.harmonics)
+        driven = driven_harmonics(curve)
+        harmonics = range(HIGHEST + 1) if wanted.harmonics is None else (0, *wanted.harmonics, *driven)
         for harmonic, diameter in curve.ring.lacking(harmonics).items():
             what = f"{scene.name}: {lacks(curve.ring, harmonic, diameter)}"
             hint = "; give its modes, or the harmonics (--harmonics 1)" if wanted.harmonics is None else ""

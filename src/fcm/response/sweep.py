@@ -21,6 +21,7 @@ from fcm.results.result import Response
 from fcm.run import Checkpoint, Factory, Progress, fingerprint
 from fcm.run.progress import part
 from fcm.scene.model import Scene
+from fcm.structure.loads import driven_harmonics
 from fcm.table import Table
 
 BATCH = 10  # curves, which are finished or interrupted together
@@ -107,7 +108,7 @@ def trace(
 def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -> Response:
     """The curves without what they do not need; where that turns out to be needed, once more with it."""
     curves = sweep.scene.each_curve()
-    highest = max(sweep.wanted.harmonics or (HIGHEST_EXPECTED,))
+    highest = max((*(sweep.wanted.harmonics or (HIGHEST_EXPECTED,)), *driven_harmonics(sweep.scene)))
     if tolerance is None or sweep.scene.ring is not None:
         lighter = keep_all(curves)
     else:

@@ -132,7 +132,9 @@ def check_diameters(curve: Scene, mistakes: Mistakes, where: str) -> bool:
     if curve.ring is None:
         return True
     before = mistakes.count
-    for harmonic, diameter in curve.ring.lacking((0, *(curve.harmonics or (1,)))).items():
+    for harmonic, diameter in curve.ring.lacking(
+        sorted({0, *(curve.harmonics or (1,)), *(force.harmonic for force in curve.forces)})
+    ).items():
         mistakes.add(where or "modal.nodal_diameter", lacks(curve.ring, harmonic, diameter))
     return mistakes.count == before
 

@@ -110,6 +110,7 @@ TABLES: dict[str, dict[str, Key]] = {
         "dof": Key("where it acts", _DIRECTION),
         "amplitude": Key("of amplitude * sin(omega t + phase)", RULES["amplitude"]),
         "phase": Key("in rad, or in degrees", 'a number, or as "45deg"', "0"),
+        "harmonic": Key("of amplitude * sin(harmonic * omega t + phase)", "whole number from 1", "1"),
         "proportional_to": Key("amplitude times omega^2, omega in rad/s", '"omega^2"', "constant"),
     },
     "load": {

@@ -191,6 +191,7 @@ def _parts(
     parts: Parts = {"modal": modal, "cyclic": cyclic}
     parts["contact"] = read_contacts(top, modal["dofs"], files)
     parts["force"] = read_forces(top, modal["dofs"])
+    ends = (ends[0], ends[1] * max((one["harmonic"] for one in parts["force"]), default=1))
     parts["load"] = read_loads(top, files, modal["dofs"], "structure" in top.data)
     parts["base"] = read_base(top, own_names(modal["dofs"]), "structure" in top.data)
     if cyclic:
@@ -248,10 +249,16 @@ def _faults_of_curve(curve: Scene) -> Iterator[str]:
 
 def _moved(curve: Scene) -> bool:
     """Whether the forces together have a component on any mode, beyond the rounding of their sum."""
-    shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(1)[2]
-    pushes = [shapes @ (force.amplitude * force.direction) for force in curve.forces]
+    return any(_moved_by(curve, harmonic) for harmonic in {force.harmonic for force in curve.forces})
+
+
+def _moved_by(curve: Scene, harmonic: int) -> bool:
+    """The same of the forces of one harmonic."""
+    shapes = curve.modal.shapes if curve.ring is None else curve.ring.modes(harmonic)[2]
+    forces = [force for force in curve.forces if force.harmonic == harmonic]
+    pushes = [shapes @ (force.amplitude * force.direction) for force in forces]
     size = np.sum([np.abs(push) for push in pushes], axis=0)
-    turned = [push * np.exp(1j * force.phase) for push, force in zip(pushes, curve.forces, strict=True)]
+    turned = [push * np.exp(1j * force.phase) for push, force in zip(pushes, forces, strict=True)]
     return bool((np.abs(np.sum(turned, axis=0)) > CANCELLED * size).any())
 
 

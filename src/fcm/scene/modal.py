@@ -129,10 +129,19 @@ def _per_mode(
     """One number for each mode; a single number stands for all."""
     if as_float(section.data.get(key, default)) is not None:
         return np.full(modes or 1, section.number(key, RULES[key], default))
+    value = section.data.get(key)
+    if key == "damping" and (isinstance(value, Mapping) or _of_lists(value)):
+        section.wrong(key, "varies with the frequency, which is not computed: give one ratio for each mode")
+        return None
     vector = section.vector(key, RULES[key], "a number for all modes, or a list with one for each")
     if vector is not None and modes is not None:
         _same_count(section, key, vector, modes)
     return vector
+
+
+def _of_lists(value: object) -> bool:
+    """Whether a value is a list of lists or tables, one for each mode."""
+    return isinstance(value, list) and bool(value) and all(isinstance(one, list | dict) for one in value)
 
 
 def _participation(section: Section, modes: int | None, needed: bool) -> FloatArray | None:

@@ -69,12 +69,13 @@ class Contact:
 
 @dataclass(frozen=True)
 class Force:
-    """External force amplitude * omega^power * sin(omega t + phase) on ``direction @ x``."""
+    """External force amplitude * omega^power * sin(harmonic omega t + phase) on ``direction @ x``."""
 
     direction: FloatArray  # (dof,)
     amplitude: float
     phase: float  # [rad]
     power: int = 0  # 2 for forces in proportion to omega^2, as of an unbalance; omega in rad/s
+    harmonic: int = 1
 
 
 @dataclass(frozen=True)

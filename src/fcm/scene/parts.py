@@ -104,10 +104,11 @@ def read_forces(top: Section, dofs: Dofs) -> list[dict[str, Any]]:
         return []
     if not top.data.get("force", ()) and isinstance(top.data.get("force", ()), list | tuple):
         top.wrong("force", "missing; without a [[force]] the response is zero")
-    return [_force(section, dofs) for section in top.tables("force")]
+    scheduled = bool(top.data.get("schedule"))
+    return [_force(section, dofs, scheduled) for section in top.tables("force")]
 
 
-def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
+def _force(section: Section, dofs: Dofs, scheduled: bool) -> dict[str, Any]:
     section.only(*names("force"))
     dof = section.data.get("dof")
     return {
@@ -116,6 +117,7 @@ def _force(section: Section, dofs: Dofs) -> dict[str, Any]:
         "amplitude": section.number("amplitude", RULES["amplitude"]),
         "phase": section.angle("phase", default=0.0),
         "power": _power(section),
+        "harmonic": _harmonic(section, scheduled),
     }
 
 
@@ -127,10 +129,23 @@ def _power(section: Section) -> int:
     return 0 if law is None else 2
 
 
+def _harmonic(section: Section, scheduled: bool) -> int:
+    """The harmonic of the frequency at which a force acts."""
+    value = section.data.get("harmonic", 1)
+    whole = isinstance(value, int) and not isinstance(value, bool)
+    if not whole or not 1 <= value <= MOST_HARMONICS:
+        what = quoted(value) if isinstance(value, str) else value
+        section.wrong("harmonic", f"must be a whole number from 1 to {MOST_HARMONICS}, is {what}")
+        return 1
+    if scheduled and value != 1:
+        section.wrong("harmonic", f"must be 1 beside [[schedule]], which knows no other; is {value}")
+    return int(value)
+
+
 def force_of(draft: dict[str, Any]) -> Force:
     """The force of what was read."""
     draft["dof"].flags.writeable = False
-    numbers = {key: draft[key] for key in ("amplitude", "phase", "power")}
+    numbers = {key: draft[key] for key in ("amplitude", "phase", "power", "harmonic")}
     return Force(direction=draft["dof"], **numbers)
 
 

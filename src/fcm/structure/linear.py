@@ -30,17 +30,18 @@ class Linear:
     damping: FloatArray  # (mode,) ratio
     ports: FloatArray  # (mode, port)
     dofs: FloatArray  # (mode, dof)
-    force: ComplexArray  # (mode,) of x = Re(X exp(i omega t))
-    square: ComplexArray  # (mode,) times omega^2, beside the force
+    force: ComplexArray  # (driven, mode) of x = Re(X exp(i h omega t))
+    square: ComplexArray  # (driven, mode) times omega^2, beside the force
     load: FloatArray  # (mode,) static
     flexibility: FloatArray  # (mode, mode) displacements under mean forces
     counted: FloatArray  # (contact,) normal stiffness that is counted to the structure in the means
     adrift: npt.NDArray[np.bool_]  # (mode,) rigid-body modes that no closed contact holds
+    driven: tuple[int, ...]  # harmonics h of the forces, of which the first is 1
 
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """The structure seen from its ports at some harmonics, with the sums over its modes or without."""
         ends = self.force, self.static, harmonics, summed
-        seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size)
+        seen = Receptance(self.ports, self.natural, self.damping, *ends, self.counted.size, self.driven)
         seen.grows(self.square)
         return seen
 
@@ -72,26 +73,28 @@ class Linear:
     @cached_property
     def numbers(self) -> tuple[bytes, ...]:
         """What is the same of structures that are the same."""
-        return tuple(getattr(self, field.name).tobytes() for field in fields(Linear))
+        arrays = (getattr(self, field.name) for field in fields(Linear) if field.name != "driven")
+        return (bytes(str(self.driven), "ascii"), *(array.tobytes() for array in arrays))
 
     def at(self, omega: float) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
-        """Receptance of the ports (port, port) at a frequency, and their answer to the forces (port,)."""
-        seen = self._fundamental
+        """Receptance of the ports (driven, port, port) at a frequency, and their answer to the forces
+        (driven, port)."""
+        seen = self._at_forces
         seen.at(omega)
-        G = np.asarray(seen.G_re)[0] + 1j * np.asarray(seen.G_im)[0]
+        G = np.asarray(seen.G_re) + 1j * np.asarray(seen.G_im)
         return G, np.asarray(seen.X_re) + 1j * np.asarray(seen.X_im)
 
     @cached_property
-    def _fundamental(self) -> Receptance:
-        return self.receptance(np.ones(1))
+    def _at_forces(self) -> Receptance:
+        return self.receptance(np.array(self.driven, dtype=np.float64))
 
     def displacements(self, harmonics: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
         """Displacements (point, harmonic, dof) that forces on the ports (point, harmonic, port) make."""
         modal = force @ self.ports.T
         return amplitudes(self.natural, self.damping, omega, harmonics, modal) @ self.dofs
 
-    def stiffened(self, springs: FloatArray) -> FloatArray:
-        """Natural frequencies (mode,) [rad/s] with springs (port,) for contacts."""
+    def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
+        """Natural frequencies (mode,) [rad/s] with springs (port,) for contacts, as a harmonic meets them."""
         return with_springs(self.natural, self.ports, springs)
 
 
@@ -163,7 +166,7 @@ def linear_of(scene: Scene) -> Linear:
     """The structure of a scene (of one curve)."""
     if scene.ring is not None or not scene.modal.frequency.all():  # others have the contacts' stiffness in it
         return _made(scene)
-    modal, forces = scene.modal, [(one.amplitude, one.phase, one.power) for one in scene.forces]
+    modal, forces = scene.modal, [(one.amplitude, one.phase, one.power, one.harmonic) for one in scene.forces]
     arrays = (modal.frequency, modal.damping, modal.mass, modal.shapes, *scene.directions())
     loads = [one.force for one in scene.loads]
     key = (len(scene.contacts), *forces, None, *loads, *(one.tobytes() for one in arrays))
@@ -187,8 +190,8 @@ def _made(scene: Scene) -> Linear:
         damping=modal.damping,
         ports=np.ascontiguousarray(ports),
         dofs=np.ascontiguousarray(modal.shapes * unit),
-        force=FROM_SINE * (modal.shapes @ loads.constant) * unit[:, 0],
-        square=FROM_SINE * (modal.shapes @ loads.square) * unit[:, 0],
+        force=FROM_SINE * (loads.constant @ modal.shapes.T) * unit[:, 0],
+        square=FROM_SINE * (loads.square @ modal.shapes.T) * unit[:, 0],
         load=(modal.shapes @ loads.static) * unit[:, 0],
         flexibility=_flexibility(
             modal.frequency,
@@ -198,6 +201,7 @@ def _made(scene: Scene) -> Linear:
         ),
         counted=k_v,
         adrift=adrift,
+        driven=loads.harmonics,
     )
     if scene.ring is None:
         return linear

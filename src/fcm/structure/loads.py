@@ -13,15 +13,21 @@ ComplexArray = npt.NDArray[np.complex128]
 
 
 class Loads(NamedTuple):
-    """The forces are static + Im((constant + omega^2 square) exp(i omega t)), each (dof,)."""
+    """The forces are static + Im(sum_h (constant_h + omega^2 square_h) exp(i h omega t))."""
 
-    constant: ComplexArray
-    square: ComplexArray  # as of an unbalance; omega in rad/s
-    static: FloatArray
+    harmonics: tuple[int, ...]  # (driven,) h: 1, and those of which there are forces
+    constant: ComplexArray  # (driven, dof)
+    square: ComplexArray  # (driven, dof) as of an unbalance; omega in rad/s
+    static: FloatArray  # (dof,)
 
-    def harmonic(self, omega: float) -> ComplexArray:
-        """Amplitudes at a frequency [rad/s]."""
+    def at(self, omega: float) -> ComplexArray:
+        """Amplitudes (driven, dof) at a frequency [rad/s]."""
         return self.constant + omega**2 * self.square
+
+
+def driven_harmonics(scene: Scene) -> tuple[int, ...]:
+    """1, and the other harmonics at which there are forces, in order."""
+    return tuple(sorted({1, *(force.harmonic for force in scene.forces)}))
 
 
 def loads_of(scene: Scene) -> Loads:
@@ -30,14 +36,15 @@ def loads_of(scene: Scene) -> Loads:
     Examples
     --------
     >>> import fcm
-    >>> loads_of(fcm.load_scene("yang1998-n5")).harmonic(2.0)
-    array([1.+0.j, 1.+0.j])
+    >>> loads_of(fcm.load_scene("yang1998-n5")).at(2.0)
+    array([[1.+0.j, 1.+0.j]])
     """
-    constant, square = np.zeros((2, len(scene.modal.dofs)), dtype=np.complex128)
+    harmonics = driven_harmonics(scene)
+    constant, square = np.zeros((2, len(harmonics), len(scene.modal.dofs)), dtype=np.complex128)
     for force in scene.forces:
-        onto = square if force.power else constant
+        onto = (square if force.power else constant)[harmonics.index(force.harmonic)]
         onto += force.direction * force.amplitude * np.exp(1j * force.phase)
     static = np.zeros(len(scene.modal.dofs))
     for load in scene.loads:
         static += load.direction * load.force
-    return Loads(constant, square, static)
+    return Loads(harmonics, constant, square, static)

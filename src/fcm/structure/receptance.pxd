@@ -10,14 +10,14 @@ cdef class Receptance:
     cdef public double[::1] natural
     cdef public double[::1] rate
     cdef public double[:, ::1] shapes
-    cdef public double[::1] force_re
-    cdef public double[::1] force_im
-    cdef public double[::1] slope_re
-    cdef public double[::1] slope_im
-    cdef public double[::1] constant_re
-    cdef public double[::1] constant_im
-    cdef public double[::1] square_re
-    cdef public double[::1] square_im
+    cdef public double[:, ::1] force_re
+    cdef public double[:, ::1] force_im
+    cdef public double[:, ::1] slope_re
+    cdef public double[:, ::1] slope_im
+    cdef public double[:, ::1] constant_re
+    cdef public double[:, ::1] constant_im
+    cdef public double[:, ::1] square_re
+    cdef public double[:, ::1] square_im
     cdef public double[:, ::1] static
     cdef public bint large
     cdef public bint summed
@@ -33,11 +33,12 @@ cdef class Receptance:
     cdef public double[:, :, ::1] G_im
     cdef public double[:, :, ::1] dG_re
     cdef public double[:, :, ::1] dG_im
-    cdef public double[::1] X_re
-    cdef public double[::1] X_im
-    cdef public double[::1] dX_re
-    cdef public double[::1] dX_im
-    cdef public int driven
+    cdef public double[:, ::1] X_re
+    cdef public double[:, ::1] X_im
+    cdef public double[:, ::1] dX_re
+    cdef public double[:, ::1] dX_im
+    cdef public int[::1] forced
+    cdef public int first
     cpdef int at(self, double omega) except -1
     cdef void forces(self) noexcept
     cdef void compliances(self) noexcept
@@ -45,3 +46,4 @@ cdef class Receptance:
     cdef void sums_by_pairs(self, int j) noexcept
     cdef int large_sums(self) except -1
     cdef void external(self) noexcept
+    cdef void answer(self, int j, int n) noexcept

@@ -23,11 +23,14 @@ LEAST_DAMPING = cython.declare(cython.double, 1e-9)
 
 @cython.cclass
 class Receptance:
-    """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (port,) the answer to the
-    external forces, which act at the harmonic number `driven` of the list; c, s (harmonic, mode) the
-    compliances of the modes and their derivatives; static (port, port) for mean forces; force_re, force_im,
-    slope_re, slope_im (mode,) the external forces at omega and their derivatives. Without summed, for many
-    ports, none of G is made: what asks for answers to forces goes by the modes.
+    """G_re, G_im, dG_re, dG_im (harmonic, port, port); X_re, X_im, dX_re, dX_im (driven, port) the answer to
+    the external forces; c, s (harmonic, mode) the compliances of the modes and their derivatives; static
+    (port, port) for mean forces; force_re, force_im, slope_re, slope_im (driven, mode) the external forces at
+    omega and their derivatives. Without summed, for many ports, none of G is made: what asks for answers to
+    forces goes by the modes.
+
+    force (driven, mode) acts at the harmonics driven; forced (harmonic,) is the number of the force at each
+    of the list, -1 where there is none, and first the place of harmonic 1 in the list.
 
     mean_at, wave_at (port,), stride : where the mean of a port and the real part of its first harmonic are
     among numbers laid out as the unknowns of a balance, and how far on that of each next one is: see
@@ -43,8 +46,10 @@ class Receptance:
         harmonics: npt.NDArray[np.float64],
         summed: cython.bint = True,
         contacts: cython.int = 0,
+        driven: tuple[int, ...] = (1,),
     ) -> None:
         modes, ports = shapes.shape
+        force = np.asarray(force).reshape(len(driven), modes)
         count = len(harmonics)
         self.modes, self.ports, self.count = modes, ports, count
         layout = Layout(contacts, ports // contacts if contacts else 0, count)
@@ -54,8 +59,7 @@ class Receptance:
         self.shapes, self.static = np.ascontiguousarray(shapes), np.ascontiguousarray(static)
         self.constant_re, self.constant_im = np.array(force.real), np.array(force.imag)
         self.force_re, self.force_im = np.array(force.real), np.array(force.imag)
-        self.square_re, self.square_im = np.zeros(modes), np.zeros(modes)
-        self.slope_re, self.slope_im = np.zeros(modes), np.zeros(modes)
+        self.square_re, self.square_im, self.slope_re, self.slope_im = np.zeros((4, *force.shape))
         self.weights = np.zeros((4 * count, modes))  # those of the modes, and the sums over these, as one
         self.summed, size = summed, ports if summed else 0
         self.sum = np.zeros((4 * count * size, size))
@@ -68,19 +72,19 @@ class Receptance:
             np.ascontiguousarray(shapes[:, low[0]] * shapes[:, low[1]]) if pairs else np.zeros((0, 0))
         )
         self.total = np.zeros((4, self.pairs.shape[1]))  # of the sums of one harmonic, by pairs
-        self.X_re, self.X_im = np.zeros(ports), np.zeros(ports)
-        self.dX_re, self.dX_im = np.zeros(ports), np.zeros(ports)
-        where = [j for j in range(count) if harmonics[j] == 1.0]
-        self.driven = where[0] if where else 0
+        self.X_re, self.X_im, self.dX_re, self.dX_im = np.zeros((4, len(driven), ports))
+        numbers = [int(h) for h in harmonics]
+        self.forced = np.array([driven.index(h) if h in driven else -1 for h in numbers], dtype=np.intc)
+        self.first = numbers.index(1) if 1 in numbers else 0
         self.omega = -1.0
 
     def grows(self, square: npt.NDArray[np.complex128]) -> None:
-        """Add forces omega^2 square (mode,)."""
+        """Add forces omega^2 square (driven, mode)."""
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         self.omega = -1.0
 
     def moved_by(self, constant: npt.NDArray[np.complex128], square: npt.NDArray[np.complex128]) -> None:
-        """Put other external forces, constant + omega^2 square (mode,), in the place of those there are."""
+        """Put other external forces, constant + omega^2 square (driven, mode), in their place."""
         self.constant_re, self.constant_im = np.array(constant.real), np.array(constant.imag)
         self.square_re, self.square_im = np.array(square.real), np.array(square.imag)
         if self.omega != -1.0:
@@ -119,11 +123,14 @@ class Receptance:
     def forces(self) -> cython.void:
         """The external forces on the modes."""
         i: cython.Py_ssize_t
+        k: cython.Py_ssize_t
         w: cython.double = self.omega
-        for i in range(self.modes):
-            self.force_re[i] = self.constant_re[i] + w * w * self.square_re[i]
-            self.force_im[i] = self.constant_im[i] + w * w * self.square_im[i]
-            self.slope_re[i], self.slope_im[i] = 2.0 * w * self.square_re[i], 2.0 * w * self.square_im[i]
+        for k in range(self.force_re.shape[0]):
+            for i in range(self.modes):
+                self.force_re[k, i] = self.constant_re[k, i] + w * w * self.square_re[k, i]
+                self.force_im[k, i] = self.constant_im[k, i] + w * w * self.square_im[k, i]
+                self.slope_re[k, i] = 2.0 * w * self.square_re[k, i]
+                self.slope_im[k, i] = 2.0 * w * self.square_im[k, i]
 
     @cython.cfunc
     @cython.exceptval(check=False)
@@ -217,22 +224,30 @@ class Receptance:
     @cython.exceptval(check=False)
     def external(self) -> cython.void:
         """The answer of the ports to the external forces."""
-        j: cython.int = self.driven
+        j: cython.int
+        for j in range(self.count):
+            if self.forced[j] >= 0:
+                self.answer(j, self.forced[j])
+
+    @cython.cfunc
+    @cython.exceptval(check=False)
+    def answer(self, j: cython.int, n: cython.int) -> cython.void:
+        """To those number n, at the harmonic number j."""
         k: cython.Py_ssize_t
         i: cython.Py_ssize_t
         for k in range(self.ports):
-            self.X_re[k] = self.X_im[k] = self.dX_re[k] = self.dX_im[k] = 0.0
+            self.X_re[n, k] = self.X_im[n, k] = self.dX_re[n, k] = self.dX_im[n, k] = 0.0
         for i in range(self.modes):
-            f_re: cython.double = self.force_re[i]
-            f_im: cython.double = self.force_im[i]
+            f_re: cython.double = self.force_re[n, i]
+            f_im: cython.double = self.force_im[n, i]
             q_re: cython.double = self.c_re[j, i] * f_re - self.c_im[j, i] * f_im
             q_im: cython.double = self.c_re[j, i] * f_im + self.c_im[j, i] * f_re
             d_re: cython.double = self.s_re[j, i] * f_re - self.s_im[j, i] * f_im
             d_im: cython.double = self.s_re[j, i] * f_im + self.s_im[j, i] * f_re
-            d_re += self.c_re[j, i] * self.slope_re[i] - self.c_im[j, i] * self.slope_im[i]
-            d_im += self.c_re[j, i] * self.slope_im[i] + self.c_im[j, i] * self.slope_re[i]
+            d_re += self.c_re[j, i] * self.slope_re[n, i] - self.c_im[j, i] * self.slope_im[n, i]
+            d_im += self.c_re[j, i] * self.slope_im[n, i] + self.c_im[j, i] * self.slope_re[n, i]
             for k in range(self.ports):
-                self.X_re[k] += self.shapes[i, k] * q_re
-                self.X_im[k] += self.shapes[i, k] * q_im
-                self.dX_re[k] += self.shapes[i, k] * d_re
-                self.dX_im[k] += self.shapes[i, k] * d_im
+                self.X_re[n, k] += self.shapes[i, k] * q_re
+                self.X_im[n, k] += self.shapes[i, k] * q_im
+                self.dX_re[n, k] += self.shapes[i, k] * d_re
+                self.dX_im[n, k] += self.shapes[i, k] * d_im

@@ -55,16 +55,18 @@ class RingLinear(Linear):
     def receptance(self, harmonics: FloatArray, summed: bool = True) -> Receptance:
         """The sector seen from its ports at some harmonics."""
         waves = [self._real(int(h)) for h in harmonics]
-        return TravellingReceptance(waves, self.static, harmonics, self.counted.size)
+        return TravellingReceptance(waves, self.static, harmonics, self.counted.size, self.driven)
 
     def _real(self, harmonic: int) -> Receptance:
         """The receptance of one harmonic on ports with the real and those with the imaginary parts."""
         wave = self.wave(harmonic)
         both = np.concatenate((wave.ports.real, wave.ports.imag), axis=1)
-        pushed = [FROM_SINE * (wave.dofs.conj() @ load) for load in (self.loads.constant, self.loads.square)]
-        force, square = pushed if harmonic == 1 else np.zeros((2, len(wave.dofs)), complex)
-        static = np.zeros((both.shape[1], both.shape[1]))
-        seen = Receptance(both, wave.natural, wave.damping, force, static, np.array([float(harmonic)]))
+        force, square = np.zeros((2, 1, len(wave.dofs)), dtype=np.complex128)
+        if harmonic in self.driven:
+            k, onto = self.driven.index(harmonic), FROM_SINE * wave.dofs.conj()
+            force[0], square[0] = onto @ self.loads.constant[k], onto @ self.loads.square[k]
+        static, at = np.zeros((both.shape[1], both.shape[1])), np.array([float(harmonic)])
+        seen = Receptance(both, wave.natural, wave.damping, force, static, at, driven=(harmonic,))
         seen.grows(square)
         return seen
 
@@ -79,6 +81,6 @@ class RingLinear(Linear):
             )
         return found
 
-    def stiffened(self, springs: FloatArray) -> FloatArray:
-        """As `Linear.stiffened`, of the modes that the excitation meets."""
-        return self.wave(1).stiffened(springs)
+    def stiffened(self, springs: FloatArray, harmonic: int = 1) -> FloatArray:
+        """As `Linear.stiffened`, of the modes that a harmonic meets."""
+        return self.wave(harmonic).stiffened(springs)

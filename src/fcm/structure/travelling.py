@@ -28,10 +28,11 @@ class TravellingReceptance(Receptance):
         static: npt.NDArray[np.float64],
         harmonics: npt.NDArray[np.float64],
         contacts: cython.int,
+        driven: tuple[int, ...],
     ) -> None:
-        ports = len(static)
-        none, push = np.zeros(0), np.zeros(0, dtype=np.complex128)
-        Receptance.__init__(self, np.zeros((0, ports)), none, none, push, static, harmonics, True, contacts)
+        shapes, none = np.zeros((0, len(static))), np.zeros(0)
+        push = np.zeros((len(driven), 0), dtype=np.complex128)
+        Receptance.__init__(self, shapes, none, none, push, static, harmonics, True, contacts, driven)
         self.waves = waves
 
     @cython.ccall
@@ -53,6 +54,7 @@ class TravellingReceptance(Receptance):
     def from_real(self, j: cython.int, wave: Receptance) -> cython.void:
         """One harmonic from its real blocks."""
         n: cython.Py_ssize_t = self.ports
+        k: cython.int = self.forced[j]
         p: cython.Py_ssize_t
         q: cython.Py_ssize_t
         for p in range(n):
@@ -73,8 +75,8 @@ class TravellingReceptance(Receptance):
                     wave.dG_im[0, p, q] + wave.dG_im[0, n + p, n + q]
                     + wave.dG_re[0, n + p, q] - wave.dG_re[0, p, n + q]
                 )  # fmt: skip
-            if j == self.driven:
-                self.X_re[p] = wave.X_re[p] - wave.X_im[n + p]
-                self.X_im[p] = wave.X_im[p] + wave.X_re[n + p]
-                self.dX_re[p] = wave.dX_re[p] - wave.dX_im[n + p]
-                self.dX_im[p] = wave.dX_im[p] + wave.dX_re[n + p]
+            if k >= 0:
+                self.X_re[k, p] = wave.X_re[0, p] - wave.X_im[0, n + p]
+                self.X_im[k, p] = wave.X_im[0, p] + wave.X_re[0, n + p]
+                self.dX_re[k, p] = wave.dX_re[0, p] - wave.dX_im[0, n + p]
+                self.dX_im[k, p] = wave.dX_im[0, p] + wave.dX_re[0, n + p]
