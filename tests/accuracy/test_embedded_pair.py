@@ -20,6 +20,7 @@ from fcm.scene import load_scene, scene_from_dict
 from fcm.stability.floquet import multipliers
 
 from ..harmonic.scenes import up_to
+from ..harmonic.strips import strip
 from ..harmonic.truth import Truth, exact, scene
 from ..response.random_peaks import height
 from ..response.random_scenes import random_scene
@@ -261,3 +262,16 @@ def test_what_is_lost_beside_what_is_not_believed_is_not_called_stable():
     assert exact.complete and curve.amplitude[:, 2][np.isfinite(curve.frequency)].max() > 8.0
     (true,), (found,) = passing(exact), passing(curve)
     assert found == pytest.approx(true, rel=0.05) and true < 0.3
+
+
+def test_a_row_of_contacts_in_partial_slip_is_told_of_everywhere():
+    """Of one harmonic, by more than a tenth; the peaks beside those of six harmonics."""
+    few, many = (estimated(System(strip(), tuple(up_to(count))), 0.0) for count in (1, 6))
+    (errors,) = few.errors
+    assert np.isfinite(errors.truncation).mean() > 0.9
+    heights = np.array(
+        [np.max([shown.amplitude.max(axis=0) for shown in x.shown], axis=0) for x in (few, many)]
+    )
+    true = np.abs(heights[1] / heights[0] - 1.0)
+    assert np.median(true) > 0.1
+    assert (few.peak > true / 1.1).all() and (few.peak < 1.1 * true).all()

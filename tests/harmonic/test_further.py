@@ -7,6 +7,7 @@ from fcm.accuracy.refinement import estimated
 from fcm.harmonic.further import Further
 from fcm.harmonic.system import System
 
+from .strips import strip
 from .truth import scene
 
 
@@ -77,3 +78,14 @@ def test_a_harmonic_meets_a_mode_where_its_frequency_is_that_of_the_mode(respons
             else:
                 assert share.max() == 0.0
     assert further.meetings(path.z, shown.amplitude).tolist() == sorted(wanted)
+
+
+def test_meetings_of_many_contacts_are_those_of_every_point_alone():
+    """A harmonic that leads there meets a mode at the same points, be forces worked out at all or at some."""
+    found = estimated(System(strip(stiff=(4.02, 8.3, 11.4)), (1,)), 0.0)
+    (path,), (shown,) = found.traced.branches.paths, found.shown
+    further = Further(found.system)
+    alone = further.meetings(path.z, shown.amplitude)
+    many = further.meetings_of_many(path.z, shown.amplitude)
+    assert 3 <= len(alone) < 0.5 * len(path.z)
+    assert many.tolist() == alone.tolist()

@@ -1,5 +1,7 @@
 """Points of a balance of fewer harmonics moved to one of more, where there are many unknowns."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ from fcm.harmonic.lifted import Lifted
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene
+
+from .strips import strip
 
 ENOUGH = 0.1  # of a displacement
 
@@ -50,6 +54,74 @@ def test_one_among_many_points_is_given_up_where_a_single_one_is_sought_by_parts
         taken.append(some.newton.evaluations - before)
     assert 0 < taken[0] <= 8 < taken[1]
     assert some.beside(path.z[0], path.direction[0], True)
+
+
+@pytest.fixture(scope="module")
+def stiff():
+    """Twelve contacts, stiff beside five modes that lie close together."""
+    one = strip(kept=(1.2, 1.25, 1.3, 1.35, 1.4), n_0=2.4)
+    contacts = tuple(replace(c, k_u=3.0 * c.k_u, k_v=3.0 * c.k_v) for c in one.contacts)
+    system = System(replace(one, contacts=contacts), (1,))
+    more = (1, 2, 3)
+    lifted = Lifted(system.with_harmonics(more).balance(), [1], list(more), 0.01)
+    return traced(system).branches.paths[0], lifted, lambda z: system.with_harmonics(more).extended(z, (1,))
+
+
+def newton(lifted, guess, along, begin, steps):
+    """Newton's method as it is from a place, in the plane through a guess: where it comes to, or None."""
+    balance, z = lifted.balance, begin.copy()
+    balance.measure(guess)
+    scale = np.array(balance.scale)
+    row = along / scale
+    for _ in range(steps):
+        balance.evaluate(z)
+        matrix = np.vstack((np.array(balance.jacobian) * scale, row))
+        step = np.linalg.solve(matrix, -np.append(balance.residual, row @ ((z - guess) / scale)))
+        z += scale * step
+        if np.linalg.norm(step) < 1e-9:
+            return z
+        if not np.linalg.norm(step) < 1e6:
+            return None
+    return None
+
+
+def test_steps_that_lead_too_far_are_shortened(stiff):
+    """Where Newton's method as it is finds few; what is found solves the balance."""
+    path, lifted, extended = stiff
+    found, plain = [], []
+    for z, direction in zip(path.z[::4], path.direction[::4], strict=True):
+        guess, along = extended(z), extended(direction)
+        plain.append(newton(lifted, guess, along, guess, 8) is not None)
+        found.append(lifted.beside(z, direction))
+        if found[-1]:
+            there = np.array(lifted.newton.z)
+            true = newton(lifted, guess, along, there, 4)
+            assert np.linalg.norm(there - true) < 0.02 * np.linalg.norm(true - guess) + 1e-9
+    assert np.mean(found) > 0.7
+    assert np.mean(plain) < 0.5
+
+
+def test_a_displacement_leads_to_the_next(stiff):
+    """With fewer Jacobians, to the same place where there is one."""
+    path, lifted, extended = stiff
+    taken, both = [0, 0], 0
+    before = None
+    for z, direction in zip(path.z, path.direction, strict=True):
+        places = []
+        for led in (False, True):
+            lifted.lead(z, extended(z))  # by nothing
+            if led and before is not None:
+                lifted.lead(*before)
+            count = lifted.newton.evaluations
+            places.append(np.array(lifted.newton.z) if lifted.beside(z, direction) else None)
+            taken[led] += lifted.newton.evaluations - count
+        if places[0] is not None and places[1] is not None:
+            both += 1
+            way = np.linalg.norm(places[0] - extended(z))
+            assert np.linalg.norm(places[0] - places[1]) < 0.05 * way + 1e-9
+        before = before if places[1] is None else (z, places[1])
+    assert both > 0.7 * len(path.z)
+    assert taken[1] < 0.8 * taken[0]
 
 
 def test_a_step_with_the_jacobian_from_before_leaves_little_of_a_displacement(blade):

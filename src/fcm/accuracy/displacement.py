@@ -45,6 +45,7 @@ class Displacement:
                 continue
             known[i] = 1
             before: cython.double = self.lifted.newton.evaluations
+            self.led(i, z, theirs, known)
             if self.missed > most or not self.lifted.beside(z[i], direction[i], True):
                 self.missed += self.lifted.newton.evaluations - before
                 change[i, :] = NAN
@@ -54,3 +55,21 @@ class Displacement:
             change[i, 0] = (self.lifted.found[0] - z[i, n]) / z[i, n]
             for d in range(amplitude.shape[1]):
                 change[i, 1 + d] = (self.lifted.found[1 + d] - amplitude[i, d]) / unit[i, d]
+
+    @cython.cfunc
+    @cython.exceptval(-1, check=False)
+    def led(
+        self,
+        i: cython.Py_ssize_t,
+        z: cython.double[:, ::1],
+        theirs: cython.double[:, ::1],
+        known: cython.uchar[::1],
+    ) -> cython.int:
+        """Begin at the displacement of the nearest point of which that is known."""
+        off: cython.Py_ssize_t
+        j: cython.Py_ssize_t
+        for off in range(1, known.shape[0]):
+            for j in (i - off, i + off):
+                if 0 <= j < known.shape[0] and known[j] and theirs[j, 0] == theirs[j, 0]:
+                    return self.lifted.lead(z[j], theirs[j])
+        return 0

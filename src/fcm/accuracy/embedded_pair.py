@@ -22,7 +22,7 @@ from fcm.accuracy.options import PAIR, PairOptions
 from fcm.accuracy.partner import partner_of
 from fcm.accuracy.partner_curve import Followed, Indices, PartnerCurve
 from fcm.accuracy.peaks import heights, rise_beside
-from fcm.accuracy.pieces import CurvePiece, nearest, piece_of
+from fcm.accuracy.pieces import CurvePiece, distinct, lengths, nearest, piece_of
 from fcm.continuation import Mark, Path
 from fcm.harmonic.further import HIGHEST, Further
 from fcm.harmonic.record import borne_along
@@ -113,8 +113,8 @@ def errors_along(
     settles = inside | ~partner.linear[tops]
     told = settles & np.isfinite(height)
     error[tops[told], d[told]] = _of_peaks(np.abs(height - now) / unit[tops, d], options)[told]
-    for top in np.unique(tops[told]).tolist():
-        beyond = np.abs(partner.left_out(top)) / unit[top]
+    every = np.unique(tops[told])
+    for top, beyond in zip(every.tolist(), np.abs(partner.left_out(every)) / unit[every], strict=True):
         error[top] = np.where(tops == top, np.maximum(error[top], beyond), error[top])
     error *= unit / np.where(shown.amplitude > 0.0, shown.amplitude, unit)
     comes: Mask = ~np.any(np.isnan(error), axis=1)
@@ -193,7 +193,8 @@ def _spectrum(
 ) -> tuple[FloatArray, Indices]:
     """What each harmonic left out would have without feedback (harmonic,) of sizes (dof,), at most, at
     special points and where one that is left out meets a mode and leads there; and these."""
-    further = Further(system)
+    further, place = Further(system), lengths(path)
+    special = special[distinct(place[special], options.together * (place[-1] - place[0]))]
     met: Indices = further.meetings(path.z, shown.amplitude)
     share = further.shares(path.z[special], np.tile(size, (len(special), 1))).max(axis=0)
     if met.size:  # there it leads, however small the motion is

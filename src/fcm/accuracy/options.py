@@ -42,6 +42,9 @@ class PairOptions:
         Points at an end of a stretch, from which the partner is sought.
     same : float
         Relative difference of amplitudes up to which the partner has come to the other end of a stretch.
+    together : float
+        Part of the length of a curve: of the greatest amplitudes of degrees of freedom that lie so closely
+        together one tells for all what the harmonics do that are left out, and of tops and folds which.
     own : float
         Part of a displacement, by which the partner itself is off: no error at a point is told to be less.
     chance : float
@@ -89,6 +92,7 @@ class PairOptions:
     beyond: float = 1.0
     tries: int = 8
     same: float = 0.02
+    together: float = 0.005
     own: float = 0.05
     chance: float = 0.1
     chance_at_peaks: float = 0.05

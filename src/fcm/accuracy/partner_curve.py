@@ -13,7 +13,7 @@ from fcm.accuracy.displacement import Displacement
 from fcm.accuracy.interpolation import Filled, places, steepness
 from fcm.accuracy.options import PairOptions
 from fcm.accuracy.partner import lifted_of, partner_of
-from fcm.accuracy.pieces import CurvePiece, piece_of, piece_through, rates
+from fcm.accuracy.pieces import CurvePiece, distinct, piece_of, piece_through, rates
 from fcm.accuracy.residual import left_out
 from fcm.accuracy.same_frequency import shifted
 from fcm.accuracy.stretch import Piece, Stretches
@@ -82,7 +82,7 @@ class PartnerCurve:
         places(path.z, path.direction, np.ptp(path.parameter) or 1.0, self.place)
         steepness(np.ascontiguousarray(path.parameter), self.amplitude, options.steep, self.weight)
         self.change = np.zeros((count, 1 + dofs))
-        self.theirs = np.empty((count, len(lifted.newton.z)))  # where it was found
+        self.theirs = np.full((count, len(lifted.newton.z)), np.nan)  # where it was found
         self.known = self.linear.copy()
         self.filled = Filled(self.place, self.change, self.known.view(np.uint8))
 
@@ -123,17 +123,29 @@ class PartnerCurve:
             self.change, self.theirs, self.known.view(np.uint8), self.vain,
         )  # fmt: skip
 
-    def left_out(self, i: int) -> FloatArray:
-        """By how much (dof,) the harmonics that the partner lacks would change its amplitudes beside
-        a point."""
+    def left_out(self, tops: Indices) -> FloatArray:
+        """By how much (top, dof) the harmonics that the partner lacks would change its amplitudes beside
+        points, in their order; of those that lie closely together as at the first."""
+        each = np.zeros((len(tops), self.amplitude.shape[1]))
+        alone = distinct(self.place[tops], self._near)
+        for k in alone.tolist():
+            there = self._there(int(tops[k]))
+            if there is not None:
+                each[k] = left_out(self.stretches.finer, there, self.options)
+        found: FloatArray = each[alone[np.searchsorted(alone, np.arange(len(tops)), "right") - 1]]
+        return found
+
+    def _there(self, i: int) -> FloatArray | None:
+        """The partner beside a point, if there is one that may be anything else."""
         lifted, path = self.finding.lifted, self.path
         if self.linear[i]:
-            return np.zeros(self.amplitude.shape[1])
-        if not lifted.beside(path.z[i], path.direction[i], True) and not lifted.abreast(
-            self._padded(i), True
-        ):
-            return np.zeros(self.amplitude.shape[1])
-        return left_out(self.stretches.finer, np.array(lifted.newton.z), self.options)
+            return None
+        if self.known[i] and np.isfinite(self.theirs[i, 0]):
+            there: FloatArray = self.theirs[i]
+            return there
+        if lifted.beside(path.z[i], path.direction[i], True) or lifted.abreast(self._padded(i), True):
+            return np.array(lifted.newton.z)
+        return None
 
     def off(self, i: int) -> FloatArray | None:
         """By how much (dof,) a partner of its own differs from it at the frequency of a point, in the unit of
@@ -192,10 +204,29 @@ class PartnerCurve:
     def followed(self, change: FloatArray) -> list[Followed]:
         """The stretches without displacements, with the pieces of the partner there; the highest
         are first."""
-        missed: Mask = np.any(np.isnan(change), axis=1)
-        found = runs(missed)
+        found = [run for run in runs(np.any(np.isnan(change), axis=1)) if not self._bridged(*run, change)]
         found.sort(key=lambda run: -float(self.amplitude[run[0] : run[1]].max()))
         return [Followed(first, end, self.stretches.between(first - 1, end)) for first, end in found]
+
+    def _bridged(self, first: int, end: int, change: FloatArray) -> bool:
+        """Whether points first to before end are so few between two of nearly the same displacement that this
+        is theirs: `change` and what is known then have it. Where the curve turns back it is not."""
+        before, after = first - 1, end
+        if (self.path.mark[max(before, 0) : after + 1] & Mark.FOLD).any():
+            return False
+        if before < 0 or after == len(change) or self.place[after] - self.place[before] > self._near:
+            return False
+        one, other = change[before], change[after]
+        most = max(np.abs(one).max(), np.abs(other).max(), self.options.nothing)
+        if not np.abs(other - one).max() < self.options.interpolated * most:
+            return False
+        self.known[first:end] = False
+        change[first:end] = self.interpolated(np.arange(first, end))
+        return True
+
+    @property
+    def _near(self) -> float:
+        return float(self.options.together * (self.place[-1] - self.place[0]))
 
     def compared(self, change: FloatArray) -> Compared:
         """Amplitudes, with changes (point, 1 + dof) that are known everywhere, and what the contacts bear

@@ -125,3 +125,16 @@ def rates(values: FloatArray, place: FloatArray) -> FloatArray:
     step = place[after] - place[before]
     found: FloatArray = (values[after] - values[before]) / np.where(step > 0.0, step, 1.0)[:, None]
     return found
+
+
+def distinct(place: FloatArray, near: float) -> npt.NDArray[np.intp]:
+    """Which of places, in their order, lie farther than that behind the one before of these.
+
+    >>> distinct(np.array([0.0, 0.1, 0.4, 0.6]), 0.3).tolist()
+    [0, 2]
+    """
+    found = list[int]()
+    for k, at in enumerate(place.tolist()):
+        if not found or at - place[found[-1]] > near:
+            found.append(k)
+    return np.array(found, dtype=np.intp)

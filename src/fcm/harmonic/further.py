@@ -26,6 +26,7 @@ HIGHEST = 50  # harmonic that is looked at, and that a balance may have
 AHEAD = 1.5  # times the highest of a balance that is looked at in any case: to have all is not to be exact
 FEW = 1000  # modes times ports, up to which a sum over them is faster without BLAS
 LEADS = cython.declare(cython.double, 0.5)  # of the greatest share, from which on one that meets a mode leads
+EVERY = 16  # points of a curve from one to the next whose forces are those of all, where there are many
 LEAST_AMPLITUDE = 1e-9  # of the greatest of all degrees of freedom, to which a share is referred
 
 
@@ -81,6 +82,8 @@ class Further:
     def meetings(self, z: cython.double[:, ::1], amplitude: cython.double[:, ::1]) -> npt.NDArray[np.intp]:
         """Points of a curve z (point, unknown + 1) where a harmonic that is left out meets a mode and leads
         there, each with those beside it."""
+        if self.modes is None and self.system.scene.ring is None:
+            return self.meetings_of_many(np.asarray(z), np.asarray(amplitude))
         m: cython.Py_ssize_t
         i: cython.Py_ssize_t
         n: cython.Py_ssize_t = z.shape[1] - 1
@@ -96,6 +99,41 @@ class Further:
                 at: cython.Py_ssize_t = i + 1 if fabs(after - h) < fabs(before - h) else i
                 if self.leads(z[at], amplitude[at], cython.cast(cython.Py_ssize_t, h) - 1):
                     flags[at - 1] = flags[at] = flags[at + 1] = 1
+        return np.flatnonzero(met)
+
+    def meetings_of_many(
+        self, z: npt.NDArray[np.float64], amplitude: npt.NDArray[np.float64]
+    ) -> npt.NDArray[np.intp]:
+        """The same of many modes or contacts.
+
+        The forces, which change slowly, are those of every so many points, and a harmonic that meets a mode
+        is compared with the greatest share there.
+        """
+        omega, linear = z[:, -1], self.system.linear
+        every = np.arange(min(EVERY // 2, len(z) - 1), len(z), EVERY)
+        most, force = np.zeros(len(every)), np.empty((len(every), *np.asarray(self.force).shape))
+        for k, i in enumerate(every.tolist()):
+            self.at(z[i], amplitude[i])
+            most[k], force[k] = np.max(self.share), self.force
+        near = np.minimum(np.arange(len(z)) // EVERY, len(every) - 1)
+        least = LEAST_AMPLITUDE * amplitude.max(axis=1, keepdims=True)
+        size = np.maximum(amplitude, least)
+        size[size == 0.0] = np.inf
+        ratio = self.natural / omega[1:-1, None]
+        passed = np.floor(np.maximum(ratio[1:], ratio[:-1]))
+        meets = (passed != np.floor(np.minimum(ratio[1:], ratio[:-1]))) & (passed <= self.highest)
+        met = np.zeros(len(z), dtype=np.bool_)
+        for h in np.unique(passed[meets]).tolist():
+            if int(h) not in self.others:
+                continue
+            step, mode = np.nonzero(meets & (passed == h))
+            later = np.abs(ratio[step + 1, mode] - h) < np.abs(ratio[step, mode] - h)
+            at = np.unique(1 + step + later)
+            ports = force[near[at], int(h) - 1].view(np.complex128)[..., 0][:, None]
+            displaced = np.abs(linear.displacements(np.array([h]), omega[at], ports))[:, 0]
+            leading = at[(displaced / size[at]).max(axis=1) > LEADS * most[near[at]]]
+            for beside in (-1, 0, 1):
+                met[leading + beside] = True
         return np.flatnonzero(met)
 
     @cython.cfunc
