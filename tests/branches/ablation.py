@@ -8,11 +8,13 @@ Each mechanism is switched off in turn, and what changes is printed: peaks, bran
 
 import sys
 from contextlib import contextmanager
+from importlib import import_module
 from unittest.mock import patch
 
 import numpy as np
 
-from fcm.response import all_branches, trace
+from fcm.accuracy import outline, refinement
+from fcm.response import all_branches
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 from fcm.scene import load_scene
@@ -20,6 +22,7 @@ from fcm.scene import load_scene
 from ..response.random_scenes import random_scene
 
 ACCURACY, SAME = 1e-2, 1e-5
+trace = import_module("fcm.response.trace")  # not the function of that name
 
 # what is put in the place of what, where it is called
 OFF = {
@@ -28,8 +31,15 @@ OFF = {
         (all_branches, "with_branching", lambda system, found: found),
         (all_branches, "breaks_symmetry", lambda system, found: False),
     ],
-    "looks where nothing is stable": [(trace, "with_missed", lambda found, stable, _: (found, list(stable)))],
-    "looks with more harmonics": [(trace, "with_higher", lambda found, stable: (found, False))],
+    "prolongation": [
+        (outline, "near", lambda before, harmonics: []),
+        (refinement, "near", lambda before, harmonics: []),
+    ],
+    "levels below peaks": [(all_branches, "with_levels_below_peaks", lambda found, accuracy: found)],
+    "levels where nothing is stable": [
+        (trace, "with_levels_where_unstable", lambda found, stable, accuracy: (found, False))
+    ],
+    "low harmonics": [(refinement, "with_low_harmonics", lambda system, found: system.harmonics)],
 }
 
 

@@ -1,26 +1,42 @@
 """Each mechanism that looks for branches is needed for an answer."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from fcm.scene import load_scene
+from fcm.scene import load_scene, scene_from_dict
 
+from ..response.random_scenes import random_scene
 from .ablation import OFF, answer, changes, without
+from .test_further_levels import ONE_MODE
+from .test_low_harmonics import beyond
 
-SCENES = Path(__file__).parent / "scenes"
+SCENES, KNOWN = Path(__file__).parent / "scenes", Path(__file__).parents[1] / "harmonic/scenes"
 
 
-@pytest.mark.parametrize(
-    ("mechanism", "name", "harmonics", "lost"),
-    [
-        ("folds followed", "closed_impact", 4, "branches 3 -> 2"),
-        ("branch points", "equal_stops", 3, "peak x1"),
-    ],
-)
-def test_without_a_mechanism_an_answer_is_lost(mechanism, name, harmonics, lost):
-    scene = load_scene(SCENES / f"{name}.toml").each_curve()[0]
+def one(folder, name, span=None):
+    scene = load_scene(folder / f"{name}.toml").each_curve()[0]
+    return scene if span is None else replace(scene, frequency_range=span)
+
+
+LOST = [
+    ("folds followed", one(SCENES, "closed_impact"), 4, "branches 3 -> 2"),
+    ("branch points", one(SCENES, "equal_stops"), 3, "peak x1"),
+    ("prolongation", random_scene(1), 10, "peak d0"),
+    ("levels below peaks", scene_from_dict(ONE_MODE).each_curve()[0], 5, "branches 4 -> 3"),
+    ("levels where nothing is stable", one(KNOWN, "chaos", (1.23, 1.6)), 7, "peak x0"),
+    ("low harmonics", beyond().scene, 0, "peak v"),
+]
+
+
+@pytest.mark.parametrize(("mechanism", "scene", "harmonics", "lost"), LOST, ids=[one[0] for one in LOST])
+def test_without_a_mechanism_an_answer_is_lost(mechanism, scene, harmonics, lost):
     whole = answer(scene, harmonics)
     with without(OFF[mechanism]):
         found = list(changes(whole, answer(scene, harmonics)))
     assert any(one.startswith(lost) for one in found)
+
+
+def test_each_mechanism_is_tried():
+    assert [one[0] for one in LOST] == list(OFF)

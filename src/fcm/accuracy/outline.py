@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fcm.branches.beside import beside
+from fcm.branches.prolongation import prolongated
 from fcm.continuation import Path
 from fcm.continuation.follow import Progress
 from fcm.harmonic.cost import PATIENCE, seconds_of
@@ -73,7 +73,7 @@ class Outline:
         near. Where these are none, what the level of the forces leads to."""
         system = self.system.with_harmonics(harmonics)
         begin = system.work.seconds
-        response = traced_from(system, self.system.harmonics, self.traced, near, progress)
+        response = traced_from(system, self.traced, near, progress)
         if response is None or not response.branches.paths:
             return outlined(system, progress, self.traced.found, near)
         levels = self._grown(self.traced.work, harmonics)  # are still to be followed
@@ -139,6 +139,6 @@ def with_more(
 
 
 def near(before: Outline, harmonics: tuple[int, ...]) -> list[FloatArray]:
-    """Solutions with more harmonics beside the stable peaks of a response."""
-    shown = [one.amplitude for one in before.shown]
-    return beside(before.system, before.traced.branches.paths, shown, harmonics)
+    """Solutions with more harmonics near the branches of a response."""
+    system = before.system
+    return list(prolongated(system.with_harmonics(harmonics), system.harmonics, before.traced.branches.paths))

@@ -14,8 +14,7 @@ from fcm.accuracy.options import PAIR, REFINEMENT, PairOptions, RefinementOption
 from fcm.accuracy.outline import Outline, near, outlined, with_more
 from fcm.continuation.follow import Progress
 from fcm.harmonic.cost import AGAIN
-from fcm.harmonic.nearby import with_a_window
-from fcm.harmonic.start import few_of
+from fcm.harmonic.start import few_of, with_low_harmonics
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -84,7 +83,7 @@ def accurate(
                 break
             sure = judged(found, accuracy)
             if sure.agrees:
-                more = with_a_window(found.system, found.traced.found)
+                more = with_low_harmonics(found.system, found.traced.found)
                 if more == found.system.harmonics:
                     return sure
             else:

@@ -55,7 +55,8 @@ def crossings(
     few = system.with_harmonics(system.harmonics[: few_of(system)])
     solutions, span = list[FloatArray](), system.scene.frequency_range
     turns = [turn.extended(few, one.harmonics) for one in found for turn in one.turns]
-    curves = _Curves(few, [turn for turn in turns if turn.short and options.within(turn.level)], options)
+    turns = [turn for turn in turns if turn.short and options.within(turn.level)]
+    curves = _Curves(few, turns, options)
     seconds = max(options.share * system.work.seconds, options.unnoticed)
     try:
         with system.work.up_to(system.work.seconds + seconds):

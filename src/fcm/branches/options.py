@@ -58,11 +58,28 @@ FOLDS = FoldOptions()
 
 
 @dataclass(frozen=True)
+class LevelOptions:
+    """Where the level of the forces is followed besides the resonances and the ends of the range."""
+
+    low: int = 3  # harmonics whose resonances are strong enough to keep themselves up
+    near: float = 0.02  # to a frequency that was looked at: a closed branch is about as wide
+    wide: float = 0.1  # of the range: of a range without a stable motion that is wider, halves as well
+    many: int = 9  # harmonics with which it is followed there: the branches of more are theirs, too
+    share: float = 0.2  # of the work before, that all may take,
+    unnoticed: float = 0.1  # and seconds of work that they may in any case
+
+
+LEVELS = LevelOptions()
+
+
+@dataclass(frozen=True)
 class ProlongationOptions:
     """Which points of a branch are prolongated to more harmonics."""
 
     of_a_kind: int = 8  # peaks, and folds
     even: int = 9  # points along the branch
+    far: float = 0.5  # of a solution's size: what moves further has come to another one
+    times: int = 3  # as many harmonics at once, where all at once lead nowhere
     enough: float = 1e-6  # of a displacement, from which Newton's method ends at the precision of numbers
 
 

@@ -2,12 +2,14 @@
 
 Each branch is prolongated at several of its points, as the branch of more harmonics may leave that of few
 anywhere. The solution with more is looked for in the plane normal to the curve of few; where Newton's method
-does not lead there at once, by a homotopy from the equations that the point of few solves (`Lifted`).
+does not lead there at once, by a homotopy from the equations that the point of few solves (`Lifted`); and
+where that does not, by solutions with some of the harmonics on the way.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -27,17 +29,89 @@ def prolongated(
 ) -> Iterator[FloatArray]:
     """Solutions (unknown + 1,) of a system within its range, near points of paths of fewer harmonics.
 
-    First one of each path, then the next of each, so that most branches are known before their other points.
+    First one of each path, then the next of each, so that most branches are known before their other points;
+    then the last before those that lead nowhere: there the branch of more harmonics leaves that of few, and
+    may be another one than elsewhere.
     """
     low, high = system.scene.frequency_range
-    lifted = Lifted(system.balance(), list(fewer), list(system.harmonics), options.enough)
-    chosen = [places(path, options) for path in paths]
-    for k in range(max(map(len, chosen), default=0)):
-        for path, at in zip(paths, chosen, strict=True):
-            if k >= len(at) or not lifted.beside(path.z[at[k]], path.direction[at[k]]):
+    ways = _ways(system, tuple(fewer), options)
+    every = [_Prolonged(path, ways, places(path, options)) for path in paths]
+    for k in range(max((len(one.places) for one in every), default=0)):
+        for one in every:
+            z = one.at(one.places[k]) if k < len(one.places) else None
+            if z is not None and low <= z[-1] <= high:
+                yield z
+    for one in every:
+        yield from (z for z in one.ends() if low <= z[-1] <= high)
+
+
+class _Prolonged:
+    """A path, and what its points lead to."""
+
+    def __init__(self, path: Path, ways: Sequence[Sequence[Lifted]], places: Sequence[int]) -> None:
+        self.path, self.ways, self.places = path, ways, places
+        self.leads = dict[int, bool]()
+
+    def at(self, i: int) -> FloatArray | None:
+        """The solution near a point; None where there is none."""
+        there = (_along(way, self.path.z[i], self.path.direction[i]) for way in self.ways)
+        z = next((z for z in there if z is not None), None)
+        self.leads[i] = z is not None
+        return z
+
+    def ends(self) -> Iterator[FloatArray]:
+        """The solutions near the last points before those that lead nowhere, by bisection."""
+        for here, there in pairwise(sorted(self.leads)):
+            low, high = (here, there) if self.leads[here] else (there, here)
+            if self.leads[here] == self.leads[there]:
                 continue
-            if lifted.newton.correct(1.0) and low <= lifted.newton.z[-1] <= high:
-                yield np.array(lifted.newton.z)
+            last = None
+            while abs(high - low) > 1:
+                middle = (low + high) // 2
+                z = self.at(middle)
+                low, high, last = (middle, high, z) if z is not None else (low, middle, last)
+            if last is not None:
+                yield last
+
+
+def at_its_frequency(
+    system: System, z: FloatArray, options: ProlongationOptions = PROLONGATION
+) -> FloatArray | None:
+    """The solution that Newton's method finds from z at its frequency, if that is not far."""
+    balance, newton = system.afresh(), system.stepper.newton
+    newton.z[:], newton.row[:] = z, np.eye(z.size)[-1]
+    balance.measure(z)
+    newton.scale[:] = balance.scale
+    return np.array(newton.z) if newton.correct(1.0) and newton.moved < options.far else None
+
+
+def _ways(system: System, fewer: tuple[int, ...], options: ProlongationOptions) -> list[list[Lifted]]:
+    """From fewer harmonics to those of a system: at once, and by some of them."""
+    more = system.harmonics
+    between, count = list[tuple[int, ...]](), len(fewer) * options.times
+    while count < len(more):
+        between.append(tuple(sorted({*fewer, *more[:count]})))
+        count *= options.times
+    ways = []
+    for sets in dict.fromkeys(((more,), tuple(dict.fromkeys((*between, more))))):
+        steps = zip((fewer, *sets), sets, strict=False)
+        ways.append([_lifted(system, few, many, options) for few, many in steps])
+    return ways
+
+
+def _lifted(
+    system: System, fewer: tuple[int, ...], more: tuple[int, ...], options: ProlongationOptions
+) -> Lifted:
+    return Lifted(system.with_harmonics(more).balance(), list(fewer), list(more), options.enough)
+
+
+def _along(way: Sequence[Lifted], z: FloatArray, direction: FloatArray) -> FloatArray | None:
+    """The solution near a point of a curve by one step after the other; None where one leads nowhere."""
+    for lifted in way:
+        if not (lifted.beside(z, direction) and lifted.newton.correct(1.0)):
+            return None
+        z, direction = np.array(lifted.newton.z), np.asarray(lifted.newton.tangent) * lifted.newton.scale
+    return z
 
 
 def places(path: Path, options: ProlongationOptions = PROLONGATION) -> list[int]:

@@ -8,7 +8,7 @@ of the level 1 is a solution.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -22,6 +22,7 @@ from fcm.harmonic.cost import paid, seconds_of
 from fcm.harmonic.linear_contacts import (
     GREATEST,
     closed_at_rest,
+    foresee,
     highest,
     least,
     linear_responses,
@@ -38,6 +39,7 @@ SHORTER = 0.5  # of that, where a curve has stalled,
 FINER = 0.25  # and where it has gone back on itself
 FEW = 5  # harmonics, whose curve tells those of more how far they are to be followed,
 UNKNOWNS = 64  # or as many as make this many unknowns
+ENOUGH = 3  # harmonics, with which a peak that one harmonic has at twice its height is within some per cent
 NEAR = 3.0  # level that a curve has to stay above for that of more harmonics not to come back to 1
 FURTHER = 2.0  # times its greatest level before, up to which that of more is followed
 BESIDE = 1e-4  # relative distance from a resonance, which an undamped structure has no response at
@@ -74,6 +76,13 @@ def solutions(system: System, omega: float, reach: float | None = None) -> Found
         at_rest = np.append(next(linear_responses(system, omega, 1.0)), omega)
         return replace(found, solutions=(at_rest, *found.solutions))
     return found if found.solutions else replace(found, solutions=tuple(_from_linear(system, omega)))
+
+
+def found_at(system: System, frequencies: Sequence[float], fewer: Sequence[Found] = ()) -> tuple[Found, ...]:
+    """Solutions at some frequencies; those of fewer harmonics tell how far the level is to be followed."""
+    foresee(system, frequencies)
+    reach = {one.omega: one.reach for one in fewer if np.isfinite(one.reach)}
+    return tuple(solutions(system, omega, reach.get(omega)) for omega in frequencies)
 
 
 def _followed(system: System, omega: float, linear: float, top: float, most: float) -> Found:
@@ -224,6 +233,21 @@ def looked_at(system: System) -> tuple[float, ...]:
     known = np.array([span[0], *inside, span[1]])
     widest = int(np.diff(known).argmax())
     return *span, *inside, float(known[widest : widest + 2].mean())
+
+
+def with_low_harmonics(system: System, found: Sequence[Found]) -> tuple[int, ...]:
+    """Harmonics of a system, and the lowest where with these other solutions hang together with rest.
+
+    found: where solutions were looked for with those of the system, and what was found. With one harmonic the
+    level of the forces may turn back just above 1, or go on, and with three turn just below 1: its curve then
+    shows nothing of what is there, and its errors are those of another motion.
+    """
+    few = tuple(sorted({*system.harmonics, *range(1, min(ENOUGH, few_of(system)) + 1)}))
+    if few == system.harmonics:
+        return few
+    finer = found_at(system.with_harmonics(few), [one.omega for one in found])
+    same = all(len(one.solutions) == len(other.solutions) for one, other in zip(found, finer, strict=True))
+    return system.harmonics if same else few
 
 
 def resonances(system: System) -> list[float]:

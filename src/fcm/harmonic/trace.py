@@ -12,12 +12,11 @@ from fcm.continuation import Branches, Events, FollowOptions, Path, all_branches
 from fcm.continuation.all_branches import Follow
 from fcm.continuation.follow import Progress
 from fcm.continuation.problem import Problem
-from fcm.harmonic.carried import MANY, found_at, led, place_on
 from fcm.harmonic.cost import paid
 from fcm.harmonic.drift import undetermined
 from fcm.harmonic.narrow import narrow
 from fcm.harmonic.record import recorded
-from fcm.harmonic.start import Found, looked_at
+from fcm.harmonic.start import Found, found_at, looked_at
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 
@@ -55,30 +54,20 @@ def traced(
 
 
 def traced_from(
-    system: System,
-    fewer: tuple[int, ...],
-    before: Traced,
-    near: Sequence[FloatArray],
-    progress: Progress | None = None,
+    system: System, before: Traced, near: Sequence[FloatArray], progress: Progress | None = None
 ) -> Traced | None:
-    """The branches through what those of fewer harmonics lead to where these were looked for, and through
-    solutions near; None if there is no such. No level is followed: what was found is as before."""
-    frequencies = [one.omega for one in before.found]
-    starts = [*led(system, fewer, before.branches.paths, frequencies), *near]
-    return replace(before, branches=_through(system, starts, progress)) if starts else None
+    """The branches through solutions near those of fewer harmonics; None if there is no such. No level is
+    followed: what was found is as before."""
+    return replace(before, branches=_through(system, near, progress)) if near else None
 
 
 def with_levels(system: System, before: Traced) -> Traced:
     """With what the levels of the forces lead to, and the branches through what is on none that is known."""
     begin = system.work.seconds
-    # what those of fewer lead to is on the branches; those of many tell which there are
-    known = [one if len(one.harmonics) >= MANY else replace(one, solutions=()) for one in before.found]
-    found, passed = _passed(system, known)
-    work = system.work.seconds - begin
-    span, paths = system.scene.frequency_range, before.branches.paths
-    inside = (z for z in passed if span[0] <= z[-1] <= span[1])
-    missed = [z for z in inside if all(place_on(system, path, z) is None for path in paths)]
-    return replace(with_further(system, replace(before, found=()), found, missed), work=work)
+    found, passed = _passed(system, before.found)
+    work, span = system.work.seconds - begin, system.scene.frequency_range
+    inside = [z for z in passed if span[0] <= z[-1] <= span[1]]
+    return replace(with_further(system, replace(before, found=()), found, inside), work=work)
 
 
 def _passed(system: System, fewer: Sequence[Found]) -> tuple[tuple[Found, ...], list[FloatArray]]:

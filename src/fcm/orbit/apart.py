@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
 from fcm.continuation import Path
 from fcm.continuation.all_branches import SAME
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from fcm.harmonic.system import System
 
 ACCURACY = 1e-2  # of the balance that exact motions begin near
+TOGETHER = 8  # points, within which one top speaks for those of other degrees of freedom
+AROUND = (1, 2, 3, 4, 6, 8, 11, 16, 23, 32)  # points from a top, where one may lead to the same motion
 SOME = (1, 2, 3, 4, 5)  # harmonics: with three a closed branch may be as far off as another one is
 Place = tuple[float, State]  # frequency [rad/s], and a guess there
 
@@ -60,10 +63,8 @@ def is_stable(found: Outline, z: FloatArray) -> bool:
 def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArray, Iterator[Place]]]:
     """The height of each end and top of a balance's branches, itself, and guesses beside it, the nearest
     first."""
-    from fcm.branches.beside import around, tops
-
     for path, shown in zip(found.traced.branches.paths, found.shown, strict=True):
-        beside = [(top, around(even, top)) for top, even in tops(path, shown.amplitude)]
+        beside = [(top, _around(even, top)) for top, even in _tops(path, shown.amplitude)]
         for top, points in [(0, iter([0])), (-1, iter([-1])), *beside]:
             guesses = (path.z[i] for i in points)
             yield (
@@ -71,6 +72,28 @@ def states_along(scene: Scene, found: Outline) -> Iterator[tuple[float, FloatArr
                 path.z[top],
                 _places(scene, found.system.harmonics, guesses),
             )
+
+
+def _tops(path: Path, amplitude: FloatArray) -> Iterator[tuple[int, npt.NDArray[np.bool_]]]:
+    """Where degrees of freedom are highest, of points inside the range with an even number of real
+    multipliers above 1; and which points (point,) have that.
+    """
+    even = path.orientation * np.sign(path.direction[:, -1]) > 0.0
+    inside = (path.parameter > path.parameter.min()) & (path.parameter < path.parameter.max())
+    places = np.flatnonzero(even & inside)
+    if not places.size:
+        return
+    highest = np.unique(places[amplitude[places].argmax(axis=0)])
+    apart = np.append(True, np.diff(highest) > TOGETHER)
+    for top in highest[apart].tolist():
+        yield top, even
+
+
+def _around(even: npt.NDArray[np.bool_], top: int) -> Iterator[int]:
+    """A top and the points around it that no fold is between, the nearest first."""
+    for i in (top, *(top + way * step for step in AROUND for way in (-1, 1))):
+        if 0 <= i < len(even) and even[min(i, top) : max(i, top) + 1].all():
+            yield i
 
 
 def _places(scene: Scene, harmonics: tuple[int, ...], points: Iterator[FloatArray]) -> Iterator[Place]:

@@ -9,7 +9,7 @@ from fcm.branches.branch_points import all_up_to
 from fcm.branches.prolongation import prolongated
 from fcm.branches.search import breaks_symmetry, with_branching, with_isolas
 from fcm.harmonic.trace import with_further
-from fcm.response.restless import with_traced
+from fcm.response.further_levels import with_levels_below_peaks, with_traced
 
 ROUNDS = 3  # of more harmonics, for branches that were not known when the harmonics were chosen
 
@@ -39,7 +39,8 @@ def _enough(found: Accurate, accuracy: float) -> bool:
 
 
 def _searched(found: Accurate, accuracy: float) -> Accurate:
-    """With what its folds and branch points lead to."""
+    """With what levels below its peaks, its folds and its branch points lead to."""
+    found = with_levels_below_peaks(found, accuracy)
     traced = with_branching(found.system, with_isolas(found.system, found.traced))
     return found if traced is found.traced else with_traced(found, traced, accuracy)
 

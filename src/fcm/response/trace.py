@@ -24,11 +24,10 @@ from fcm.harmonic.rigid import too_stiff
 from fcm.harmonic.stiff import with_digits
 from fcm.harmonic.system import System
 from fcm.response.all_branches import with_all_branches
-from fcm.response.higher import with_higher
+from fcm.response.further_levels import with_levels_where_unstable
 from fcm.response.incomplete import FLOATING, incomplete
 from fcm.response.leading import leading, of_all, with_tops
 from fcm.response.loose import loose
-from fcm.response.restless import with_missed
 from fcm.response.short_of import short_of
 from fcm.response.so_far import SoFar, Tell
 from fcm.response.wanted import ONE_HARMONIC, Wanted
@@ -229,15 +228,11 @@ def _of_greatest(found: Accurate, path: Rows, borne: FloatArray) -> FloatArray:
 
 
 def _followed(found: Accurate, accuracy: float | None) -> _Followed:
-    """A response with its stability, and with what was missed where nothing was stable."""
-    least = np.inf if accuracy is None else accuracy
+    """A response with every branch, and its stability."""
+    most = np.inf if accuracy is None else accuracy
     followed = _with_stability(_Followed(with_all_branches(found, accuracy), [], []), accuracy)
-    more, stable = with_missed(followed.found, followed.stable, least)
-    followed = _with_stability(replace(followed, found=more, stable=stable), accuracy)
-    if accuracy is not None:
-        return followed
-    higher, exceeded = with_higher(followed.found, followed.stable)
-    return _with_stability(replace(followed, found=higher, exceeded=exceeded), accuracy)
+    more, exceeded = with_levels_where_unstable(followed.found, followed.stable, most)
+    return _with_stability(replace(followed, found=more, exceeded=exceeded), accuracy)
 
 
 def _with_stability(followed: _Followed, accuracy: float | None) -> _Followed:

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from fcm.accuracy.refinement import accurate
-from fcm.harmonic.nearby import with_a_window
+from fcm.harmonic.start import with_low_harmonics
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.response.trace import traced_curve
 from fcm.response.wanted import Wanted
 
-from ..motion.cases import yang
-from .scenes import scene
-from .truth import exact
+from ..harmonic.scenes import scene
+from ..harmonic.truth import exact
 
 MODAL = {
     "dofs": ["u", "v"],
@@ -52,19 +51,12 @@ def test_a_window_that_one_harmonic_has_outside_the_range_is_found(accuracy):
     )
 
 
-def test_where_no_level_turns_near_one_nothing_more_is_followed(monkeypatch):
-    system = System(yang(100.0))
-    found = traced(system).found
-    monkeypatch.setattr("fcm.harmonic.nearby.solutions", None)
-    assert with_a_window(system, found) == (1,)
-
-
 def test_harmonics_that_have_the_same_solutions_stay():
     """Beyond the true fold as well the level turns near 1, but above it with any harmonics."""
     system = System(scene(MODAL, [STOP], (1.665, 2.05)))
     found = traced(system).found
     assert 1.0 < min(turn.level for turn in found[0].turns) < 2.0
-    assert with_a_window(system, found) == (1,)
+    assert with_low_harmonics(system, found) == (1,)
 
 
 IMPACTS = 0.776378  # amplitude of v

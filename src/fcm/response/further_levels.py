@@ -1,0 +1,129 @@
+"""Levels of the forces at frequencies that the branches found so far tell of.
+
+Where a low harmonic comes to the highest peak, or between that and the nearest resonance: a contact that
+opens and closes twice or thrice a period may keep that going on a closed branch, beside one on which it
+stays closed. And in ranges in which no motion that was found is stable: there another one is approached, on a
+branch that was not found or that repeats after several periods or never.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fcm.accuracy.outline import Outline
+from fcm.accuracy.refinement import Accurate, judged
+from fcm.branches.options import LEVELS, LevelOptions
+from fcm.branches.prolongation import at_its_frequency
+from fcm.harmonic.reported import reported, reported_at
+from fcm.harmonic.start import NEAR, Found, resonances, solutions
+from fcm.harmonic.system import System
+from fcm.harmonic.trace import Traced, with_further
+from fcm.harmonic.work import TooLongError
+from fcm.scene.model import FloatArray
+from fcm.stability.unstable_ranges import Stretch, stretches_of
+
+
+def with_traced(found: Accurate, traced: Traced, accuracy: float) -> Accurate:
+    """A response with further branches, which come after its own."""
+    system, known = found.system, len(found.shown)
+    shown = (*found.shown, *(reported(system, path) for path in traced.branches.paths[known:]))
+    every = judged(Outline(system, traced, shown, found.seconds), accuracy, found.errors)
+    return replace(every, further=found.further, begun=found.begun)
+
+
+def with_levels_below_peaks(found: Accurate, accuracy: float, options: LevelOptions = LEVELS) -> Accurate:
+    """With the branches that the level leads to where low harmonics come to the highest peaks."""
+    system = found.system
+    looked = list(_looks(system, _met(found, options), options))
+    return _with_branches(found, looked, [z for one in looked for z in one.solutions], accuracy)
+
+
+def with_levels_where_unstable(
+    found: Accurate, stable: Sequence[FloatArray], accuracy: float, options: LevelOptions = LEVELS
+) -> tuple[Accurate, bool]:
+    """With the branches that the level leads to in ranges in which nothing is stable, and whether more
+    harmonics have a higher motion there.
+
+    stable (path, point): 1 where a motion is stable, 0 where it is not, NaN where that is not known. With few
+    harmonics the level is followed with more: what these have is led to the others, or is higher than their
+    peaks may be by the errors.
+    """
+    system, paths = found.system, found.traced.branches.paths
+    stretches = stretches_of(paths, stable, system.scene.frequency_range)
+    harmonics = system.harmonics
+    if len(harmonics) < options.many:
+        harmonics = tuple(sorted({*harmonics, *range(1, options.many + 1)}))
+    more = system.with_harmonics(harmonics)
+    looked = list(_looks(more, stretches, options))
+    passed = [z for one in looked for z in one.solutions]
+    if more.harmonics == system.harmonics:
+        return _with_branches(found, looked, passed, accuracy), False
+    looked = [replace(one, harmonics=system.harmonics, solutions=(), turns=()) for one in looked]
+    guesses = (system.extended(z, more.harmonics) for z in passed)
+    starts = [z for z in (at_its_frequency(system, guess) for guess in guesses) if z is not None]
+    found = _with_branches(found, looked, starts, accuracy)
+    greatest = np.max([one.amplitude.max(axis=0) for one in found.shown], axis=0) * (1.0 + found.peak)
+    heights = (reported_at(more, z[None], np.eye(z.size)[-1:]).amplitude[0] for z in passed)
+    return found, any((height > greatest).any() for height in heights)
+
+
+def _with_branches(
+    found: Accurate, looked: Sequence[Found], starts: Sequence[FloatArray], accuracy: float
+) -> Accurate:
+    """With the branches through solutions, and where it was looked for them."""
+    if not looked:
+        return found
+    traced = with_further(found.system, found.traced, looked, starts)
+    if len(traced.branches.paths) == len(found.shown):
+        return replace(found, traced=traced)
+    return with_traced(found, traced, accuracy)
+
+
+def _looks(system: System, stretches: Iterable[Stretch], options: LevelOptions) -> Iterator[Found]:
+    """What the level passes in the middle of stretches, the widest first.
+
+    Of a wide stretch both halves are looked at as well: a closed branch may lie beside its middle. The level
+    is followed up to where few curves come back from: that takes half as long as to its end.
+    """
+    first, last = system.scene.frequency_range
+    left = sorted(stretches, key=_width)
+    seconds = max(options.share * system.work.seconds, options.unnoticed)
+    with system.work.up_to(system.work.seconds + seconds):
+        while left:
+            low, high = left.pop()
+            middle = 0.5 * (low + high)
+            try:
+                yield solutions(system, middle, NEAR)
+            except TooLongError:
+                return
+            if high - low > options.wide * (last - first):
+                left = sorted([*left, (low, middle), (middle, high)], key=_width)
+
+
+def _width(stretch: Stretch) -> float:
+    return stretch[1] - stretch[0]
+
+
+def _met(found: Accurate, options: LevelOptions) -> Iterator[Stretch]:
+    """Where low harmonics come to a highest peak, and between that and the nearest resonance, as those of
+    smaller motions are: single frequencies, as stretches of no width."""
+    low, high = found.system.scene.frequency_range
+    known, inside = [one.omega for one in found.traced.found], resonances(found.system)
+    for top in _highest_peaks(found):
+        nearest = min(inside, key=lambda omega: abs(omega - top), default=top)
+        harmonics = (h for h in found.system.harmonics if 1 < h <= options.low)
+        for omega in (omega / h for h in harmonics for omega in (top, 0.5 * (top + nearest))):
+            if low < omega < high and all(abs(omega - other) > options.near * omega for other in known):
+                known.append(omega)
+                yield omega, omega
+
+
+def _highest_peaks(found: Accurate) -> Iterator[float]:
+    """The frequencies of the highest peaks of the degrees of freedom."""
+    paths, shown = found.traced.branches.paths, found.shown
+    heights = np.array([one.amplitude.max(axis=0) for one in shown])
+    for d, k in enumerate(heights.argmax(axis=0).tolist()):
+        yield float(paths[k].parameter[shown[k].amplitude[:, d].argmax()])
