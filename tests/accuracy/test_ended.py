@@ -3,7 +3,6 @@
 from fcm.accuracy.refinement import given
 from fcm.continuation import Mark
 from fcm.harmonic.system import System
-from fcm.harmonic.trace import traced
 from fcm.scene import scene_from_dict
 
 
@@ -34,7 +33,8 @@ def test_nothing_is_told_of_what_further_harmonics_have_no_branch_of():
     )  # fmt: skip
     found = given(System(one, (*range(1, 10), 11, 12)))
     ((path, errors),) = _with_a_fold(found.traced.branches.paths, found.errors)
-    ((finer, _),) = _with_a_fold(traced(System(one, tuple(range(1, 25)))).branches.paths, found.errors)
+    many = given(System(one, tuple(range(1, 25))))
+    ((finer, _),) = _with_a_fold(many.traced.branches.paths, many.errors)
     end = finer.parameter.max()
     assert end < 0.996 * path.parameter.max()
     beyond = path.parameter > 1.0001 * end

@@ -10,15 +10,21 @@ from fcm.branches.branch_points import BranchPoint, all_up_to, branch_points
 from fcm.branches.isolas import crossings
 from fcm.branches.mirror import mirrors
 from fcm.branches.options import BRANCHING, BranchingOptions
+from fcm.branches.prolongation import prolongated
 from fcm.continuation import Path, Status
 from fcm.continuation.all_branches import contains
+from fcm.harmonic.start import few_of
 from fcm.harmonic.system import System
 from fcm.harmonic.trace import Traced, traced, with_further
+from fcm.scene.model import FloatArray
 
 
 def every_branch(system: System) -> Traced:
-    """Trace all branches of the response of a system."""
-    return with_branching(system, with_isolas(system, traced(system)))
+    """Trace all branches of the response of a system; of many harmonics from those of a few, too."""
+    few, near = system.with_harmonics(system.harmonics[: few_of(system)]), list[FloatArray]()
+    if few.harmonics != system.harmonics:
+        near += prolongated(system, few.harmonics, traced(few).branches.paths)
+    return with_branching(system, with_isolas(system, traced(system, near=near)))
 
 
 def with_isolas(system: System, found: Traced) -> Traced:
