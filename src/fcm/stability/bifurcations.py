@@ -24,13 +24,15 @@ from fcm.scene.model import FloatArray
 from fcm.stability.along_branch import Verdicts
 from fcm.stability.bifurcation_functions import MANY, dip
 from fcm.stability.inserted import Crossing, Inserted, with_points
+from fcm.stability.multipliers import MANY_CONTACTS
 from fcm.stability.verdict import FLIP_NEAR, Bifurcation, Verdict
 
 IntArray = npt.NDArray[np.intp]
 
 __all__ = ["Bifurcation", "Crossing", "Inserted", "Stability", "stability", "with_points"]
 
-SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at
+SPAN = 16  # points of one harmonic, which misses windows anyway, between two that are always looked at;
+SPAN_OF_MANY = 8  # of many contacts with more harmonics: each changes the growth by little
 DEVIATION = 1.0  # of the growth from a straight line, over its own size, that is followed up
 SAFE = -0.05  # growth that is not followed up
 ENOUGH = -0.3  # growth that is as good as any that is less
@@ -71,7 +73,9 @@ def stability(system: System, path: Path, beyond: npt.NDArray[np.bool_] | None =
 
 class _Along:
     def __init__(self, system: System, path: Path) -> None:
-        self.path, self.verdicts, self.single = path, Verdicts(system, path), len(system.harmonics) == 1
+        self.path, self.verdicts = path, Verdicts(system, path)
+        self.many = len(system.scene.contacts) >= MANY_CONTACTS
+        self.span = SPAN if len(system.harmonics) == 1 else SPAN_OF_MANY if self.many else 1
 
     def run(self, beyond: npt.NDArray[np.bool_]) -> Stability:
         even = self._even()
@@ -80,7 +84,8 @@ class _Along:
         for first, end in runs(even & ~beyond):
             last = end - 1
             self._look(first, last)
-            self._hidden(first, last)
+            if not self.many:
+                self._hidden(first, last)
             places = self.verdicts.among(first, last)
             at = np.array([int(t) for t in places if t == int(t)])
             known = np.array([self.verdicts[i].stable for i in at.tolist()])
@@ -102,7 +107,7 @@ class _Along:
 
     def _look(self, first: int, last: int) -> None:
         """Enough points of a run."""
-        parts = max(-(-(last - first) // (SPAN if self.single else 1)), 1)
+        parts = max(-(-(last - first) // self.span), 1)
         angle = self.verdicts.rotation[first : last + 1]
         passed = np.floor((angle - angle[0]) / PHASE)
         some = (first + k * (last - first) // parts for k in range(parts + 1))
@@ -177,7 +182,7 @@ class _Along:
             return
         one, middle, other = self.verdicts.at(a), (a + b) // 2, self.verdicts.at(b)
         passive = one.passive and other.passive
-        if not passive and not _straight(one, self.verdicts.at(middle), other):
+        if not passive and not _straight(one, self.verdicts.at(middle), other, self.many):
             self._between(a, middle)
             self._between(middle, b)
 
@@ -226,16 +231,24 @@ class _Along:
         return found
 
 
-def _straight(one: Verdict, middle: Verdict, other: Verdict) -> bool:
-    """Whether three verdicts agree, with growths so nearly on a line that none between has another sign."""
+def _straight(one: Verdict, middle: Verdict, other: Verdict, many: bool) -> bool:
+    """Whether three verdicts agree, with growths so nearly on a line that none between has another sign.
+
+    Of many contacts one begins to slip everywhere, and of their many multipliers one is near to a flip: there
+    that is no reason to look more closely.
+    """
     stable, growth = (one.stable, middle.stable, other.stable), (one.growth, middle.growth, other.growth)
     if not stable[0] == stable[1] == stable[2]:
         return math.isnan(stable[0]) and math.isnan(stable[1]) and math.isnan(stable[2])
     # what is unstable is no less so by a flip besides
-    if stable[0] == 1.0 and min(one.before_flip, middle.before_flip, other.before_flip) < FLIP_NEAR:
+    if (
+        not many
+        and stable[0] == 1.0
+        and min(one.before_flip, middle.before_flip, other.before_flip) < FLIP_NEAR
+    ):
         return False
     safe = max(growth) < SAFE
-    if not safe and not one.held == middle.held == other.held:
+    if not many and not safe and not one.held == middle.held == other.held:
         return False
     if stable[0] == 1.0 and (safe or one.passive or middle.passive or other.passive):
         return True

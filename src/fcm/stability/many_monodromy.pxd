@@ -4,7 +4,7 @@ cdef class ManyMonodromy:
     cdef public StateSequence sequence
     cdef readonly int modes, follows, contacts, columns, first
     cdef double rate, omega
-    cdef object slow, fast, natural, ratio, far
+    cdef object slow, fast, natural, ratio, far, stiffness, term, product
     cdef public list remembering
     cdef double[:, ::1] contact, by_slow, by_fast, K, G, L, R, b, bt, out, into
     cdef double[:, ::1] q, v, tq, tv, work, g, w, phi, phi_f, port
@@ -18,4 +18,4 @@ cdef class ManyMonodromy:
     cdef void change(self, int c, int was, int to, double unit) noexcept
     cdef void pull(self) noexcept
     cdef int propagate(self, double length) except -1
-    cdef void apply(self, double h) noexcept
+    cdef int apply(self, double h) except -1

@@ -71,6 +71,7 @@ class ManyMonodromy:
         self.by_slow, self.by_fast = np.ascontiguousarray(self.slow.T), np.ascontiguousarray(self.fast.T)
         self.natural, self.ratio, self.far = natural[~far], damping[~far], natural[far]
         self.K, self.G = np.zeros((modes, modes)), np.zeros((follow, follow))
+        self.stiffness = np.asarray(self.K)
         self.L, self.R = np.zeros((follow, modes)), np.zeros((modes, follow))
         self.damping, self.state = np.zeros(modes), np.zeros(contacts, dtype=np.intc)
         self.b, self.bt = np.zeros((2, follow)), np.zeros((2, follow))
@@ -83,6 +84,7 @@ class ManyMonodromy:
         """Arrays for so many disturbances."""
         self.columns = columns
         self.q, self.v, self.tq, self.tv, self.work, self.g = np.zeros((6, self.modes, columns))
+        self.term, self.product = np.asarray(self.tq), np.asarray(self.work)  # for BLAS
         self.w, self.phi = np.zeros((self.contacts, columns)), np.zeros((self.modes, columns))
         self.phi_f, self.port = np.zeros((self.follows, columns)), np.zeros((2, columns))
 
@@ -355,11 +357,10 @@ class ManyMonodromy:
         return 0
 
     @cython.cfunc
-    @cython.exceptval(check=False)
-    def apply(self, h: cython.double) -> cython.void:
+    @cython.exceptval(-1, check=False)
+    def apply(self, h: cython.double) -> cython.int:
         """One step: the terms (A h)^j / j! of (q, q')' = (q', g - K q - D q')."""
         i: cython.Py_ssize_t
-        j: cython.Py_ssize_t
         k: cython.Py_ssize_t
         order: cython.int = 0
         size: cython.double = 1.0
@@ -372,23 +373,18 @@ class ManyMonodromy:
             order += 1
             share = h / order
             size *= self.rate * share
+            np.matmul(self.stiffness, self.term, out=self.product)
             for i in range(self.modes):
-                a = -self.damping[i]
+                a = self.damping[i]
                 for k in range(self.columns):
-                    self.work[i, k] = a * self.tv[i, k]
-                if order == 1:
-                    for k in range(self.columns):
+                    self.work[i, k] = -self.work[i, k] - a * self.tv[i, k]
+                    if order == 1:
                         self.work[i, k] += self.g[i, k]
-                for j in range(self.modes):
-                    a = self.K[i, j]
-                    for k in range(self.columns):
-                        self.work[i, k] -= a * self.tq[j, k]
-            for i in range(self.modes):
-                for k in range(self.columns):
                     self.tq[i, k] = share * self.tv[i, k]
                     self.tv[i, k] = share * self.work[i, k]
                     self.q[i, k] += self.tq[i, k]
                     self.v[i, k] += self.tv[i, k]
+        return 0
 
 
 @cython.cfunc
