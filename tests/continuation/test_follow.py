@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fcm.continuation import Events, FollowOptions, Mark, Problem, Status, all_branches, follow
+from fcm.continuation import End, Events, FollowOptions, Mark, Problem, Status, all_branches, follow
 from fcm.continuation.corrector import Newton
 from fcm.continuation.stepper import Stepper
 
@@ -914,3 +914,30 @@ def test_a_point_that_need_not_be_close_takes_fewer_evaluations():
     exact, many = corrected(circle().f, x, p)
     assert sum(few) < sum(many)
     assert 1e-15 < abs(rough.z[0] - exact.z[0]) < 1e-9
+
+
+@pytest.mark.parametrize("last", [2.5, 2.9])
+@pytest.mark.parametrize("jumps", [False, True])
+def test_a_curve_ends_where_a_function_becomes_negative(last, jumps):
+    """Just before; on a circle of radius 2 about (3, 2), where its unknown passes a value."""
+
+    def until(z):
+        return 1.0 - 2.0 * (z[0] > last) if jumps else last - z[0]
+
+    events = Events(ends=[End(lambda z: 1.0), End(until)])
+    path = follow(circle(), start(1.0, 2.0), (-1.0, 5.0), events, FollowOptions(0.1))
+    assert path.status is Status.EVENT and path.ended_by == 1
+    assert last - 1e-9 < path.z[-1, 0] <= last
+    assert path.parameter[-1] == pytest.approx(2.0 + np.sqrt(4.0 - (last - 3.0) ** 2), abs=1e-8)
+
+
+def test_a_curve_ends_at_the_first_event_of_a_kind():
+    path = follow(cubic(), start(-1.32, 1.0), (1.0, 3.0), Events(last=Mark.FOLD), FollowOptions(0.1))
+    assert path.status is Status.EVENT and path.where(Mark.FOLD).tolist() == [len(path.z) - 1]
+
+
+def test_a_curve_may_begin_in_any_direction():
+    """At the fold of a circle, where the parameter neither rises nor falls."""
+    top = start(3.0, 4.0)
+    path = follow(circle(), top, (-1.0, 5.0), options=FollowOptions(0.1), direction=np.array([1.0, 1.0, 0.0]))
+    assert path.status is Status.CLOSED and path.z[1, 0] > 3.0

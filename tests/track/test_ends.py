@@ -11,7 +11,7 @@ from fcm.harmonic.system import System
 from fcm.harmonic.trace import traced
 from fcm.scene import load_scene
 from fcm.scene.draft import number_of
-from fcm.track import curves, follow
+from fcm.track import curves, nonsmooth_continuation
 from fcm.track.curves import tracks
 from fcm.track.spot import Ending, Way
 from fcm.track.starts import moved
@@ -80,7 +80,8 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene, monkeypa
     narrow = replace(scene, frequency_range=(1.45, 1.56))
     way = Way(System(narrow, (1, 2, 3)), along(number_of(scene, "level")), span)
     made = followed(narrow, Condition(Kind.PEAK, 2), span)
-    monkeypatch.setattr(follow, "MOST", 25)
+    few = replace(nonsmooth_continuation.STEPS, most=25)
+    monkeypatch.setattr(nonsmooth_continuation, "STEPS", few)
     for one, (i, _) in [(curve, turn) for curve in made for turn in curve.turns()]:
         problem = way.tracked(one.condition)
         problem.measure(one.spots[i].z)
@@ -91,7 +92,9 @@ def test_a_curve_goes_on_where_the_response_is_an_isolated_point(scene, monkeypa
             continue
         isolated += 1
         for k in (i - 2, i - 3, i - 4):  # from wherever it is come to
-            spots, _ = follow.follow(way, one.condition, one.spots[k], one.s[k] < one.s[i])
+            spots, _ = nonsmooth_continuation.follow_special_point(
+                way, one.condition, one.spots[k], one.s[k] < one.s[i]
+            )
             assert next(spot.z[-1] for spot in spots if spot.turn) == pytest.approx(one.s[i], abs=1e-9)
             assert not spots[-1].turn
     assert isolated > 1 and all(one.whole for one in made)

@@ -11,7 +11,7 @@ from fcm.scene import load_scene
 from fcm.scene.draft import number_of
 from fcm.track import tracked
 from fcm.track.circle import Circle
-from fcm.track.follow import _Follower, land
+from fcm.track.nonsmooth_continuation import Pieces, land
 from fcm.track.spot import Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.top import is_top
@@ -59,7 +59,7 @@ def test_a_circle_on_which_there_is_no_motion_leads_nowhere(blind, ways):
 @pytest.mark.parametrize(("cosine", "taken"), [(0.95, True), (0.5, False)], ids=["away", "passing by"])
 def test_from_a_kink_a_curve_goes_on_only_along_a_line_that_leads_away(way, spot, cosine, taken):
     """A curve crosses the circle in both cases; its angle with the radius tells whether it is the way on."""
-    follower = _Follower(way, PEAK)
+    follower = Pieces(way, PEAK)
     follower._use(None)
     follower._measure(spot.z)
     assert follower._solve(spot.z, follower.held)

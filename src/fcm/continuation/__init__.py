@@ -2,7 +2,7 @@
 
 from fcm.continuation.all_branches import Branches, all_branches
 from fcm.continuation.checkpoint import Checkpoint
-from fcm.continuation.events import Events
+from fcm.continuation.events import End, Events
 from fcm.continuation.follow import follow
 from fcm.continuation.options import FOLLOW, FollowOptions
 from fcm.continuation.path import Mark, Path, Status
@@ -13,6 +13,7 @@ __all__ = [
     "FOLLOW",
     "Branches",
     "Checkpoint",
+    "End",
     "Events",
     "FollowOptions",
     "Mark",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -25,6 +25,14 @@ else:
     from fcm.continuation.problem import DEAR
 
 
+class End(NamedTuple):
+    """Where a function of z (n + 1,), which may jump, becomes negative; or before that by no more than a
+    length."""
+
+    value: Callable[[FloatArray], float]
+    within: float = 0.0
+
+
 @dataclass(frozen=True)
 class Events:
     """What a curve is to have points at, besides its folds, corners, peaks, branch points and ends.
@@ -36,10 +44,16 @@ class Events:
     narrow : sequence of (float, float)
         Values with a width, at which the curve may have a peak that no point away from them tells of: steps
         end there where the width is less than the longest step.
+    ends : sequence of End
+        The curve ends at the first of these, with the status EVENT.
+    last : int
+        Of `Mark`: the curve ends at the first event that has one of these, with the status EVENT.
     """
 
     values: Sequence[float] = ()
     narrow: Sequence[tuple[float, float]] = ()
+    ends: Sequence[End] = ()
+    last: int = 0
 
     def within(self, length: float) -> list[tuple[float, float]]:
         """Those narrower than a length."""
@@ -95,8 +109,8 @@ def root(
 ) -> cython.double:
     """Length at which a function changes sign between two lengths, before and after which it is known.
 
-    Where the curve cannot be found, that length is the root; but of a margin LOST: what is there may be
-    another part of a curve that goes back in the corner.
+    Where the curve cannot be found, that length is the root of a growth; of a margin it is LOST, as what is
+    there may be another part of a curve that goes back in the corner; of a fold, too: see `enclosed`.
     """
     at: cython.double
     now: cython.double
@@ -108,9 +122,11 @@ def root(
             return min(max(sides.secant, sides.low), sides.high)
         at = sides.at
         if not stepper.put(at, function.kind == MARGIN, False):
-            return sides.high if turning else LOST
+            return sides.high if function.kind == PEAK else LOST
+        if function.kind == FOLD and stepper.newton.moved > stepper.step:
+            return LOST
         if turning and not stepper.sharpen(False, function.kind == PEAK):
-            return sides.high
+            return LOST if function.kind == FOLD else sides.high
         now = value(stepper, stepper.between, function)
         if now == 0.0:
             return at
@@ -268,9 +284,51 @@ def located(
         look = looks.extreme(None if kind == FOLD else k)
         return [seen(stepper, look, mark)] if look.at <= limit else []
     at = root_within(stepper, TestFunction(kind, k))
-    return (
-        [found(stepper, at, mark, stepper.between)] if at <= limit and stepper.put(at, False, False) else []
+    if at == LOST:
+        event = enclosed(stepper)
+        return [event] if event.length <= limit else []
+    if at > limit or not stepper.put(at, False, False):
+        return []
+    return [found(stepper, at, mark, stepper.between)]
+
+
+class _Side(NamedTuple):
+    """A point beside a fold: length from the beginning of the step, z and tangent, both scaled."""
+
+    at: float
+    z: FloatArray
+    tangent: FloatArray
+
+
+def enclosed(stepper: Stepper) -> Event:
+    """A fold that is no regular point of the curve, between points on both sides, up to the cube of their
+    distance."""
+    scale = np.array(stepper.newton.scale)
+    low, high = (
+        _Side(at, np.array(point.z) / scale, np.array(point.tangent))
+        for at, point in ((0.0, stepper.here), (stepper.step, stepper.there))
     )
+    for _ in range(stepper.options.events.most):
+        width = high.at - low.at
+        if width < stepper.options.events.enclosed:
+            break
+        middle = low.at + width * low.tangent[-1] / (low.tangent[-1] - high.tangent[-1])
+        nearer = low.at, high.at
+        for at in (middle - 0.1 * width, middle + 0.1 * width):
+            if not (low.at < at < high.at and stepper.put(at, False, False)):
+                continue
+            if stepper.newton.moved < stepper.step and stepper.sharpen(False, False):
+                side = _Side(at, np.array(stepper.between.z) / scale, np.array(stepper.between.tangent))
+                low, high = (side, high) if side.tangent[-1] * low.tangent[-1] > 0.0 else (low, side)
+        if (low.at, high.at) == nearer:
+            break
+    part = low.tangent[-1] / (low.tangent[-1] - high.tangent[-1])
+    turn, length = high.tangent - low.tangent, float(np.linalg.norm(high.z - low.z))
+    z = low.z + length * part * (low.tangent + 0.5 * part * turn)
+    at = low.at + part * (high.at - low.at)
+    tangent = low.tangent + part * turn
+    here = stepper.here
+    return Event(at, Mark.FOLD, scale * z, scale * tangent, here.orientation, stepper.there.shift)
 
 
 def passings(stepper: Stepper, value: float, fold: Event | None) -> list[Event]:
@@ -303,3 +361,34 @@ def passing(
         return []
     stepper.between.z[stepper.problem.unknowns] = value
     return [found(stepper, at, Mark.STATION, stepper.between)]
+
+
+def first_end(stepper: Stepper, ends: Sequence[End]) -> tuple[int, float] | None:
+    """Which of some functions becomes negative first within the step, and at which length; None if none does.
+
+    There the least of them is not negative yet; one that is no number is.
+    """
+
+    def least(point: Point) -> float:
+        values = [end.value(np.array(point.z)) for end in ends]
+        return -1.0 if np.isnan(values).any() else min(values)
+
+    def first(z: FloatArray) -> int:
+        return int(np.argmin([end.value(z) for end in ends]))
+
+    after = least(stepper.there)
+    if after >= 0.0:
+        return None
+    before, which = least(stepper.here), first(np.array(stepper.there.z))
+    sides, at = Secants(0.0, stepper.step, before, after, True), 0.0
+    for _ in range(stepper.options.events.most if before > 0.0 else 0):
+        if sides.width <= max(stepper.options.events.fine * stepper.step, ends[which].within):
+            break
+        known = stepper.put(sides.at, False, False)
+        now = least(stepper.between) if known else after
+        if now >= 0.0:
+            at = sides.at
+        elif known:
+            which = first(np.array(stepper.between.z))
+        sides.saw(sides.at, now)
+    return which, at

@@ -14,13 +14,13 @@ Methods").
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import cython
 import numpy as np
 
 from fcm.continuation.checkpoint import Checkpoint, put_back, state_of
-from fcm.continuation.events import NO_MORE, Events
+from fcm.continuation.events import NO_MORE, End, Events, first_end
 from fcm.continuation.labelled_switching import LabelledSwitching
 from fcm.continuation.landing import Landing
 from fcm.continuation.nonsmooth_points import NonsmoothPoints
@@ -63,6 +63,7 @@ class Follower:
     options: FollowOptions
     stepper: Stepper
     recorder: Recorder
+    ends: Sequence[End]  # functions that end the curve
     landing: Landing  # values of the parameter that no step leads across
     nonsmooth: NonsmoothPoints
     step: cython.double
@@ -85,18 +86,24 @@ class Follower:
         self.stepper = stepper or Stepper(problem, options)
         self.stepper.ready(options)
         self.near = options.max_step if options.hasty or problem.costly else options.switching.near
-        self.recorder = Recorder(self.stepper, span, events.values)
+        self.recorder, self.ends = Recorder(self.stepper, span, events), events.ends
         self.landing = Landing(events.within(options.max_step * (span[1] - span[0])))
         self.nonsmooth, self.attempts = NonsmoothPoints(self.recorder, problem.labelled), 0
         self.labelled = LabelledSwitching(self.stepper, self.recorder.store) if problem.labelled else None
 
-    def begin(self, start: FloatArray, forward: bool) -> bool:
+    def begin(self, start: FloatArray, forward: bool, direction: FloatArray | None = None) -> bool:
         """Go to the curve at the start; whether there is one."""
-        row = np.zeros(self.problem.unknowns + 1)
-        row[self.problem.unknowns] = 1.0 if forward else -1.0
+        row, n = np.zeros(self.problem.unknowns + 1), self.problem.unknowns
+        if direction is not None and start[n] in self.recorder.values:
+            forward, direction = bool(direction[n] > 0.0), None
+        row[n] = 1.0 if forward else -1.0
+        if direction is not None:
+            self.problem.measure(start)
+            row = direction / np.asarray(self.problem.scale)
+            row /= np.linalg.norm(row)
         if not self.stepper.begin(np.array(start, dtype=np.float64), row):
             return False
-        self.recorder.begins(start[self.problem.unknowns])
+        self.recorder.begins(start[n] if direction is None else float(self.stepper.here.z[n]))
         self.size = extent(self.stepper)
         self.step = min(self.options.step.first, self.options.max_step)
         return True
@@ -210,6 +217,10 @@ class Follower:
         """Go on to the point there."""
         stepper: Stepper = self.stepper
         count: cython.int = self.recorder.store.count
+        if self.ends:
+            ended = first_end(stepper, self.ends)
+            if ended is not None:
+                return self.recorder.stop_at(ended[1], ended[0])
         if self.recorder.keep(stepper.step):
             return self.recorder.end()
         if not self.recorder.inside():
@@ -261,6 +272,7 @@ def follow(
     options: FollowOptions = FOLLOW,
     *,
     forward: bool = True,
+    direction: FloatArray | None = None,
     progress: Progress | None = None,
     watch: Watch | None = None,
     checkpoint: Checkpoint | None = None,
@@ -283,6 +295,9 @@ def follow(
         All tolerances, and the longest step.
     forward : bool
         Whether the parameter rises at first.
+    direction : (n + 1,), optional
+        About that of the curve at the start, in the units of z. The start is then corrected across it,
+        unless its parameter is one that the curve is to have a point at.
     progress : callable, optional
         Called now and then.
     watch : callable, optional
@@ -313,6 +328,6 @@ def follow(
     follower = Follower(problem, span, events, options, progress, stepper)
     if checkpoint is not None:
         follower.resume(checkpoint)
-    elif not follower.begin(start, forward):
+    elif not follower.begin(start, forward, direction):
         return follower.path(Status.STALLED)
     return follower.run(watch)

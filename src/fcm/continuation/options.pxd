@@ -11,7 +11,7 @@ cdef class StepOptions:
 
 cdef class EventOptions:
     cdef readonly int most
-    cdef readonly double fine, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
+    cdef readonly double fine, enclosed, rise, nearly_greatest, even, doubtful, blurred, same, same_way, landing
 
 cdef class SwitchingOptions:
     cdef readonly int most, further, pieces, many

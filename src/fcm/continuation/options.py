@@ -144,6 +144,8 @@ class EventOptions:
         Points of the curve that are computed to find one.
     fine : float
         Part of a step, to which an event is known.
+    enclosed : float
+        Distance of two points about a fold that is no regular point of the curve.
     rise : float
         Growth of an output over its size, along a unit of length, that is not rounding.
     nearly_greatest : float
@@ -164,6 +166,7 @@ class EventOptions:
 
     most: cython.int = 40
     fine: cython.double = 1e-11
+    enclosed: cython.double = 1e-4
     rise: cython.double = 1e-7
     nearly_greatest: cython.double = 0.9
     even: cython.double = 0.2

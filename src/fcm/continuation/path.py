@@ -21,6 +21,7 @@ class Status(Enum):
     UNBOUNDED = "the amplitude grows without limit, at a resonance that hardly anything damps; add damping"
     TOO_LONG = "the curve did not leave the range within the number of steps allowed; try a larger --max-step"
     AROUND = "the curve was lost to a closed one, and went around that; try a smaller --max-step"
+    EVENT = "the curve came to an event at which it was to end"
     INTERRUPTED = "interrupted"
 
 
@@ -48,6 +49,7 @@ class Path:
     shift: FloatArray  # (point,) from the approximate equations, if there are any, to the exact ones
     status: Status
     evaluations: int  # of the equations, to follow it
+    ended_by: int = -1  # which of the functions that were to end it did
 
     @property
     def parameter(self) -> FloatArray:

@@ -7,7 +7,9 @@ cdef class Recorder:
     cdef readonly PointStore store
     cdef readonly Py_ssize_t n
     cdef readonly double low, high, same
-    cdef readonly bint interior, around
+    cdef readonly bint interior, around, stopped
+    cdef long last
+    cdef int ended_by
     cdef readonly list values
     cdef readonly object greatest
     cdef double[::1] stops, most

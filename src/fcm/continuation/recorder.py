@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import cython
@@ -10,6 +10,7 @@ import numpy as np
 
 from fcm.continuation import events
 from fcm.continuation.checkpoint import Checkpoint
+from fcm.continuation.events import Events
 from fcm.continuation.path import Mark, Path, Status
 from fcm.continuation.point import Point
 from fcm.continuation.point_store import PointStore
@@ -34,14 +35,19 @@ class Recorder:
     the range. `greatest`, the same as `most`, are the outputs so far.
     """
 
-    def __init__(self, stepper: Stepper, span: tuple[float, float], stations: Sequence[float]) -> None:
+    def __init__(self, stepper: Stepper, span: tuple[float, float], wanted: Events) -> None:
         self.stepper, self.n = stepper, stepper.problem.unknowns
         self.low, self.high = span
-        self.values = [*(value for value in stations if self.low < value < self.high), self.low, self.high]
+        self.values = [
+            *(value for value in wanted.values if self.low < value < self.high),
+            self.low,
+            self.high,
+        ]
         self.stops, self.store = np.array(self.values), PointStore(self.n + 1)
         self.greatest = np.zeros(stepper.problem.outputs)
         self.most, self.first, self.head = self.greatest, np.zeros(self.n + 1), np.zeros(self.n + 1)
-        self.interior = self.around = False
+        self.interior = self.around = self.stopped = False
+        self.last, self.ended_by = wanted.last, -1
         self.same = stepper.options.events.same  # of the greatest unknown: points closer than this are one
 
     def begins(self, parameter: float) -> None:
@@ -82,9 +88,21 @@ class Recorder:
             self.store.put(event.z, event.direction, mark, event.orientation, event.shift)
             if mark & STATION and self.been():
                 self.around = True
-            if ends or self.around:
+            self.stopped = self.stopped or bool(mark & self.last)
+            if ends or self.around or self.stopped:
                 return True
         return False
+
+    def stop_at(self, length: float, number: int) -> Status:
+        """Keep the point at a length of the step, where a function that is to end the curve does."""
+        stepper = self.stepper
+        if self.keep(length):
+            return self.end()
+        far = length > stepper.options.step.shortest
+        if far and stepper.put(length, False, False) and stepper.sharpen(False, False):
+            self.store.add(stepper.between, stepper.newton.scale, 0, stepper.there.shift)
+        self.stopped, self.ended_by = True, number
+        return Status.EVENT
 
     @cython.cfunc
     @cython.exceptval(-1, check=False)
@@ -150,6 +168,8 @@ class Recorder:
 
     def end(self) -> Status:
         """The status of a curve that has left its range, or comes around."""
+        if self.stopped:
+            return Status.EVENT
         if self.around and self.interior and self.store.same(0, self.store.count - 1, self.same):
             self.store.drop()
             self.store.close()
@@ -161,7 +181,8 @@ class Recorder:
 
     def path(self, status: Status) -> Path:
         """The points kept so far."""
-        return self.store.path(status, self.stepper.newton.evaluations)
+        path = self.store.path(status, self.stepper.newton.evaluations)
+        return replace(path, ended_by=self.ended_by) if self.ended_by >= 0 else path
 
 
 def earlier(stepper: Stepper, store: PointStore, points: int) -> bool:

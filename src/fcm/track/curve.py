@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fcm.scene.model import FloatArray
-from fcm.track.follow import follow
+from fcm.track.nonsmooth_continuation import follow_special_point
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.top import is_top
 from fcm.track.tracked import Condition, Kind, Tracked
@@ -57,10 +57,10 @@ class Track:
 
 def whole(way: Way, condition: Condition, spot: Spot) -> Track:
     """The curve through a spot, both ways."""
-    spots, ending = follow(way, condition, spot, True)
+    spots, ending = follow_special_point(way, condition, spot, True)
     endings = (ending, ending)
     if ending is not Ending.CLOSED:
-        back, other = follow(way, condition, spot, False)
+        back, other = follow_special_point(way, condition, spot, False)
         turned = [replace(one, direction=-one.direction) for one in back[:0:-1]]
         spots, endings = [*turned, *spots], (other, ending)
     return recorded(way, condition, spots or [spot], endings)

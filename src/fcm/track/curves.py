@@ -13,8 +13,8 @@ from fcm.continuation.follow import Progress
 from fcm.harmonic.system import System
 from fcm.scene.model import FloatArray
 from fcm.track.curve import Track, whole
-from fcm.track.follow import land
 from fcm.track.known import passed
+from fcm.track.nonsmooth_continuation import land
 from fcm.track.spot import Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.top import is_top

@@ -26,8 +26,8 @@ from fcm.harmonic.system import System
 from fcm.scene.draft import Number
 from fcm.scene.model import FloatArray
 from fcm.track.envelope import EQUAL, UNFINISHED, Height, Least, Target
-from fcm.track.follow import follow, land
 from fcm.track.lowest import Search
+from fcm.track.nonsmooth_continuation import follow_special_point, land
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved, special_points
 from fcm.track.tracked import Condition, Kind
@@ -121,7 +121,7 @@ class Valley:
         start = land(way, condition, np.append(z, 0.0))
         if start is None:
             return None
-        spots, ending = follow(way, condition, start, True)
+        spots, ending = follow_special_point(way, condition, start, True)
         last = spots[-1] if spots else start
         if ending is Ending.RANGE:
             raise LeftRangeError

@@ -15,7 +15,7 @@ import numpy as np
 from fcm.accuracy.partner import partner_of
 from fcm.harmonic.further import Further
 from fcm.track.curve import Track
-from fcm.track.follow import follow, land
+from fcm.track.nonsmooth_continuation import follow_special_point, land
 from fcm.track.spot import Ending, Spot, Way
 from fcm.track.starts import moved
 from fcm.track.top import is_top
@@ -115,7 +115,7 @@ def _landed(wider: Way, condition: Condition, start: _Found, turn: Spot, turns: 
     if rise == 0.0:
         return None
     near = replace(wider, span=(min(s, s + BEYOND * rise), max(s, s + BEYOND * rise)), peaks_only=True)
-    spots, _ = follow(near, condition, beside, rise > 0.0)
+    spots, _ = follow_special_point(near, condition, beside, rise > 0.0)
     if not spots or not spots[-1].turn:
         return None
     return _Found(wider, spots[-1])

@@ -16,10 +16,7 @@ EQUAL = 1e-12  # relative: extremes of a cycle that are one
 def is_top(problem: Tracked, spot: Spot) -> bool:
     """Whether a tracked peak that was measured is one, and not a trough: growth falls along the response."""
     if spot.corner is None or spot.switch:
-        try:
-            problem.evaluate(spot.z)
-        except np.linalg.LinAlgError:  # the response crosses itself there, and a peak meets a trough
-            return False
+        problem.evaluate(spot.z)  # no numbers where the response crosses itself, and a peak meets a trough
         gradient = np.asarray(problem.jacobian)[problem.n, : problem.n + 1]
         return bool(gradient @ (np.asarray(problem.scale)[:-1] * problem.row) < 0.0)
     corner = Corner(problem, spot.corner)

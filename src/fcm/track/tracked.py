@@ -75,7 +75,7 @@ class Tracked(Problem):
         self.angles: FloatArray | None = None  # of the extremes whose peak it is, that were greatest last
 
     def evaluate(self, z: FloatArray) -> int:
-        """Residual and derivatives."""
+        """Residual and derivatives; no numbers where the response crosses itself: nothing is found there."""
         z = np.asarray(z)
         self.varied.put(float(z[-1]))
         y, n = np.array(z[:-1]), self.n
@@ -83,7 +83,11 @@ class Tracked(Problem):
         residual, jacobian = np.asarray(self.residual), np.asarray(self.jacobian)
         residual[:n] = self.varied.balance.residual
         jacobian[:n, : n + 1], jacobian[:n, n + 1] = here.jacobian, here.by_s
-        value, gradient = self._condition(y, here)
+        try:
+            value, gradient = self._condition(y, here)
+        except np.linalg.LinAlgError:  # the response has no one direction there
+            residual[n], jacobian[n] = np.nan, np.nan
+            return 0
         unit = np.asarray(self.scale)[n]  # by which the row of this unknown is divided
         residual[n], jacobian[n] = unit * value, unit * gradient
         return 0
