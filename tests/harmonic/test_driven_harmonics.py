@@ -203,3 +203,16 @@ def test_damping_that_varies_with_the_frequency_is_refused(damping):
     modal = {"dofs": ["u"], "frequency": [1.0, 2.0], "damping": damping, "shapes": [[1.0], [1.0]]}
     with pytest.raises(SceneError, match=r"modal\.damping: varies with the frequency, which is not computed"):
         scene([force(1.0)], modal=modal)
+
+
+def test_the_linear_response_is_told_at_the_resonances_of_each_driven_harmonic():
+    from fcm.reduction.linear import linear_response, telling_frequencies
+
+    of = scene([force(1.0, 2, 0.3)], span=(0.4, 0.6))
+    at, free = telling_frequencies(of, np.zeros(2)), np.zeros(2)
+    assert np.abs(at - 0.5).min() < 1e-3
+    found = linear_response(of, at, free)
+    dynamic = NATURAL**2 - (2.0 * at[:, None]) ** 2 + 4j * at[:, None] * DAMPING * NATURAL
+    expected = (SHAPES[:, 0] / dynamic) @ SHAPES
+    assert not found[: at.size].any()  # nothing of harmonic 1
+    np.testing.assert_allclose(np.abs(found[at.size :]), np.abs(expected), rtol=1e-10)

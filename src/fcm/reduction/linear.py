@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from fcm.scene.model import FloatArray, Scene
 from fcm.structure.linear import Linear, linear_of
+from fcm.structure.loads import driven_harmonics
 
 ComplexArray = npt.NDArray[np.complex128]
 SPREAD = 24  # frequencies of the range at which linear responses are looked at, besides resonances
@@ -20,9 +21,10 @@ def all_springs(scene: Scene) -> FloatArray:
 
 
 def telling_frequencies(scene: Scene, springs: FloatArray) -> FloatArray:
-    """Frequencies spread over the range, and the resonances in it."""
+    """Frequencies spread over the range, and those in it at which a driven harmonic is in resonance."""
     low, high = scene.frequency_range
-    at = resonances(scene, springs) * (1.0 + BESIDE)
+    natural = resonances(scene, springs) * (1.0 + BESIDE)
+    at = np.concatenate([natural / harmonic for harmonic in driven_harmonics(scene)])
     return np.concatenate((np.linspace(low, high, SPREAD), at[(at > low) & (at < high)]))
 
 

@@ -31,7 +31,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 
 from fcm.contact.plane.forces import PlanarContact
 from fcm.contact.plane.loop import between, visible
@@ -296,6 +295,8 @@ class PlanarMonodromy:
         one, other = A[:, 0], A[:, 1]
         scale = h[:, None, None]
         series = 0.5 * scale * (one + other) - np.sqrt(3.0) / 12.0 * scale**2 * (one @ other - other @ one)
+        from scipy.linalg import expm  # whose import takes longer than the curves of other contacts
+
         return np.asarray(expm(series))
 
     def _system(self, omega: float, moving: list[int], theta: FloatArray) -> FloatArray:
