@@ -5,6 +5,7 @@ import json
 import re
 import sys
 import sysconfig
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,7 @@ import fcm
 from fcm.compare.exact import exact_lines
 from fcm.report.convergence import greatest_error
 from fcm.response import trace
+from fcm.scene.keys import TABLES
 
 from .program import shell
 
@@ -35,7 +37,7 @@ def blocks(kind, pages=PAGES):
 def folder(tmp_path_factory):
     """A new folder, as a reader has it who has saved the scene."""
     folder = tmp_path_factory.mktemp("reader")
-    (scene,) = blocks("toml")
+    (scene,) = blocks("toml", [README])
     (folder / SCENE).write_text(scene, encoding="utf-8")
     return folder
 
@@ -99,6 +101,21 @@ def test_the_errors_are_as_claimed(folder):
     curves = json.loads(run("fcm respond yang1998 --json", folder).out)["curves"]
     table, harmonic = (max(curve[name] for curve in curves) for name in ("table_error", "truncation_error"))
     assert 0 < table < float(claim) and harmonic > 100 * table  # "by far the larger error"
+
+
+def test_the_tables_of_scenes_that_are_shown_have_keys_that_there_are():
+    shown = blocks("toml", PAGES[1:])
+    for table, keys in (pair for block in shown for pair in tables_in(tomllib.loads(block))):
+        assert set(keys) <= set(TABLES[table]), table
+
+
+def tables_in(data, path=""):
+    """Paths and keys of all tables within one."""
+    for key, value in data.items():
+        inner = value if isinstance(value, list) else [value]
+        for one in (one for one in inner if isinstance(one, dict)):
+            yield (f"{path}{key}", list(one))
+            yield from tables_in(one, f"{path}{key}.")
 
 
 def test_every_block_is_of_a_kind_that_is_tested():
