@@ -122,8 +122,10 @@ def maybe_not_unique(summary: Mapping[str, Any]) -> str:
 
 
 def _how(summary: Mapping[str, Any]) -> str:
-    """By which option the exact motion is visited at a frequency F; empty of a ring or a mode."""
+    """By which option the exact motion is visited at a frequency F; empty where it is not computed, as of a
+    ring, a mode or forces at other harmonics."""
     no_forces = any("mode" in curve for curve in summary["curves"])
-    if no_forces or any(note.startswith("cyclic:") for note in summary.get("notes", ())):
+    not_exact = ("cyclic:", "force: at harmonic")
+    if no_forces or any(note.startswith(not_exact) for note in summary.get("notes", ())):
         return ""
     return "--at F" if summary["method"] == "exact" else "--method exact --at F"

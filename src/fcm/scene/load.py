@@ -36,6 +36,7 @@ from fcm.scene.node_pairs import notes_of_shares
 from fcm.scene.optimum import read_optimum
 from fcm.scene.parts import (
     contact_of,
+    note_of_harmonics,
     read_contacts,
     read_forces,
     read_harmonics,
@@ -175,6 +176,7 @@ def _made(name: str, fields: dict[str, Any]) -> Scene:
         notes=(
             *scene.notes,
             *note_of_stability(scene),
+            *note_of_harmonics(scene.forces),
             *note_of_start(scene),
             *note_of_shared_normals(scene),
             *notes_of_planes(scene),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import nan
 from typing import Any
@@ -147,6 +148,21 @@ def force_of(draft: dict[str, Any]) -> Force:
     draft["dof"].flags.writeable = False
     numbers = {key: draft[key] for key in ("amplitude", "phase", "power", "harmonic")}
     return Force(direction=draft["dof"], **numbers)
+
+
+def note_of_harmonics(forces: Sequence[Force]) -> list[str]:
+    """That there are forces at other harmonics than 1, and what follows from it.
+
+    >>> import numpy as np
+    >>> note_of_harmonics([Force(np.ones(1), 1.0, 0.0, harmonic=3)])
+    ['force: at harmonic 3 of the frequency, which is balanced whatever harmonics are asked for']
+    """
+    found = sorted({force.harmonic for force in forces})
+    if found in ([], [1]):
+        return []
+    which = f"harmonic {found[0]}" if len(found) == 1 else f"harmonics {', '.join(map(str, found))}"
+    verb = "is" if len(found) == 1 else "are"
+    return [f"force: at {which} of the frequency, which {verb} balanced whatever harmonics are asked for"]
 
 
 def read_units(top: Section) -> tuple[str, str]:
