@@ -276,3 +276,57 @@ def test_a_file_without_loops(fcm, folded, tmp_path):
     with netCDF4.Dataset(tmp_path / "b.nc", "a") as data:
         data["tangential_amplitude"][:] = np.nan
     assert "exact motions" in fcm("plot", "loop", "b.nc", "--curve", 0).err
+
+
+IN_PLANE = """
+[modal]
+dofs = ["x", "y", "z"]
+mass = [1.0, 1.0, 1.0]
+frequency = [1.0, 1.3, 2.0]
+damping = [0.05, 0.05, 0.05]
+shapes = [[1.0, 0.2, 0.1], [-0.2, 1.0, 0.3], [0.1, -0.3, 1.0]]
+[[contact]]
+name = "pad"
+tangential = ["x", { y = -1.0 }]
+normal = "z"
+mu = 0.5
+k_u = 1.0
+k_v = 1.0
+n_0 = 1.0
+[[force]]
+dof = "x"
+amplitude = 1.0
+[[force]]
+dof = "y"
+amplitude = 0.6
+phase = 1.0
+[response]
+frequency = [0.95, 1.05]
+harmonics = 1
+"""
+
+
+def test_a_contact_in_a_plane_of_a_file(fcm, tmp_path):
+    (tmp_path / "plane.toml").write_text(IN_PLANE, encoding="utf-8")
+    told = fcm("respond", "plane.toml", "-o", "plane.nc", "--csv", "plane.csv", "--json")
+    assert json.loads(told.out)["directions"] == {"pad": {"x": "x", "y": "-y", "normal": "z"}}
+    head, first = (tmp_path / "plane.csv").read_text(encoding="utf-8").splitlines()[:2]
+    row = dict(zip(head.split(","), first.split(","), strict=True))
+    assert float(row["friction_x pad"]) > 0.0
+    assert set(row["regime pad"]) <= set("EPS")
+    done = fcm("plot", "loop", "plane.nc", "--at", "1.0", "-o", "plane.png", "--json")
+    assert done.code == 0
+    (one,) = json.loads(done.out)["loops"]
+    assert one["directions"] == {"x": "x", "y": "-y"}
+    assert one["sequence"] == one["states"]
+    assert len(one["transitions"]) == len(one["sequence"])
+    assert (tmp_path / "plane.png").stat().st_size > 10_000
+    assert f"pad, {one['frequency']:.5g} rad/s, stable: {one['sequence']}" in done.err
+
+
+def test_several_loops_in_a_plane_are_too_many(fcm, tmp_path):
+    (tmp_path / "plane.toml").write_text(IN_PLANE, encoding="utf-8")
+    fcm("respond", "plane.toml", "-o", "plane.nc")
+    done = fcm("plot", "loop", "plane.nc", "--at", "0.97", "--at", "1.0")
+    assert done.code == 2
+    assert "2 loops in a plane are too many for a picture" in done.err

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +19,7 @@ from fcm.cli.messages import Messages, pass_messages
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from fcm.cli.loop_cases import Case
+    from fcm.cli.loop_cases import Case, PlanarCase
     from fcm.cli.loop_names import Harmonic
 
 MOST_LOOPS = 12  # in a picture: three rows
@@ -154,11 +154,15 @@ def loop(
 
     Below each loop are its force and the slip limits over a cycle. Transitions are marked with their angles.
     """
+    from fcm.cli.loop_cases import PlanarCase
+
     begin = time.perf_counter()
     options["phases"] = tuple(dict.fromkeys(options["phases"]))
     given = {name for name in ctx.params if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
     _check(given, file is not None)
     cases = _cases(given, file, options, units)
+    if len(cases) > 1 and isinstance(cases[0], PlanarCase):
+        raise click.UsageError(f"{len(cases)} loops in a plane are too many for a picture: say which one.")
     if len(cases) > MOST_LOOPS:
         raise click.UsageError(f"{len(cases)} loops are too many for a picture: at most {MOST_LOOPS}.")
     if output is None:
@@ -171,17 +175,19 @@ def loop(
     else:
         save_picture_of(file, lambda: _drawn(cases, scaled, units, cosine), output)
     if to_json:
-        click.echo(json.dumps({"loops": [case.record(cosine) for case in cases]}, indent=2, allow_nan=False))
+        records = [case.record(cosine) for case in cases]
+        click.echo(json.dumps({"loops": records}, indent=2, allow_nan=False))
     for case in cases:
         messages.info(_sentence(case, cosine))
     seconds = time.perf_counter() - begin
-    how = "from events located exactly" if options["harmonics"] else "from the closed form"
+    located = options["harmonics"] or isinstance(cases[0], PlanarCase)
+    how = "from events located exactly" if located else "from the closed form"
     messages.info(f"wrote {output}: {how}, in {seconds:.2f} s")
 
 
 def _cases(
     given: set[str], file: Path | None, options: dict[str, Any], units: tuple[str, str] | None
-) -> list[Case]:
+) -> Sequence[Case | PlanarCase]:
     """The loops of the one way, of three, in which they are given."""
     from fcm.cli.loop_cases import of_contact, of_file, of_ratios
 
@@ -230,7 +236,25 @@ def _option(name: str) -> str:
     return other.get(name, "--" + name.removesuffix("s").replace("_", "-"))
 
 
-def _drawn(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosine: bool) -> Figure:
+def _drawn(
+    cases: Sequence[Case | PlanarCase], scaled: bool, units: tuple[str, str] | None, cosine: bool
+) -> Figure:
+    from fcm.cli.loop_cases import Case, PlanarCase
+
+    first = cases[0]
+    if isinstance(first, PlanarCase):
+        return _drawn_in_plane(first, units)
+    return _drawn_on_lines([case for case in cases if isinstance(case, Case)], scaled, units, cosine)
+
+
+def _drawn_in_plane(case: PlanarCase, units: tuple[str, str] | None) -> Figure:
+    from fcm.plot.planar_loop import DrawnPlanarLoop, draw_planar_loop
+
+    title = ", ".join(filter(None, [*(name.drawn for name in case.names), case.loop.sequence]))
+    return draw_planar_loop(DrawnPlanarLoop(case.loop, title, case.directions, units or case.units))
+
+
+def _drawn_on_lines(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosine: bool) -> Figure:
     from fcm.cli.loop_names import titles
     from fcm.plot.loop import DrawnLoop, LoopAxes, draw_loops
 
@@ -244,10 +268,16 @@ def _drawn(cases: list[Case], scaled: bool, units: tuple[str, str] | None, cosin
     return draw_loops(drawn, axes, common)
 
 
-def _sentence(case: Case, cosine: bool) -> str:
+def _sentence(case: Case | PlanarCase, cosine: bool) -> str:
     """The states of a loop and where each begins."""
+    from fcm.cli.loop_cases import PlanarCase
     from fcm.contact.sampled import shown_degrees, transitions
 
+    if isinstance(case, PlanarCase):
+        begun = zip(case.loop.sequence, case.loop.angles.tolist(), strict=False)
+        where = ", ".join(f"{state} at {math.degrees(theta):.1f}°" for state, theta in begun)
+        names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))
+        return f"{names}: {case.loop.sequence}{', ' if where else ''}{where}"
     found = transitions(case.loop)
     where = ", ".join(f"{one.states[1]} at {shown_degrees(one.theta, cosine):.1f}°" for one in found)
     names = ", ".join(filter(None, [*(name.plain for name in case.names), case.note]))

@@ -17,7 +17,8 @@ from fcm.cli.loop_names import Harmonic, Name, named, phase_of, unit_of
 
 if TYPE_CHECKING:
     from fcm.contact import Loop, PeriodicLoop
-    from fcm.plot.loop_file import LoopFile, LoopPoint
+    from fcm.contact.plane.loop import PlanarLoop
+    from fcm.plot.loop_file import LoopFile, LoopPoint, PlanePoint
 
 LONGEST = 24  # characters of a contact's name
 
@@ -66,6 +67,36 @@ class Case:
             return f[0].real, -f[1].imag, f[1].real
         F_b, F_s, F_c = map(float, fourier_coefficients(*self.ratios))
         return F_b, F_s, F_c
+
+
+@dataclass(frozen=True)
+class PlanarCase:
+    """The loop of a contact that slides in a plane."""
+
+    loop: PlanarLoop
+    directions: tuple[str, str]
+    names: tuple[Name, ...]
+    note: str
+    facts: dict[str, Any]
+    units: tuple[str, str] | None
+
+    def record(self, _from_greatest: bool) -> dict[str, Any]:
+        """What ``--json`` prints of the loop."""
+        import numpy as np
+
+        loop = self.loop
+        return {
+            **self.facts,
+            "directions": dict(zip("xy", self.directions, strict=True)),
+            "sequence": loop.sequence,
+            "transitions": [
+                {"to": state, "degrees": math.degrees(theta)}
+                for state, theta in zip(loop.sequence, loop.angles.tolist(), strict=False)
+            ],
+            "dissipated_energy": loop.dissipation,
+            "slip_path": loop.slip_path,
+            "greatest_friction_force": float(np.float64(loop.greatest_force)),
+        }
 
 
 def of_ratios(n0_bars: Iterable[float], b_bars: Iterable[float], phases: Iterable[float]) -> list[Case]:
@@ -136,25 +167,29 @@ def of_file(
     contact: str | None,
     at: Sequence[float | None],
     solution: int | None,
-) -> list[Case]:
+) -> list[Case] | list[PlanarCase]:
     """The loops of a contact on curves of a response file, at frequencies."""
     from fcm.plot.loop_file import points_at, read_loops
     from fcm.plot.read import read
 
     file = read_loops(path)
-    cases = []
+    cases: list[Case] = []
+    planar: list[PlanarCase] = []
     for curve, frequency in product(curves, at):
         points = points_at(file, curve, contact, frequency)
         if solution is not None and solution > len(points):
             raise click.UsageError(f"--solution {solution}: there are {len(points)} at this frequency.")
         for point in points if solution is None else points[solution - 1 : solution]:
             with read(path, "its loops cannot be drawn"):
-                cases.append(_at_point(point, file))
-    return cases
+                if point.plane is None:
+                    cases.append(_at_point(point, file))
+                else:
+                    planar.append(_in_plane(point, point.plane, file))
+    return planar or cases
 
 
-def _at_point(point: LoopPoint, file: LoopFile) -> Case:
-    from fcm.contact import hysteresis_loop
+def _said(point: LoopPoint, file: LoopFile) -> tuple[tuple[Name, ...], str, dict[str, Any]]:
+    """The names of a point in a picture, what else is to be said of it, and for --json."""
     from fcm.plot.labels import curve_label
 
     unit = file.unit
@@ -168,7 +203,7 @@ def _at_point(point: LoopPoint, file: LoopFile) -> Case:
         Name(curve_label(point.parameters, units=file.units), swept),
         Name(f"{symbol} = {at}", at),
     )
-    if len(point.harmonics) > 1:
+    if len(point.harmonics) > 1 and point.plane is None:
         names += (Name("fundamental alone", f"fundamental alone of harmonics {ranges(point.harmonics)}"),)
     several = f"{point.solution} of {point.solutions}, " if point.solutions > 1 else ""
     stable = {True: "stable", False: "unstable", None: ""}[point.stable]
@@ -178,12 +213,29 @@ def _at_point(point: LoopPoint, file: LoopFile) -> Case:
         "stable": point.stable, "a": point.amplitude, "k_u a": point.force,
         "harmonics": point.harmonics, "states": point.states,
     }  # fmt: skip
+    return names, (several + stable).strip(", "), facts
+
+
+def _in_plane(point: LoopPoint, plane: PlanePoint, file: LoopFile) -> PlanarCase:
+    from fcm.contact import planar_loop
+
+    names, note, facts = _said(point, file)
+    u_x, u_y, v = plane.motion
+    mu, k_u, k_v, n_0 = plane.law
+    loop = planar_loop(u_x, u_y, v, mu, k_u, k_v, n_0)
+    return PlanarCase(loop, plane.directions, names, note, facts, file.dimensions)
+
+
+def _at_point(point: LoopPoint, file: LoopFile) -> Case:
+    from fcm.contact import hysteresis_loop
+
+    names, note, facts = _said(point, file)
     ratios = point.n0_bar, point.b_bar, point.phi
     return Case(
         hysteresis_loop(*ratios),
         ratios,
         names,
-        (several + stable).strip(", "),
+        note,
         point.amplitude,
         point.force,
         facts,

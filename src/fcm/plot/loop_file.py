@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +18,44 @@ from fcm.plot.read import FloatArray, floats, opened, read_response
 MOST_NAMES = 10  # contacts that a message lists
 _ENERGY = "dissipated_energy"
 _ALSO = ("contact", "frequency", "stable", _ENERGY, "harmonic", "regime")
+_PLANE = (
+    "contact_harmonic", "contact_mean", "contact_amplitude", "contact_phase",
+    "contact_mu", "contact_k_u", "contact_k_v", "contact_n_0",
+)  # fmt: skip
 _PARTS = ("n0_bar", "b_bar", "phi", "tangential_amplitude", "spring_force")
+
+
+@dataclass(frozen=True)
+class PlanePoint:
+    """What `fcm.planar_loop` takes of a contact that slides in a plane, and how its directions are named."""
+
+    motion: npt.NDArray[np.complex128]  # (direction, harmonic), the mean first
+    law: tuple[float, float, float, float]  # mu, k_u, k_v, n_0
+    directions: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class PlaneFile:
+    """What a response file has on contacts that slide in a plane."""
+
+    mean: FloatArray  # (curve, point, contact, direction)
+    amplitude: FloatArray  # (curve, point, contact, direction, harmonic)
+    phase: FloatArray
+    harmonics: tuple[int, ...]
+    law: FloatArray  # (4, curve, contact)
+    directions: dict[str, Any]  # of each contact, by x, y and normal
+
+    def at(self, row: int, k: int, column: int, contact: str) -> PlanePoint | None:
+        """Of a point; None of a contact on a line."""
+        names = self.directions.get(contact)
+        if not isinstance(names, dict):
+            return None
+        motion = np.zeros((3, 1 + max(self.harmonics)), dtype=np.complex128)
+        motion[:, 0] = self.mean[row, k, column]
+        waves = self.amplitude[row, k, column] * np.exp(1j * self.phase[row, k, column]) / 1j
+        motion[:, list(self.harmonics)] = np.nan_to_num(waves)
+        mu, k_u, k_v, n_0 = self.law[:, row, column].tolist()
+        return PlanePoint(motion, (mu, k_u, k_v, n_0), (str(names.get("x", "x")), str(names.get("y", "y"))))
 
 
 @dataclass(frozen=True)
@@ -37,6 +76,7 @@ class LoopPoint:
     force: float  # k_u a
     harmonics: tuple[int, ...]  # of the motion, of which the loop is that of the first
     states: str  # with all of them
+    plane: PlanePoint | None = None  # of a contact that slides in a plane, which has no such loop
 
 
 @dataclass(frozen=True)
@@ -55,13 +95,14 @@ class LoopFile:
     states: npt.NDArray[np.str_]  # (curve, point, contact)
     units: Mapping[str, str]  # of swept keys, if the file says them
     dimensions: tuple[str, str] | None  # units of length and force, if it says both
+    plane: PlaneFile | None = None
 
 
 @apart
 def read_loops(path: Path) -> LoopFile:
     """Read what ``fcm respond -o`` has written; PlotError if the file holds no loops."""
     response = read_response(path)
-    with opened(path, "a response file", (), (*_PARTS, *_ALSO)) as data:
+    with opened(path, "a response file", (), (*_PARTS, *_ALSO, *_PLANE)) as data:
         missing = [name for name in (*_PARTS, "contact") if name not in data.variables]
         if missing:
             raise PlotError(f"{path}: holds no loops: it has no variable {', '.join(missing)}")
@@ -75,6 +116,7 @@ def read_loops(path: Path) -> LoopFile:
         if not orders.size or orders[0] != 1.0 or not (np.diff(orders) > 0.0).all() or (orders % 1.0).any():
             raise ValueError("its harmonics are not 1 and others above, one after the other")
         states = np.asarray(data["regime"][:]).astype(str) if "regime" in data.variables else None
+        plane = _plane(data)
     shape = (*frequency.shape, len(contacts))
     swept = tuple(curve.parameters for curve in response.curves)
     if states is None:
@@ -83,7 +125,23 @@ def read_loops(path: Path) -> LoopFile:
         path, response.frequency_unit, contacts, swept, frequency, stable, np.stack(parts),
         _greatest(energy, len(contacts)),
         tuple(int(h) for h in orders), states, response.units, (length, force) if length and force else None,
+        plane,
     )  # fmt: skip
+
+
+def _plane(data: Any) -> PlaneFile | None:
+    """Of contacts that slide in a plane, where there are some."""
+    if not all(name in data.variables for name in _PLANE):
+        return None
+    orders = floats(data["contact_harmonic"])
+    if not orders.size or (orders < 1.0).any() or (orders % 1.0).any() or not (np.diff(orders) > 0.0).all():
+        raise ValueError("contact_harmonic is not of numbers from 1 on, one after the other")
+    said = json.loads(str(getattr(data, "summary", "{}")))
+    names = said.get("directions", {}) if isinstance(said, dict) else {}
+    law = np.stack([floats(data[name]) for name in _PLANE[4:]])
+    mean, amplitude, phase = (floats(data[name]) for name in _PLANE[1:4])
+    harmonics = tuple(int(h) for h in orders)
+    return PlaneFile(mean, amplitude, phase, harmonics, law, names if isinstance(names, dict) else {})
 
 
 def points_at(file: LoopFile, curve: int | None, contact: str | None, at: float | None) -> list[LoopPoint]:
@@ -133,12 +191,13 @@ def _point(file: LoopFile, row: int, column: int, k: int, solution: int, solutio
         raise PlotError(
             f"{file.path}: {name} has no tangential motion at {frequency:.6g} {file.unit}, and so no loop"
         )
+    plane = None if file.plane is None else file.plane.at(row, k, column, name)
     if n0_bar == b_bar == 0.0:
         raise PlotError(f"{file.path}: {name} has no friction, and so no loop")
     return LoopPoint(
         row, file.parameters[row], name, frequency, solution, solutions,
         None if np.isnan(stable) else stable != 0.0, n0_bar, b_bar, phi, amplitude, force,
-        file.harmonics, str(file.states[row, k, column]),
+        file.harmonics, str(file.states[row, k, column]), plane,
     )  # fmt: skip
 
 

@@ -27,6 +27,7 @@ from fcm.table import Table
 BATCH = 10  # curves, which are finished or interrupted together
 HIGHEST_EXPECTED = 9  # harmonic, where an accuracy decides
 FIRST = 0.9  # share of the bar at which the curves are traced; then they are checked
+NO_TABLE_IN_PLANE = "the table: forces of contacts in a plane are exact, with one harmonic too (no effect)"
 
 
 def trace(
@@ -124,7 +125,7 @@ def _traced(sweep: _Sweep, tolerance: float | None, progress: Progress | None) -
     response = restored(response, lighter)
     response.curves = [without_rounding(one) for one in response.curves]
     if sweep.table_idle:
-        said.append("the table: no contact needs it (no effect)")
+        said.append(NO_TABLE_IN_PLANE if sweep.scene.planar else "the table: no contact needs it (no effect)")
     response.left_out = [*said, *sentences.on_means(lighter), *unknown(sweep.scene, sweep.wanted)]
     return response
 

@@ -1,0 +1,151 @@
+"""The loop of a contact in its plane: the paths of displacement and slider with the disc, and two loops."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from fcm.contact.plane.loop import PlanarLoop
+from fcm.plot.loop import STATES
+from fcm.plot.read import FloatArray
+from fcm.plot.style import TWO_COLUMNS, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+SAMPLES = 1440  # of a cycle
+INSTANTS = 4  # of a cycle at which the disc is drawn
+HEIGHT = 3.35  # [inch]
+SLIDER = "#009e73"
+DISC = "0.75"
+ROOM = 0.56  # of the extent, to each side of the middle
+
+
+@dataclass(frozen=True)
+class DrawnPlanarLoop:
+    """A loop with its title, the names of its directions, and units of length and force where known."""
+
+    loop: PlanarLoop
+    title: str
+    directions: tuple[str, str] = ("x", "y")
+    units: tuple[str, str] | None = None
+    instants: int = INSTANTS
+
+
+@dataclass(frozen=True)
+class Path:
+    """A cycle sampled: theta, limit, states (sample,); displacement u, slider w and force f (sample, 2)."""
+
+    theta: FloatArray
+    u: FloatArray
+    w: FloatArray
+    f: FloatArray
+    limit: FloatArray
+    states: npt.NDArray[np.str_]
+
+
+def path_of(loop: PlanarLoop) -> Path:
+    """Samples, those of the transitions among them."""
+    theta = np.unique(np.concatenate((np.linspace(0.0, 2.0 * np.pi, SAMPLES + 1), loop.angles)))
+    return Path(
+        theta,
+        loop.displacement(theta),
+        loop.slider(theta),
+        loop.force(theta),
+        loop.slip_limit(theta),
+        np.asarray(loop.states(theta)),
+    )
+
+
+def draw_planar_loop(drawn: DrawnPlanarLoop) -> Figure:
+    """At the left the plane: paths of u and of the slider, discs; at the right force over displacement."""
+    path = path_of(drawn.loop)
+    length, force = (f" ({unit.replace('$', '')})" for unit in drawn.units) if drawn.units else ("", "")
+    with house_style():
+        figure = new_figure(TWO_COLUMNS, HEIGHT)
+        grid = figure.add_gridspec(2, 2, width_ratios=[1.25, 1.0])
+        plane = figure.add_subplot(grid[:, 0])
+        _draw_plane(plane, drawn, path)
+        plane.set_xlabel(f"Displacement $u_x$ = {_plain(drawn.directions[0])}{length}")
+        plane.set_ylabel(f"Displacement $u_y$ = {_plain(drawn.directions[1])}{length}")
+        for i, name in enumerate("xy"):
+            axes = figure.add_subplot(grid[i, 1])
+            _draw_direction(axes, path, i)
+            axes.set_xlabel(f"$u_{name}${length}")
+            axes.set_ylabel(f"$f_{name}${force}")
+        handles, labels = plane.get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=len(labels), fontsize=7)
+        figure.suptitle(drawn.title, fontsize=8)
+    return figure
+
+
+def _draw_plane(axes: Axes, drawn: DrawnPlanarLoop, path: Path) -> None:
+    """The discs |u - w| <= mu n / k_u about u at some instants, with the force as a line from the slider."""
+    from matplotlib.patches import Circle
+
+    axes.set_aspect("equal", adjustable="box")
+    radius = path.limit / drawn.loop.k_u
+    middle = 0.5 * (path.u.max(axis=0) + path.u.min(axis=0))
+    for k, at in enumerate(_instants(path, drawn.instants)):
+        centre = float(path.u[at, 0]), float(path.u[at, 1])
+        disc = Circle(centre, float(radius[at]), facecolor="none", edgecolor=DISC, linewidth=0.8, zorder=1)
+        disc.set_label("disc of radius $\\mu n/k_u$" if k == 0 else "_")
+        axes.add_patch(disc)
+        axes.plot(
+            [path.w[at, 0], path.u[at, 0]], [path.w[at, 1], path.u[at, 1]],
+            color=DISC, linewidth=0.8, zorder=1, label="force$/k_u$" if k == 0 else "_",
+        )  # fmt: skip
+        axes.plot(*centre, marker="o", markersize=2.6, color="black", zorder=4)
+        axes.plot(*path.w[at], marker="s", markersize=2.6, color=SLIDER, zorder=4)
+        out = path.u[at] - middle
+        away = 9.0 * out / max(float(np.hypot(*out)), 1e-300)
+        axes.annotate(
+            f"{np.degrees(path.theta[at]):.0f}°", centre, xytext=(float(away[0]), float(away[1])),
+            textcoords="offset points", fontsize=6.5, ha="center", va="center", zorder=5,
+        )  # fmt: skip
+    shown = np.where((path.states == "S")[:, None], np.nan, path.w)
+    axes.plot(shown[:, 0], shown[:, 1], color=SLIDER, linewidth=1.1, zorder=2, label="slider $w$")
+    for state in dict.fromkeys("EPS"):
+        if (path.states == state).any():
+            x, y = _only(path.u, path.states == state).T
+            look = STATES[state][1]
+            name = {"E": "$u$, stick", "P": "$u$, slip", "S": "$u$, separation"}[state]
+            axes.plot(x, y, zorder=3, label=name, **look)
+    shown_at = _instants(path, drawn.instants)
+    low = np.minimum(path.u.min(axis=0), (path.u[shown_at] - radius[shown_at, None]).min(axis=0))
+    high = np.maximum(path.u.max(axis=0), (path.u[shown_at] + radius[shown_at, None]).max(axis=0))
+    half, (x, y) = ROOM * float((high - low).max()), 0.5 * (low + high)
+    axes.set_xlim(x - half, x + half)
+    axes.set_ylim(y - half, y + half)
+
+
+def _draw_direction(axes: Axes, path: Path, i: int) -> None:
+    axes.axhline(0.0, color="0.85", linewidth=0.5, zorder=0)
+    axes.axvline(0.0, color="0.85", linewidth=0.5, zorder=0)
+    for state in "EPS":
+        if (path.states == state).any():
+            at = path.states == state
+            axes.plot(_only(path.u[:, i], at), _only(path.f[:, i], at), **STATES[state][1])
+    axes.margins(0.12)
+
+
+def _instants(path: Path, count: int) -> list[int]:
+    """Evenly over the cycle."""
+    wanted = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
+    return [int(np.abs(path.theta - angle).argmin()) for angle in wanted]
+
+
+def _only(values: FloatArray, which: npt.NDArray[np.bool_]) -> FloatArray:
+    """Values where something is so, up to the first sample after it; NaN elsewhere."""
+    shown = which | np.concatenate((which[:1], which[:-1]))
+    found: FloatArray = np.where(shown if values.ndim == 1 else shown[:, None], values, np.nan)
+    return found
+
+
+def _plain(text: str) -> str:
+    """Text of the user's, none of it read as mathematics."""
+    return text.replace("$", r"\$")

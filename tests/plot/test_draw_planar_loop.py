@@ -1,0 +1,77 @@
+"""The loop of a contact in its plane: what is drawn where; no pixels."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Circle
+
+import fcm
+from fcm.plot.loop import STATES
+from fcm.plot.planar_loop import SLIDER, DrawnPlanarLoop, draw_planar_loop, path_of
+
+MOTION = [0.1, 1.0], [0.0, -0.4j], [0.0, 0.8j]
+LOOP = fcm.planar_loop(*MOTION, mu=0.5, k_u=2.0, k_v=1.0, n_0=0.7)
+
+
+@pytest.fixture(scope="module")
+def figure():
+    return draw_planar_loop(DrawnPlanarLoop(LOOP, "pad", ("ax - bx", "ay $ by"), ("mm", "N")))
+
+
+def lines(axes, colour):
+    """Those of a colour that are paths and not marks."""
+    found = [line for line in axes.lines if to_rgb(line.get_color()) == to_rgb(colour)]
+    return [line for line in found if len(line.get_xdata()) > 2]
+
+
+def test_each_state_has_its_part_of_the_path(figure):
+    plane = figure.axes[0]
+    for state in set(LOOP.sequence):
+        (line,) = lines(plane, STATES[state][1]["color"])
+        x, y = np.array(line.get_xdata()), np.array(line.get_ydata())
+        there = np.isfinite(x)
+        path = path_of(LOOP)
+        assert there.sum() >= (path.states == state).sum()
+        assert np.hypot(x[there] - 0.1, y[there] / 0.4).max() == pytest.approx(1.0, abs=1e-3)
+
+
+def test_the_discs_are_where_the_contact_is_and_hold_the_slider(figure):
+    plane = figure.axes[0]
+    discs = [patch for patch in plane.patches if isinstance(patch, Circle)]
+    assert len(discs) == 4
+    angles = [float(text.get_text().removesuffix("°")) for text in plane.texts]
+    assert angles == [0.0, 90.0, 180.0, 270.0]
+    for disc, angle in zip(discs, np.radians(angles), strict=True):
+        assert disc.center == pytest.approx(LOOP.displacement(angle), abs=1e-9)
+        assert disc.radius == pytest.approx(LOOP.slip_limit(angle) / 2.0, abs=1e-9)
+        assert np.hypot(*(LOOP.slider(angle) - disc.center)) <= disc.radius + 1e-9
+
+
+def test_the_slider_is_not_drawn_while_the_contact_is_open(figure):
+    (line,) = lines(figure.axes[0], SLIDER)
+    path = path_of(LOOP)
+    drawn = np.isfinite(np.array(line.get_xdata()))
+    assert (drawn == (path.states != "S")).all()
+
+
+def test_both_hysteresis_loops_and_the_names_of_the_directions(figure):
+    plane, above, below = figure.axes
+    path = path_of(LOOP)
+    for axes, i in ((above, 0), (below, 1)):
+        shown = np.concatenate(
+            [np.array(line.get_ydata()) for line in axes.lines if len(line.get_xdata()) > 2]
+        )
+        assert np.nanmax(shown) == pytest.approx(path.f[:, i].max())
+        assert np.nanmin(shown) == pytest.approx(path.f[:, i].min())
+    assert plane.get_xlabel() == "Displacement $u_x$ = ax - bx (mm)"
+    assert plane.get_ylabel() == r"Displacement $u_y$ = ay \$ by (mm)"
+    assert above.get_ylabel() == "$f_x$ (N)"
+
+
+def test_the_work_of_both_loops_is_the_dissipation():
+    """What is drawn: the areas of the two loops together."""
+    path = path_of(LOOP)
+    area = sum(np.trapezoid(path.f[:, i], path.u[:, i]) for i in range(2))
+    assert area == pytest.approx(LOOP.dissipation, rel=1e-4)
